@@ -1,0 +1,47 @@
+"""Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
+
+from percept_obs import scenarios
+from percept_obs.forms import CanonicalForm, NotAffine
+from percept_obs.motion import Motion, affine, rigid
+from percept_obs.observability import instantaneous, windowed
+from percept_obs.observers import Observer, ekf, extended_kalman, ibo, identifier_based, sliding_mode, smo, with_point
+from percept_obs.perspective import PerspectiveSystem
+from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
+from percept_obs.tracking import DoesNotFit, Run, track
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "BehindCamera",
+    "Camera",
+    "CanonicalForm",
+    "DoesNotFit",
+    "Gaussian",
+    "ImagingSurface",
+    "Motion",
+    "NotAffine",
+    "Observer",
+    "PerspectiveSystem",
+    "Recording",
+    "Run",
+    "Scenario",
+    "Uniform",
+    "affine",
+    "chained",
+    "ekf",
+    "extended_kalman",
+    "ibo",
+    "identifier_based",
+    "instantaneous",
+    "pinhole",
+    "plane",
+    "record",
+    "rigid",
+    "scenarios",
+    "sliding_mode",
+    "smo",
+    "track",
+    "windowed",
+    "with_point",
+]

@@ -1,0 +1,101 @@
+"""The command line: `percept-obs lab` opens the notebooks, `percept-obs check` judges the equations."""
+
+import argparse
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib import resources, util
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+FIRST_NOTEBOOK = "00_start.ipynb"
+
+
+def notebooks() -> Traversable:
+    """Return the folder of the notebooks: inside an installed package, beside it in a checkout."""
+    installed = resources.files("percept_obs") / "notebooks"
+    return installed if installed.is_dir() else Path(__file__).parents[1] / "notebooks"
+
+
+def copy_notebooks(directory: Path) -> None:
+    """Copy the notebooks into a directory, which may be new, and leave whatever is there as it is."""
+    names = sorted(entry.name for entry in notebooks().iterdir() if entry.name.endswith(".ipynb"))
+    directory.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        target = directory / name
+        try:
+            with target.open("xb") as file:
+                file.write((notebooks() / name).read_bytes())
+        except FileExistsError:
+            print(f"kept    {target}")
+        else:
+            print(f"copied  {target}")
+
+
+def lab(options: argparse.Namespace) -> int:
+    """Copy the notebooks and open the first one in JupyterLab."""
+    directory: Path = options.directory
+    if directory.exists() and not directory.is_dir():
+        return _complain(f"{directory} is a file; name a folder, or a new one", 2)
+    try:
+        copy_notebooks(directory)
+    except OSError as error:
+        return _complain(f"cannot copy the notebooks: {error}", 2)
+    if options.copy_only:
+        return 0
+    if util.find_spec("jupyterlab") is None:
+        return _complain(f"JupyterLab is missing; get it with: {sys.executable} -m pip install jupyterlab", 1)
+
+    # As an address rather than a file: so the link that JupyterLab prints leads to the notebook as well.
+    address = f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"
+    command = [sys.executable, "-m", "jupyterlab", "--ServerApp.root_dir=.", address]
+    if options.no_browser:
+        command.append("--no-browser")
+    # In a container everyone is root, and JupyterLab refuses root unless told.
+    if getattr(os, "geteuid", lambda: None)() == 0:
+        command.append("--allow-root")
+    with subprocess.Popen(command, cwd=directory) as server:
+        while True:
+            try:
+                return server.wait()
+            except KeyboardInterrupt:  # reaches JupyterLab too, which asks before it stops
+                continue
+
+
+def check(options: argparse.Namespace) -> int:
+    """Print a verdict on each of the papers' equations."""
+    from percept_obs.papers import all_hold, report
+
+    print(report())
+    return 0 if all_hold() else 1
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code: 0 well, 1 failed, 2 asked for wrongly."""
+    parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    lab_parser = commands.add_parser("lab", help="open the notebooks in JupyterLab", description=lab.__doc__)
+    lab_parser.add_argument(
+        "directory",
+        nargs="?",
+        type=Path,
+        default=Path("percept_obs_notebooks"),
+        metavar="DIR",
+        help="where your copies live (default: ./%(default)s); nothing there is overwritten",
+    )
+    lab_parser.add_argument("--copy-only", action="store_true", help="copy the notebooks, do not open them")
+    lab_parser.add_argument("--no-browser", action="store_true", help="start JupyterLab without a browser")
+    lab_parser.set_defaults(run=lab)
+
+    check_parser = commands.add_parser("check", help="judge the papers' equations", description=check.__doc__)
+    check_parser.set_defaults(run=check)
+
+    options = parser.parse_args(arguments)
+    return options.run(options)
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"percept-obs: {message}", file=sys.stderr)
+    return code

@@ -1,0 +1,523 @@
+"""From sympy to code that runs: one classical Runge-Kutta loop, written once, in Python and in JavaScript.
+
+The loop is unrolled down to scalars, so that the Python text runs as it is and numba compiles the same text.
+Whatever a user may want to move (motion, gains, noise, start) is an argument; only a new structure compiles.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Any, Literal
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+from sympy.functions.elementary.piecewise import ExprCondPair
+from sympy.logic.boolalg import Boolean, BooleanFunction
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.pycode import PythonCodePrinter
+
+from percept_obs.equations import Equations
+
+Array = NDArray[np.float64]
+Language = Literal["python", "numba", "javascript"]
+
+LARGEST_SQUARED_STATE = 1e300
+"""A state whose squared norm exceeds this, or is not a number, has diverged."""
+
+LARGEST_PRODUCT = 8
+"""Integer powers up to this are printed as products, the same in every language."""
+
+_FUNCTIONS = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.tanh: "tanh",
+    sp.cosh: "cosh",
+    sp.sinh: "sinh",
+    sp.atan2: "atan2",
+}
+
+
+class NotCompilable(ValueError):
+    """An expression that would not mean the same in every language."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """What is known at the start, the middle and the end of every step.
+
+    Parameters
+    ----------
+    steps : array of shape (N,)
+        Lengths of the steps in seconds.
+    measured : array of shape (N, 3, m)
+        Measured outputs as they are held at the start, the middle and the end of each step.
+    parameters : array of shape (2 N + 1, p), or (1, p) when constant
+        Known motion and surface at the starts, middles and ends.
+    samples : array of shape (N + 1, m)
+        New samples at the steps' ends (and the first start); NaN where there is none.
+    """
+
+    steps: Array
+    measured: Array
+    parameters: Array
+    samples: Array
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What a run of the loop leaves.
+
+    Parameters
+    ----------
+    states : array of shape (N + 1, n)
+        States at the first start and at the end of every step; NaN from `diverged` on.
+    resets : array of shape (N + 1,) of bool
+        Where the state was reset.
+    diverged : int or None
+        The first step's end at which the state was no longer finite.
+    """
+
+    states: Array
+    resets: NDArray[np.bool_]
+    diverged: int | None
+
+
+def solve(
+    equations: Equations,
+    start: ArrayLike,
+    table: Table,
+    gains: ArrayLike = (),
+    language: Literal["python", "numba"] | None = None,
+) -> Trace:
+    """Step the equations through the table.
+
+    Parameters
+    ----------
+    equations : Equations
+    start : array of shape (n,)
+    table : Table
+    gains : array of shape (number of gains,)
+    language : "python" or "numba", optional
+        Left out, numba as soon as it is installed and has compiled these equations beside, and Python until then.
+
+    Returns
+    -------
+    Trace
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If numba is asked for and is not installed.
+    """
+    kernel = _kernel(equations)
+    size, count = len(equations.state), len(table.steps) + 1
+    inputs = [
+        np.array(block, dtype=float).ravel()
+        for block in (start, table.steps, table.measured, table.parameters, table.samples, gains)
+    ]
+    varying = len(table.parameters) > 1
+    run = kernel.choose(language)
+    if run is kernel.python:
+        states: Any = [math.nan] * (size * count)
+        resets: Any = [0.0] * count
+        try:
+            diverged = run(*(block.tolist() for block in inputs), varying, states, resets)
+        except (ArithmeticError, ValueError):
+            diverged = next(k for k in range(count) if math.isnan(states[size * k]))
+    else:
+        states, resets = np.full(size * count, np.nan), np.zeros(count)
+        diverged = run(*inputs, varying, states, resets)
+    return Trace(
+        np.array(states).reshape(count, size),
+        np.array(resets) != 0,
+        None if diverged < 0 else int(diverged),
+    )
+
+
+def vectorised(
+    symbols: Sequence[sp.Symbol],
+    expressions: Sequence[sp.Expr],
+    values: Mapping[sp.Symbol, float] | None = None,
+) -> Callable[..., list[Array]]:
+    """A numpy function of arrays for several expressions; constants take the arrays' shape."""
+    extra = tuple(values or ())
+    function = sp.lambdify((*symbols, *extra), tuple(expressions), "numpy", cse=True)
+    constants = tuple((values or {}).values())
+
+    def evaluate(*arrays: ArrayLike) -> list[Array]:
+        columns = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in arrays)) if arrays else []
+        shape = columns[0].shape if columns else ()
+        return [np.broadcast_to(np.asarray(r, dtype=float), shape) for r in function(*columns, *constants)]
+
+    return evaluate
+
+
+def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
+    """The flow as a function of (state, measured, parameters) with the given numbers put in.
+
+    Parameters without a number stay arguments, in their order.
+    """
+    numbers = {symbol: sp.Float(value, 17) for symbol, value in values.items()}
+    left = [symbol for symbol in equations.parameters if symbol not in numbers]
+    flow = [entry.xreplace(numbers) for entry in equations.flow]
+    return sp.lambdify([equations.state, equations.measured, left], flow, "math", cse=True)
+
+
+class _Kernel:
+    """The same text for Python and, when it is there, numba."""
+
+    def __init__(self, equations: Equations) -> None:
+        self.text = source(equations, "python")
+        namespace: dict[str, Any] = {"math": math}
+        exec(compile(self.text, "<run>", "exec"), namespace)
+        self.python: Callable[..., int] = namespace["run"]
+        self._numba: Callable[..., int] | None = None
+        self._lock = threading.Lock()
+        self._beside: threading.Thread | None = None
+
+    def choose(self, language: str | None) -> Callable[..., int]:
+        if language == "python":
+            return self.python
+        if language == "numba":
+            return self._compiled()
+        if language is not None:
+            raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
+        if self._numba is None and self._beside is None and find_spec("numba"):
+            self._beside = threading.Thread(target=self._compiled)
+            self._beside.start()
+        return self._numba or self.python
+
+    def _compiled(self) -> Callable[..., int]:
+        with self._lock:
+            if self._numba is None:
+                import numba
+
+                block = numba.float64[::1]
+                signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
+                self._numba = numba.njit([signature], error_model="numpy")(self.python)
+            return self._numba
+
+
+@lru_cache(maxsize=512)
+def _kernel(equations: Equations) -> _Kernel:
+    return _Kernel(equations)
+
+
+@lru_cache(maxsize=512)
+def source(equations: Equations, language: Literal["python", "javascript"] = "python") -> str:
+    """Text of the loop for these equations.
+
+    Parameters
+    ----------
+    equations : Equations
+    language : "python" or "javascript"
+
+    Returns
+    -------
+    str
+        A function ``run(start, steps, measured, parameters, samples, gains, varying, states, resets)`` on flat
+        arrays laid out as in `Table`.  It fills states and resets, and returns the index of the row at
+        which the state was no longer finite, or -1.
+
+    Raises
+    ------
+    NotCompilable
+        If an expression would not mean the same in both languages.
+    """
+    n, m, p = len(equations.state), len(equations.measured), len(equations.parameters)
+    text = _Text(language)
+    names = {
+        symbol: sp.Symbol(f"{letter}{k}", real=True)
+        for letter, group in (
+            ("x", equations.state),
+            ("y", equations.measured),
+            ("p", equations.parameters),
+            ("g", equations.gains),
+        )
+        for k, symbol in enumerate(group)
+    }
+
+    def formulas(expressions: Sequence[sp.Expr], targets: str) -> None:
+        text.formulas(expressions, names, targets)
+
+    def load_parameters(row: str) -> None:
+        if p:
+            with text.block("if", "varying"):
+                for k in range(p):
+                    text.assign(f"p{k}", f"parameters[({row})*{p} + {k}]")
+
+    def hold(stage: int) -> None:
+        for k in range(m):
+            text.assign(f"y{k}", f"measured[k*{3 * m} + {stage * m + k}]")
+
+    def stage(advance: str) -> None:
+        for k in range(n):
+            text.assign(f"x{k}", f"s{k} + {advance}*d{k}" if advance else f"s{k}")
+        formulas(equations.flow, "d")
+
+    def replace_state(expressions: Sequence[sp.Expr]) -> None:
+        for k in range(n):
+            text.assign(f"x{k}", f"s{k}")
+        formulas(expressions, "s")
+
+    def updates(row: str) -> None:
+        for k, block in enumerate(equations.update):
+            value = f"samples[({row})*{m} + {k}]"
+            with text.block("if", f"{value} == {value}"):
+                text.assign(f"y{k}", value)
+                replace_state(block)
+
+    def keep(row: str) -> None:
+        for k in range(n):
+            text.store(f"states[({row})*{n} + {k}]", f"s{k}")
+
+    with text.function(
+        "run", ["start", "steps", "measured", "parameters", "samples", "gains", "varying", "states", "resets"]
+    ):
+        for letter, group, count in (
+            ("s", "start", n),
+            ("g", "gains", len(equations.gains)),
+            ("p", "parameters", p),
+        ):
+            for k in range(count):
+                text.assign(f"{letter}{k}", f"{group}[{k}]")
+        updates("0")
+        keep("0")
+        with text.loop("k", "steps"):
+            text.assign("h", "steps[k]")
+            load_parameters("2*k")
+            hold(0)
+            stage("")
+            for k in range(n):
+                text.assign(f"q{k}", f"d{k}")
+            load_parameters("2*k + 1")
+            for middle in range(2):
+                if not middle:
+                    hold(1)
+                stage("0.5*h")
+                for k in range(n):
+                    text.assign(f"q{k}", f"q{k} + 2.0*d{k}")
+            load_parameters("2*k + 2")
+            hold(2)
+            stage("h")
+            for k in range(n):
+                text.assign(f"s{k}", f"s{k} + h/6.0*(q{k} + d{k})")
+            updates("k + 1")
+            if equations.reset:
+                for k in range(n):
+                    text.assign(f"x{k}", f"s{k}")
+                condition = equations.reset_condition.xreplace(names)
+                _refuse_what_differs([condition])
+                with text.block("if", text.print(condition)):
+                    formulas(equations.reset, "s")
+                    text.store("resets[k + 1]", "1.0")
+            text.assign("size", " + ".join(f"s{k}*s{k}" for k in range(n)))
+            with text.block("unless", f"size < {LARGEST_SQUARED_STATE!r}"):
+                text.leave("k + 1")
+            keep("k + 1")
+        text.leave("-1")
+    return str(text)
+
+
+@lru_cache(maxsize=512)
+def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> str:
+    """Text of a JavaScript function ``evaluate(x, out)`` that fills an array with the expressions' values.
+
+    Parameters
+    ----------
+    symbols : tuple of symbols
+        In the order of the argument array x.
+    expressions : tuple of expressions
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    NotCompilable
+        If an expression would not mean the same in Python and JavaScript.
+    """
+    text = _Text("javascript")
+    names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
+    with text.function("evaluate", ["x", "out"]):
+        for k, name in enumerate(names.values()):
+            text.assign(name.name, f"x[{k}]")
+        text.formulas(expressions, names, "d")
+        for k in range(len(expressions)):
+            text.store(f"out[{k}]", f"d{k}")
+        text.leave("out")
+    return str(text)
+
+
+def _refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
+    """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
+    for expression in expressions:
+        for node in sp.preorder_traversal(expression):
+            power_fits = isinstance(node, sp.Pow) and (
+                (node.exp.is_Integer and abs(node.exp) <= LARGEST_PRODUCT) or abs(node.exp) == sp.Rational(1, 2)
+            )
+            plain = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.Piecewise, ExprCondPair, sp.Rel, Boolean)
+            known = isinstance(node, (*plain, BooleanFunction)) or node.func in _FUNCTIONS
+            finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
+            constant = isinstance(node, sp.NumberSymbol)
+            if not (power_fits or known or finite or constant):
+                raise NotCompilable(f"{node} cannot be printed alike in Python and JavaScript; write it otherwise")
+            if isinstance(node, sp.Piecewise):
+                for branch in node.args:
+                    if any(
+                        isinstance(part, sp.log) or (isinstance(part, sp.Pow) and not _is_product(part))
+                        for part in sp.preorder_traversal(branch)
+                    ):
+                        raise NotCompilable(
+                            f"a branch of {node} divides or takes a root; common subexpressions would be evaluated "
+                            "where the branch is not taken, so move the division out of the branch"
+                        )
+
+
+def _is_product(power: sp.Pow) -> bool:
+    return bool(power.exp.is_Integer and power.exp > 0)
+
+
+class _Printer(PythonCodePrinter):
+    """Arithmetic in the notation that Python and JavaScript share; what differs is in the words."""
+
+    def __init__(self, words: Mapping[str, str]) -> None:
+        super().__init__({"fully_qualified_modules": False})
+        self.words = words
+
+    def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
+        base, exponent = expr.base, expr.exp
+        if abs(exponent) == sp.Rational(1, 2):
+            root = f"{self.words['math']}.sqrt({self._print(base)})"
+            return root if exponent > 0 else f"(1.0/{root})"
+        product = "*".join([self.parenthesize(base, PRECEDENCE["Pow"])] * abs(int(exponent)))
+        return f"({product})" if exponent > 0 else f"(1.0/({product}))"
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return f"({expr.p}.0/{expr.q}.0)"
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return f"{int(expr)}.0"
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        return repr(float(expr))
+
+    def _print_Function(self, expr: sp.Function) -> str:
+        return f"{self.words['math']}.{_FUNCTIONS[expr.func]}({', '.join(map(self._print, expr.args))})"
+
+    def _print_Abs(self, expr: sp.Abs) -> str:
+        return f"{self.words['abs']}({self._print(expr.args[0])})"
+
+    def _print_sign(self, expr: sp.sign) -> str:
+        inner = self._print(expr.args[0])
+        return self._choice(f"{inner} > 0.0", "1.0", self._choice(f"{inner} < 0.0", "-1.0", "0.0"))
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        *branches, (last, condition) = expr.args
+        if condition != sp.true:
+            raise NotCompilable(f"{expr} is not defined everywhere; end it with (expression, True)")
+        text = self._print(last)
+        for branch, condition in reversed(branches):
+            text = self._choice(self._print(condition), self._print(branch), text)
+        return text
+
+    def _choice(self, condition: str, then: str, otherwise: str) -> str:
+        return self.words["choice"].format(condition, then, otherwise)
+
+    def _print_And(self, expr: sp.And) -> str:
+        return "(" + f" {self.words['and']} ".join(map(self._print, expr.args)) + ")"
+
+    def _print_Or(self, expr: sp.Or) -> str:
+        return "(" + f" {self.words['or']} ".join(map(self._print, expr.args)) + ")"
+
+    def _print_Relational(self, expr: sp.Rel) -> str:
+        return f"({self._print(expr.lhs)} {expr.rel_op} {self._print(expr.rhs)})"
+
+
+for _function in _FUNCTIONS:
+    setattr(_Printer, f"_print_{_function.__name__}", _Printer._print_Function)
+
+
+_WORDS = {
+    "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
+    "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
+}
+
+
+class _Text:
+    """Lines of a program in one of two languages."""
+
+    def __init__(self, language: str) -> None:
+        if language not in _WORDS:
+            raise ValueError(f"the language {language!r} is neither 'python' nor 'javascript'")
+        self.python = language == "python"
+        self.print = _Printer(_WORDS[language]).doprint
+        self.lines: list[str] = []
+        self.depth = 0
+        self.assigned: dict[str, None] = {}
+
+    def __str__(self) -> str:
+        lines = list(self.lines)
+        if not self.python:
+            lines.insert(1, f"  let {', '.join(self.assigned)};")
+        return "\n".join(lines) + "\n"
+
+    def line(self, text: str) -> None:
+        self.lines.append(("    " if self.python else "  ") * self.depth + text)
+
+    def assign(self, name: str, expression: str) -> None:
+        self.assigned[name] = None
+        self.store(name, expression)
+
+    def store(self, place: str, expression: str) -> None:
+        self.line(f"{place} = {expression}" + ("" if self.python else ";"))
+
+    def formulas(self, expressions: Sequence[sp.Expr], names: Mapping[sp.Symbol, sp.Symbol], targets: str) -> None:
+        """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
+        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        _refuse_what_differs(renamed)
+        shared, results = sp.cse(renamed, symbols=sp.numbered_symbols("c", real=True))
+        for symbol, expression in shared:
+            self.assign(symbol.name, self.print(expression))
+        for k, expression in enumerate(results):
+            self.assign(f"{targets}{k}", self.print(expression))
+
+    def leave(self, value: str) -> None:
+        self.line(f"return {value}" + ("" if self.python else ";"))
+
+    @contextmanager
+    def _indented(self, python: str, javascript: str) -> Iterator[None]:
+        self.line(python + ":" if self.python else javascript + " {")
+        self.depth += 1
+        yield
+        self.depth -= 1
+        if not self.python:
+            self.line("}")
+
+    def function(self, name: str, arguments: Sequence[str]) -> Any:
+        head = f"{name}({', '.join(arguments)})"
+        return self._indented(f"def {head}", f"function {head}")
+
+    def loop(self, index: str, over: str) -> Any:
+        return self._indented(
+            f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
+        )
+
+    def block(self, word: Literal["if", "unless"], condition: str) -> Any:
+        if word == "unless":
+            return self._indented(f"if not {condition}", f"if (!({condition}))")
+        return self._indented(f"if {condition}", f"if ({condition})")

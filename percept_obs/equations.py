@@ -1,0 +1,82 @@
+"""A system of equations that can be stepped through time: flow, measurement update, reset."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+Symbols = tuple[sp.Symbol, ...]
+Expressions = tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """What happens to a state between samples, at samples, and when it is reset.
+
+    Parameters
+    ----------
+    state : symbols
+        The state.
+    flow : expressions, one a state
+        Time derivative of the state.
+    measured, parameters, gains : symbols
+        What the expressions use besides the state: measured outputs, the known motion and surface, constants.
+    update : one tuple of expressions a measured output
+        The state after the sample of that output; the outputs take their turns.
+    reset_condition : sympy condition
+        When the state is replaced by `reset`; looked at between steps.
+    reset : expressions, one a state
+        The state after a reset.
+
+    Raises
+    ------
+    ValueError
+        If an expression uses a symbol that is not listed, a symbol is listed twice, or lengths do not match.
+    """
+
+    state: Symbols
+    flow: Expressions
+    measured: Symbols = ()
+    parameters: Symbols = ()
+    gains: Symbols = ()
+    update: tuple[Expressions, ...] = ()
+    reset_condition: Boolean = sp.false
+    reset: Expressions = ()
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "update":
+                value = tuple(tuple(map(sp.sympify, block)) for block in value)
+            elif field.name != "reset_condition":
+                value = tuple(map(sp.sympify, value))
+            object.__setattr__(self, field.name, value)
+        listed = (*self.state, *self.measured, *self.parameters, *self.gains)
+        if len({symbol.name for symbol in listed}) != len(listed):
+            raise ValueError(f"a symbol is listed twice among {', '.join(map(str, listed))}")
+        blocks = (self.flow, *self.update, *((self.reset,) if self.reset else ()))
+        if any(len(block) != len(self.state) for block in blocks):
+            raise ValueError(f"flow, updates and reset need one expression for each of the {len(self.state)} states")
+        if self.update and len(self.update) != len(self.measured):
+            raise ValueError(f"{len(self.update)} updates were given for {len(self.measured)} measured outputs")
+        used = sp.Tuple(*(e for block in blocks for e in block), self.reset_condition).free_symbols
+        if used - set(listed):
+            raise ValueError(f"the equations use {sorted(map(str, used - set(listed)))}, which nothing provides")
+
+    def _repr_latex_(self) -> str:
+        lines = [rf"\dot{{{sp.latex(s)}}} &= {sp.latex(rate)}" for s, rate in zip(self.state, self.flow, strict=True)]
+        for output, block in zip(self.measured, self.update, strict=False):
+            lines += [
+                rf"{sp.latex(s)}^+ &= {sp.latex(new)} && \text{{at a sample of }} {sp.latex(output)}"
+                for s, new in zip(self.state, block, strict=True)
+            ]
+        if self.reset:
+            lines.append(rf"\text{{when }} & {sp.latex(self.reset_condition)}\text{{:}}")
+            lines += [
+                rf"{sp.latex(s)}^+ &= {sp.latex(new)}"
+                for s, new in zip(self.state, self.reset, strict=True)
+                if new != s
+            ]
+        return r"$\displaystyle \begin{aligned}" + r" \\ ".join(lines) + r"\end{aligned}$"

@@ -1,0 +1,146 @@
+"""The canonical form: a measured part, and a hidden part that enters its rate linearly."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import sympy as sp
+
+from percept_obs.derivation import Derivation, Step, equals
+from percept_obs.surfaces import ImagingSurface
+
+
+class NotAffine(ValueError):
+    """The measured outputs' rate is not affine in the hidden coordinates.
+
+    Attributes
+    ----------
+    measured : tuple of str
+        Names of the measured outputs.
+    culprits : tuple of str
+        Names of the hidden coordinates that do not enter linearly.
+    """
+
+    def __init__(self, measured: Sequence[str], culprits: Sequence[str]) -> None:
+        self.measured, self.culprits = tuple(measured), tuple(culprits)
+        super().__init__(
+            f"measuring {', '.join(measured)} gives no canonical form: its rate is not affine in "
+            f"{', '.join(culprits)}; measure {' or '.join(culprits[:-1]) or culprits[0]} as well, or use an "
+            "observer that needs no such form"
+        )
+
+
+@dataclass(frozen=True)
+class CanonicalForm:
+    """The system x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
+
+    Parameters
+    ----------
+    x1, x2 : tuples of n1 and n2 symbols
+        Measured and hidden coordinates.
+    w : matrix of shape (n2, n1)
+    phi : matrix of shape (n1, 1)
+    g : matrix of shape (n2, 1)
+    parameters : tuple of symbols
+        Known motion and surface.
+    coordinates : tuple of symbols
+        All coordinates in the order of the surface.
+    surface : ImagingSurface or None
+        Where the outputs are seen.
+    """
+
+    x1: tuple[sp.Symbol, ...]
+    x2: tuple[sp.Symbol, ...]
+    w: sp.ImmutableMatrix
+    phi: sp.ImmutableMatrix
+    g: sp.ImmutableMatrix
+    parameters: tuple[sp.Symbol, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    surface: ImagingSurface | None = None
+
+    @property
+    def rate(self) -> sp.ImmutableMatrix:
+        """Time derivative of (x1, x2)."""
+        return sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
+
+    @property
+    def values(self) -> dict[sp.Symbol, float]:
+        """Numbers of the surface's symbols."""
+        return dict(self.surface.values) if self.surface else {}
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the measured coordinates."""
+        return tuple(symbol.name for symbol in self.x1)
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of the hidden coordinates."""
+        return tuple(symbol.name for symbol in self.x2)
+
+    def derivation(self) -> Derivation:
+        """The form in formulas, one part after the other."""
+        x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
+        return Derivation(
+            (
+                Step("Measured and hidden:", rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}"),
+                Step(
+                    "What multiplies the hidden coordinates in the measured ones' rate:",
+                    equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
+                ),
+                Step("What is left of it without them:", equals(r"\phi", self.phi)),
+                Step("How the hidden coordinates change:", equals(r"g", self.g)),
+            )
+        )
+
+    def _repr_latex_(self) -> str:
+        x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
+        return (
+            rf"$\displaystyle \begin{{aligned}} \frac{{d}}{{dt}} {sp.latex(x1)} &= {sp.latex(self.w.T)} {sp.latex(x2)} "
+            rf"+ {sp.latex(self.phi)} \\ \frac{{d}}{{dt}} {sp.latex(x2)} &= {sp.latex(self.g)} \end{{aligned}}$"
+        )
+
+
+def split(
+    coordinates: tuple[sp.Symbol, ...],
+    rate: sp.ImmutableMatrix,
+    measured: Sequence[str],
+    parameters: tuple[sp.Symbol, ...],
+    surface: ImagingSurface | None = None,
+) -> CanonicalForm:
+    """Bring a system into canonical form, given the names of the measured coordinates.
+
+    Raises
+    ------
+    NotAffine
+        If the measured coordinates' rate is not affine in the hidden ones.
+    """
+    by_name = {symbol.name: (symbol, entry) for symbol, entry in zip(coordinates, rate, strict=True)}
+    x1 = tuple(by_name[name][0] for name in measured)
+    x2 = tuple(symbol for symbol in coordinates if symbol not in x1)
+    measured_rate = sp.ImmutableMatrix([by_name[name][1] for name in measured]).expand()
+    w = measured_rate.jacobian(x2).T.expand()
+    culprits = _culprits(w, x2)
+    if culprits:
+        raise NotAffine(measured, culprits)
+    away = dict.fromkeys(x2, sp.S.Zero)
+    # What is affine but not written so still holds hidden coordinates; their value does not matter there.
+    w = w if not w.free_symbols & set(x2) else w.subs(away)
+    g = sp.ImmutableMatrix([by_name[symbol.name][1] for symbol in x2])
+    return CanonicalForm(x1, x2, w, measured_rate.subs(away), g, parameters, coordinates, surface)
+
+
+def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> list[str]:
+    """Hidden coordinates on which w depends, or that multiply those: where a second derivative is not zero."""
+    draw = random.Random(0)
+    points = [{s: sp.Float(draw.uniform(0.1, 0.9), 30) for s in sorted(w.free_symbols, key=str)} for _ in range(3)]
+    guilty: set[sp.Symbol] = set()
+    for (row, hidden), other in product(enumerate(x2), x2):
+        for entry in w.row(row):
+            second = entry.diff(other)
+            if any(abs(sp.N(second.subs(point), 30)) > 1e-20 for point in points):
+                guilty |= {hidden, other}
+    return [symbol.name for symbol in x2 if symbol in guilty]

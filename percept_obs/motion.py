@@ -1,0 +1,245 @@
+"""Motions of a point in the camera's frame: X' = A X + b."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+Values = NDArray[np.float64]
+Coefficient = tuple[Any, sp.ImmutableMatrix]
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """Numbers known over time: constant, sampled, or given by a function.
+
+    Parameters
+    ----------
+    samples : array of shape (K, n) or function of a time
+        Rows of values; one row stands for a constant.  A function takes a time in seconds and returns n values.
+    times : array of shape (K,), optional
+        When the rows were sampled, in seconds; between them the signal is linear.
+
+    Raises
+    ------
+    ValueError
+        If values are not finite, times do not increase strictly, or their numbers differ.
+    """
+
+    samples: Values | Callable[[float], ArrayLike]
+    times: Values | None = None
+
+    def __post_init__(self) -> None:
+        if callable(self.samples):
+            return
+        samples = _frozen(np.atleast_2d(np.asarray(self.samples, dtype=float)), "the signal's samples")
+        object.__setattr__(self, "samples", samples)
+        if self.times is None:
+            if len(samples) != 1:
+                raise ValueError(f"{len(samples)} rows of samples need as many times; only one row is a constant")
+            return
+        times = _frozen(np.asarray(self.times, dtype=float), "the signal's times")
+        if times.shape != (len(samples),) or not (np.diff(times) > 0).all():
+            raise ValueError(
+                f"the signal has {len(samples)} rows of samples and times of shape {times.shape}; "
+                "give one time a row, strictly increasing"
+            )
+        object.__setattr__(self, "times", times)
+
+    @property
+    def constant(self) -> bool:
+        """Whether the signal is the same at all times."""
+        return not callable(self.samples) and len(self.samples) == 1
+
+    def at(self, times: ArrayLike) -> Values:
+        """Values at the given times.
+
+        Parameters
+        ----------
+        times : array of shape (T,)
+            Times in seconds.
+
+        Returns
+        -------
+        array of shape (T, n), or (1, n) for a constant signal
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the sampled ones, or a function returns values that are not finite.
+        """
+        times = np.atleast_1d(np.asarray(times, dtype=float))
+        if callable(self.samples):
+            rows = np.array([np.asarray(self.samples(float(t)), dtype=float).ravel() for t in times])
+            return _frozen(rows, "the signal's function values")
+        if self.times is None or len(self.samples) == 1:
+            return self.samples
+        slack = 1e-9 * max(1.0, float(np.abs(self.times).max()))
+        if times.size and (times.min() < self.times[0] - slack or times.max() > self.times[-1] + slack):
+            raise ValueError(
+                f"the signal is known from {self.times[0]:.6g} to {self.times[-1]:.6g} s, but is asked for from "
+                f"{times.min():.6g} to {times.max():.6g} s; sample it longer or ask for less"
+            )
+        return np.stack([np.interp(times, self.times, column) for column in self.samples.T], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A motion X' = A X + b, in symbols, with numbers for the symbols if they are known.
+
+    Parameters
+    ----------
+    name : str
+        What the motion is called.
+    A, b : sympy matrices of shape (3, 3) and (3, 1)
+        Coefficients in 1/s and m/s.
+    parameters : tuple of sympy symbols
+        The symbols in A and b, in the order of the signal's columns.
+    signal : Signal, optional
+        Values of `parameters` over time.
+    """
+
+    name: str
+    A: sp.ImmutableMatrix
+    b: sp.ImmutableMatrix
+    parameters: tuple[sp.Symbol, ...]
+    signal: Signal | None = None
+
+    @property
+    def values(self) -> dict[sp.Symbol, float]:
+        """Numbers of a constant motion's symbols; empty while there are none or they vary."""
+        if self.signal is None or not self.signal.constant:
+            return {}
+        return dict(zip(self.parameters, self.signal.at(0.0)[0].tolist(), strict=True))
+
+    def known(self, times: ArrayLike) -> Values:
+        """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
+
+        Raises
+        ------
+        ValueError
+            If the motion has symbols without numbers, or a time lies outside the known ones.
+        """
+        if self.signal is None:
+            if self.parameters:
+                raise ValueError(
+                    f"the {self.name} motion has no values for {', '.join(map(str, self.parameters))}; "
+                    "build it with numbers, for instance affine(A, b)"
+                )
+            return np.zeros((1, 0))
+        rows = self.signal.at(times)
+        if rows.shape[1] != len(self.parameters):
+            raise ValueError(f"the {self.name} motion has {len(self.parameters)} parameters, not {rows.shape[1]}")
+        return rows
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle \dot X = {sp.latex(self.A)} X + {sp.latex(self.b)}$"
+
+
+def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Motion:
+    """Affine motion (Ma 2005, (1), p. 63).
+
+    Parameters
+    ----------
+    A : array of shape (3, 3) or (K, 3, 3), function of time, or sympy expressions, optional
+        Coefficients in 1/s; symbols a11 ... a33 when left out.
+    b : array of shape (3,) or (K, 3), function of time, or sympy expressions, optional
+        Coefficients in m/s; symbols b1, b2, b3 when left out.
+    times : array of shape (K,), optional
+        Times in seconds of sampled coefficients.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not match, values are not finite or times do not increase.
+    """
+    A_symbols = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"a{i + 1}{j + 1}", real=True))
+    b_symbols = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
+    return _motion("affine", A_symbols, b_symbols, [(A, A_symbols), (b, b_symbols)], times)
+
+
+def rigid(
+    angular_velocity: Any = None,
+    camera_velocity: Any = None,
+    point_velocity: Any = None,
+    times: ArrayLike | None = None,
+) -> Motion:
+    """Rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)).
+
+    The plus sign of [w]x makes w the negative of the camera's angular velocity in its own frame.
+
+    Parameters
+    ----------
+    angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, optional
+        w in rad/s, v_c and v_p in m/s; symbols when left out.
+    times : array of shape (K,), optional
+        Times in seconds of sampled velocities.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not match, values are not finite or times do not increase.
+    """
+    w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
+    cross = sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+    given = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
+    return _motion("rigid", cross, v_p - v_c, given, times)
+
+
+def _motion(
+    name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, given: list[Coefficient], times: ArrayLike | None
+) -> Motion:
+    """Bind what was given to the symbols it stands for."""
+    blocks = [block for _, block in given]
+    values = [value for value, _ in given]
+    symbols = tuple(s for block in blocks for s in block)
+    if all(value is None for value in values):
+        return Motion(name, A, b, symbols)
+    if any(value is None for value in values):
+        raise ValueError(f"a {name} motion takes all of its coefficients or none of them")
+    if any(_has_symbols(value) for value in values):
+        entries = [e for value, block in given for e in sp.ImmutableMatrix(value).reshape(*block.shape)]
+        A, b = (matrix.xreplace(dict(zip(symbols, entries, strict=True))) for matrix in (A, b))
+        free = sorted(A.free_symbols | b.free_symbols, key=str)
+        return Motion(name, A, b, tuple(free))
+    if any(callable(value) for value in values):
+        return Motion(name, A, b, symbols, Signal(lambda t: _row(given, t)))
+    if times is None:
+        return Motion(name, A, b, symbols, Signal(_row(given, 0.0)))
+    count = len(np.asarray(times))
+    rows = [_rows(value, block, count) for value, block in given]
+    return Motion(name, A, b, symbols, Signal(np.hstack(rows), np.asarray(times, dtype=float)))
+
+
+def _row(given: list[Coefficient], time: float) -> Values:
+    """All coefficients at a time, one after the other."""
+    return np.hstack([_rows(value(time) if callable(value) else value, block, 1) for value, block in given])
+
+
+def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
+    """One coefficient as rows, repeated when it is constant."""
+    array = np.asarray(value, dtype=float)
+    shape = block.shape if block.shape[1] > 1 else block.shape[:1]
+    if array.shape not in (shape, (count, *shape)):
+        sampled = f" or {(count, *shape)}" if count > 1 else ""
+        raise ValueError(f"a coefficient of the motion has shape {array.shape}; expected {shape}{sampled}")
+    return np.broadcast_to(array, (count, *shape)).reshape(count, -1)
+
+
+def _has_symbols(value: object) -> bool:
+    if callable(value):
+        return False
+    return any(isinstance(e, sp.Basic) and e.free_symbols for e in np.asarray(value, dtype=object).ravel())
+
+
+def _frozen(array: Values, what: str) -> Values:
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what} are not finite; remove or repair the NaN or infinite ones")
+    array = array.copy()
+    array.setflags(write=False)
+    return array

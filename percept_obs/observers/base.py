@@ -1,0 +1,280 @@
+"""What every observer is: equations, gains, a start, and an estimate."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+from sympy.logic.boolalg import Boolean
+
+from percept_obs.compile import right_hand_side
+from percept_obs.equations import Equations, Expressions, Symbols
+from percept_obs.forms import CanonicalForm
+from percept_obs.motion import Motion
+
+
+@dataclass(frozen=True)
+class Gain:
+    """A constant of an observer that a user may choose.
+
+    Parameters
+    ----------
+    symbol : sympy symbol
+        Its letter in the equations.
+    name : str
+        Its keyword.
+    value : float
+    low, high : float
+        Range that is worth exploring.
+    meaning : str
+        What it does, in a few words.
+    condition : sympy relation
+        What the value must fulfil.
+    reason : str
+        Why it must.
+    """
+
+    symbol: sp.Symbol
+    name: str
+    value: float
+    low: float
+    high: float
+    meaning: str
+    condition: Any = sp.true
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        try:
+            value = float(self.value)
+        except (TypeError, ValueError):
+            raise ValueError(f"{self.name} = {self.value!r} is not a number") from None
+        object.__setattr__(self, "value", value)
+        if not math.isfinite(value):
+            raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
+        if not self.condition.subs(self.symbol, sp.Float(value)):
+            raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
+
+
+@dataclass(frozen=True)
+class Observer:
+    """An observer of a canonical form, as equations.
+
+    Parameters
+    ----------
+    name : str
+    form : CanonicalForm
+        What is observed.
+    equations : Equations
+        Flow, measurement update, reset condition and reset of the observer's state.
+    estimate : tuple of expressions
+        Estimates of ``form.coordinates``.
+    gains : tuple of Gain
+    start : tuple of expressions
+        The state at the first sample, from the measured outputs and the gains.
+    covariance : matrix of expressions, optional
+        Covariance of the estimate, from the state, if the observer claims one.
+    """
+
+    name: str
+    form: CanonicalForm
+    equations: Equations
+    estimate: tuple[sp.Expr, ...]
+    gains: tuple[Gain, ...]
+    start: tuple[sp.Expr, ...]
+    covariance: sp.ImmutableMatrix | None = None
+
+    def with_gains(self, **values: float) -> Observer:
+        """The same observer with other gains; nothing is compiled again.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown, or a value is not finite or out of its range.
+        """
+        known = [gain.name for gain in self.gains]
+        unknown = sorted(set(values) - set(known))
+        if unknown:
+            raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
+        return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
+
+    @property
+    def gain_values(self) -> dict[sp.Symbol, float]:
+        """Numbers of the gains by their letters."""
+        return {gain.symbol: gain.value for gain in self.gains}
+
+    @property
+    def error(self) -> tuple[sp.Symbol, ...]:
+        """Symbols e1, e2, ... of the estimation errors, numbered like the coordinates."""
+        return sp.symbols(f"e1:{len(self.form.coordinates) + 1}", real=True)
+
+    def error_dynamics(self) -> sp.ImmutableMatrix:
+        """Time derivative of the error e = x - xhat between samples and resets.
+
+        Returns
+        -------
+        matrix of shape (n, 1)
+            In terms of the true coordinates and the error, in the order of ``form.coordinates``.
+        """
+        form, state = self.form, self.equations.state
+        truth = sp.ImmutableMatrix(form.coordinates)
+        rates = dict(zip((*form.x1, *form.x2), form.rate, strict=True))
+        estimate = sp.ImmutableMatrix(self.estimate)
+        estimate_rate = estimate.jacobian(state) * sp.ImmutableMatrix(self.equations.flow)
+        estimate_rate += estimate.jacobian(form.x1) * sp.ImmutableMatrix([rates[x] for x in form.x1])
+        error_rate = sp.ImmutableMatrix([rates[x] for x in form.coordinates]) - estimate_rate
+        at_error = sp.solve(list(estimate - truth + sp.ImmutableMatrix(self.error)), state, dict=True)[0]
+        return error_rate.subs(at_error, simultaneous=True).expand()
+
+    def jacobian(self) -> sp.ImmutableMatrix:
+        """Derivative of the flow with respect to the observer's state."""
+        return sp.ImmutableMatrix(self.equations.flow).jacobian(self.equations.state)
+
+    def initial_state(self, outputs: Mapping[str, float], given: Mapping[str, float]) -> NDArray[np.float64]:
+        """The state at the first sample.
+
+        Parameters
+        ----------
+        outputs : mapping of names of measured outputs to their first samples
+        given : mapping of coordinate names to estimates that replace the observer's own start
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown or a value is not finite.
+        """
+        names = [symbol.name for symbol in self.form.coordinates]
+        wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]
+        if wrong:
+            raise ValueError(
+                f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}"
+            )
+        known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values
+        state = {s: float(e.subs(known)) for s, e in zip(self.equations.state, self.start, strict=True)}
+        for symbol, expression in zip(self.form.coordinates, self.estimate, strict=True):
+            if symbol.name in given:
+                (changed,) = expression.free_symbols & set(state)
+                state[changed] = float(sp.solve(expression.subs(known) - given[symbol.name], changed)[0])
+        return np.array(list(state.values()))
+
+    def lambdify(
+        self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
+    ) -> Callable[[float, Sequence[float]], list[float]]:
+        """The flow as a function of time and state, for scipy's solvers; resets are left to the caller.
+
+        Parameters
+        ----------
+        motion : Motion
+            Known motion, with numbers.
+        measured : function of a time, optional
+            Measured outputs; not needed where the equations use none, as with `with_point`.
+
+        Returns
+        -------
+        function of (t, state)
+            Time derivative of the state.
+
+        Raises
+        ------
+        ValueError
+            If measured outputs are needed, or the motion has no numbers.
+        """
+        if self.equations.measured and measured is None:
+            outputs = ", ".join(map(str, self.equations.measured))
+            raise ValueError(f"the {self.name} observer uses {outputs}; pass measured=, a function of time")
+        flow = right_hand_side(self.equations, {**self.form.values, **self.gain_values, **motion.values})
+        if motion.signal is not None and motion.signal.constant:
+            return lambda t, state: flow(state, measured(t) if measured else (), ())
+        return lambda t, state: flow(state, measured(t) if measured else (), motion.known(t)[0])
+
+    def _repr_latex_(self) -> str:
+        return self.equations._repr_latex_()
+
+
+M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
+
+BOUND_GAINS = (
+    Gain(M, "bound", 10, 1, 50, "largest norm of the estimate", M > 0, "it bounds a norm"),
+    Gain(
+        gamma,
+        "reset_ratio",
+        1.01,
+        1.001,
+        2,
+        "how far beyond the bound the estimate is reset",
+        gamma > 1,
+        "at 1 the reset maps the bound to itself and the estimate sticks to it",
+    ),
+)
+"""Gains of `kept_within`."""
+
+NOISE_GAIN = Gain(
+    sigma2,
+    "noise_variance",
+    0,
+    0,
+    1e-3,
+    "variance of the noise whose bias is taken out",
+    sigma2 >= 0,
+    "it is a variance",
+)
+"""Gain of `noise_bias`."""
+
+
+def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
+    """Symbols of the estimates: yhat1 for y1."""
+    return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
+
+
+def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
+    """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
+
+    Ma 2005, (12), p. 65.  A state that is not part of the estimate stays.
+    """
+    squared = sum(hat**2 for hat in estimate)
+    shrink = M / sp.sqrt(squared)
+    return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
+
+
+def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
+
+    The same sample n enters both factors: with the variance sigma^2 in each output,
+    E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
+    Exact when both are affine in the outputs, as for the identifier-based observer on the pinhole; otherwise the
+    curvature of either factor is left out.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    correction : matrix of shape (n1, 1)
+        What the observer multiplies by w, in terms of the measured outputs.
+
+    Returns
+    -------
+    matrix of shape (n2, 1)
+    """
+    terms = (form.w.diff(x) * correction.diff(x) for x in form.x1)
+    return sigma2 * sum(terms, sp.zeros(len(form.x2), 1))
+
+
+def with_point(observer: Observer) -> Observer:
+    """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state)."""
+    form, eq = observer.form, observer.equations
+    point = (*form.x1, *form.x2)
+    together = Equations(
+        (*point, *eq.state),
+        (*form.rate, *eq.flow),
+        (),
+        eq.parameters,
+        eq.gains,
+        (),
+        eq.reset_condition,
+        (*point, *eq.reset) if eq.reset else (),
+    )
+    return replace(observer, name=f"{observer.name} with its point", equations=together)

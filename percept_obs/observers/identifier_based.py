@@ -1,0 +1,80 @@
+"""The identifier-based observer of Jankovic and Ghosh (1995)."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.equations import Equations
+from percept_obs.forms import CanonicalForm
+from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, Gain, Observer, hats, kept_within, noise_bias
+
+G, A, P = sp.symbols("G A P", real=True)
+
+GAINS = (
+    Gain(G, "gain", 10, 1, 30, "how fast the observer is", G > 0, "the error feedback must damp"),
+    Gain(A, "injection", 1, 0.1, 3, "weight of the innovation in the measured part"),
+    Gain(P, "lyapunov", -0.5, -5, -0.05, "weight of the innovation in the hidden part"),
+    *BOUND_GAINS,
+    NOISE_GAIN,
+)
+
+
+def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
+    """Identifier-based observer (IBO).
+
+    With e = x1 - x1hat::
+
+        x1hat' = G A e + w^T x2hat + phi
+        x2hat' = -G^2 P w e + g(x1, x2hat)
+        when |xhat| >= gamma M:  xhat <- M xhat / |xhat|
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    gain : float
+        G, how fast the observer is; positive.  Default 10.
+    injection : float
+        A, weight of e in the measured part; the factor of the identity.  Default 1.
+    lyapunov : float
+        P, weight of e in the hidden part; the factor of the identity.  Default -1/2, the printed value, whose sign
+        repairs that of (11).
+    bound : float
+        M, bound on the estimate's norm; positive.  Default 10.
+    reset_ratio : float
+        gamma, how far beyond the bound the estimate must be to be reset; more than 1.  Default 1.01.
+    noise_variance : float
+        Variance of the noise in each output, whose bias is then taken out of the hidden part.  Default 0.
+
+    Returns
+    -------
+    Observer
+
+    Raises
+    ------
+    ValueError
+        If a gain is unknown or out of its range.
+
+    Notes
+    -----
+    Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  The bias is `noise_bias` of the correction e.
+    """
+    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
+    state = (*x1_hat, *x2_hat)
+    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
+    g_hat = form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
+    measured_rate = G * A * e + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
+    hidden_rate = -(G**2) * P * (form.w * e - noise_bias(form, e)) + g_hat
+    equations = Equations(
+        state,
+        (*measured_rate, *hidden_rate),
+        form.x1,
+        form.parameters,
+        tuple(gain.symbol for gain in GAINS),
+        (),
+        *kept_within(state, state),
+    )
+    start = (*form.x1, *(sp.S.Zero for _ in form.x2))
+    return Observer("identifier-based", form, equations, hats(form.coordinates), GAINS, start).with_gains(**gains)
+
+
+ibo = identifier_based

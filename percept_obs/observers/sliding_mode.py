@@ -1,0 +1,122 @@
+"""The sliding mode observer of Chen and Kano (2002)."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.equations import Equations
+from percept_obs.forms import CanonicalForm
+from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, Gain, Observer, hats, kept_within, noise_bias
+
+alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
+
+GAINS = (
+    Gain(
+        alpha,
+        "hidden_gain",
+        5,
+        0.5,
+        30,
+        "weight of the switching term in the hidden part",
+        alpha > 0,
+        "the hidden part must follow the switching term",
+    ),
+    Gain(
+        alpha1,
+        "adaptation",
+        10,
+        0,
+        50,
+        "how fast the switching gains grow",
+        alpha1 >= 0,
+        "the switching gains may not shrink",
+    ),
+    Gain(
+        delta,
+        "boundary_layer",
+        0.2,
+        0.005,
+        1,
+        "width over which the sign is smoothed",
+        delta > 0,
+        "with 0 the switching term divides by the error",
+    ),
+    Gain(
+        lambda0,
+        "switching_gain",
+        1,
+        0.1,
+        10,
+        "the switching gains at the start",
+        lambda0 > 0,
+        "the switching term must push towards the measurement",
+    ),
+    *BOUND_GAINS,
+    NOISE_GAIN,
+)
+
+
+def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
+    """Sliding mode observer with adaptive switching gains (SMO).
+
+    With e = x1 - x1hat and, for each measured output, s = lambda e / (|e| + delta)::
+
+        x1hat' = s + w^T x2hat + phi
+        x2hat' = alpha w s + g(x1, x2hat)
+        lambda' = 2 alpha1 |e| where |e| > 2 delta, else 0
+        when |xhat| >= gamma M:  xhat <- M xhat / |xhat|
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    hidden_gain : float
+        alpha, weight of s in the hidden part; positive.  Default 5.
+    adaptation : float
+        alpha1, how fast the switching gains grow; positive.  Default 10.
+    boundary_layer : float
+        delta, width over which the sign is smoothed; positive.  Default 0.2.
+    switching_gain : float
+        lambda(0), the switching gains at the start; positive.  Default 1.
+    bound : float
+        M, bound on the estimate's norm; positive.  Default 10.
+    reset_ratio : float
+        gamma, how far beyond the bound the estimate must be to be reset; more than 1.  Default 1.01.
+    noise_variance : float
+        Variance of the noise in each output, whose bias is then taken out of the hidden part.  Default 0.
+
+    Returns
+    -------
+    Observer
+
+    Raises
+    ------
+    ValueError
+        If a gain is unknown or out of its range.
+
+    Notes
+    -----
+    Ma, Chen and Moore 2005, (21)-(23), pp. 67-68.  The bias is `noise_bias` of the correction s.
+    """
+    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
+    lambdas = sp.symbols(f"lambda1:{len(form.x1) + 1}", real=True)
+    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
+    s = sp.ImmutableMatrix([lam * ei / (sp.Abs(ei) + delta) for lam, ei in zip(lambdas, e, strict=True)])
+    g_hat = form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
+    measured_rate = s + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
+    hidden_rate = alpha * (form.w * s - noise_bias(form, s)) + g_hat
+    growth = [sp.Piecewise((2 * alpha1 * sp.Abs(ei), sp.Abs(ei) > 2 * delta), (0, True)) for ei in e]
+    state = (*x1_hat, *x2_hat, *lambdas)
+    equations = Equations(
+        state,
+        (*measured_rate, *hidden_rate, *growth),
+        form.x1,
+        form.parameters,
+        tuple(gain.symbol for gain in GAINS),
+        (),
+        *kept_within(state, (*x1_hat, *x2_hat)),
+    )
+    start = (*form.x1, *(sp.S.Zero for _ in form.x2), *(lambda0 for _ in lambdas))
+    return Observer("sliding mode", form, equations, hats(form.coordinates), GAINS, start).with_gains(**gains)
+
+
+smo = sliding_mode

@@ -1,0 +1,343 @@
+"""Tracking: an observer follows a recording."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.compile import Table, solve, vectorised
+from percept_obs.equations import Symbols
+from percept_obs.motion import Motion
+from percept_obs.observers.base import Observer
+from percept_obs.recording import Recording, halves, step_grid
+
+Array = NDArray[np.float64]
+Hold = Literal["zero", "first", "exact"]
+
+LONGEST_STEP = 0.01
+"""Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
+
+
+class DoesNotFit(ValueError):
+    """An observer cannot follow this recording."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """An observer's estimates at the samples of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    observer : Observer
+    estimate : array of shape (K, n)
+        Estimates of the surface's coordinates; NaN from `diverged_at` on.
+    state : array of shape (K, s)
+        The observer's state.
+    resets : array
+        Times, in seconds, at which the estimate was reset.
+    diverged_at : float or None
+        When the state stopped being finite, in seconds.
+    hold : "zero", "first" or "exact"
+        How samples were held between them.
+    """
+
+    recording: Recording
+    observer: Observer
+    estimate: Array
+    state: Array
+    resets: Array
+    diverged_at: float | None
+    hold: Hold
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples in seconds, shape (K,)."""
+        return self.recording.time
+
+    @property
+    def truth(self) -> Array:
+        """True coordinates, shape (K, n).
+
+        Raises
+        ------
+        ValueError
+            If the recording has none.
+        """
+        if self.recording.truth is None:
+            raise ValueError("the recording has no truth to compare with; give it one, or look at the innovation")
+        return self.recording.truth
+
+    @cached_property
+    def error(self) -> Array:
+        """Truth minus estimate, shape (K, n)."""
+        return self.truth - self.estimate
+
+    @cached_property
+    def innovation(self) -> Array:
+        """Samples minus estimates of the measured outputs, shape (K, n1); NaN where a sample was lost."""
+        names = [symbol.name for symbol in self.observer.form.coordinates]
+        measured = self.observer.form.measured
+        columns = [self.recording.names.index(name) for name in measured]
+        return self.recording.outputs[:, columns] - self.estimate[:, [names.index(name) for name in measured]]
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Covariance of the estimate that the observer claims, shape (K, n, n).
+
+        Raises
+        ------
+        ValueError
+            If the observer claims none.
+        """
+        observer = self.observer
+        if observer.covariance is None:
+            raise ValueError(f"the {observer.name} observer claims no covariance; the extended Kalman filter does")
+        entries = vectorised(observer.equations.state, list(observer.covariance))(*self.state.T)
+        return np.stack(entries, axis=-1).reshape(len(self.state), *observer.covariance.shape)
+
+    @cached_property
+    def normalised_innovation(self) -> Array:
+        """Squared innovation before the update, over the variance that was claimed for it, shape (K,).
+
+        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost.
+        With the residual r after the update, its covariance R - P and r = R S^-1 (innovation), the squared innovation
+        is r^T (R - P)^-1 r.
+
+        Raises
+        ------
+        ValueError
+            If the observer claims no covariance or has no measurement update.
+        """
+        measured = self._columns(self.observer.form.measured)
+        claimed = self.covariance[:, measured][:, :, measured]
+        variance = dict((gain.name, gain.value) for gain in self.observer.gains).get("noise_variance")
+        if variance is None or not self.observer.equations.update:
+            raise ValueError(f"the {self.observer.name} observer has no measurement update")
+        residual = self.innovation[:, :, None]
+        left = variance * np.eye(len(measured)) - claimed
+        return (np.swapaxes(residual, 1, 2) @ np.linalg.solve(left, residual))[:, 0, 0]
+
+    @cached_property
+    def points(self) -> Array:
+        """Estimated positions in metres, shape (K, 3); infinite where the estimate is not in front of the camera."""
+        return self.recording.surface.locate(self.estimate)
+
+    @cached_property
+    def distance(self) -> Array:
+        """Estimated depth or range in metres, shape (K,); infinite where the inverse distance is not positive."""
+        inverse = self.estimate[:, -1]
+        return np.divide(1, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0)
+
+    def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
+        """When the error entered the tolerance for good.
+
+        Parameters
+        ----------
+        tolerance : float
+            Bound on the error's absolute value; positive.
+        *names : str
+            Coordinates that count; the hidden ones when left out.
+
+        Returns
+        -------
+        float
+            Seconds since the first sample; infinite if the error is outside at the end.
+        """
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+        outside: NDArray[np.bool_] = ~np.all(np.abs(self.error[:, self._columns(names)]) < tolerance, axis=1)
+        if outside[-1]:
+            return math.inf
+        last = np.flatnonzero(outside)
+        return float(self.time[last[-1] + 1] - self.time[0]) if len(last) else 0.0
+
+    def rms(self, begin: float = -math.inf, end: float = math.inf, *names: str) -> float:
+        """Root mean square of the error between two times, over the hidden coordinates or those named."""
+        part = (self.time >= begin) & (self.time <= end)
+        if not part.any():
+            raise ValueError(f"no sample lies between {begin} and {end} s")
+        return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
+
+    def verdict(self, tolerance: float = 0.05) -> str:
+        """What happened, in words."""
+        if self.diverged_at is not None:
+            return (
+                f"diverged at {self.diverged_at:.3g} s: the estimate grew beyond all bounds; "
+                "choose smaller gains or shorter steps"
+            )
+        resets = ""
+        if len(self.resets):
+            times = "once" if len(self.resets) == 1 else f"{len(self.resets)} times"
+            resets = f"; driven to the bound and reset {times}, first at {self.resets[0]:.3g} s"
+        if self.recording.truth is None:
+            return f"followed {self.time[-1] - self.time[0]:.3g} s; no truth to compare with{resets}"
+        hidden = ", ".join(self.observer.form.hidden)
+        settled = self.settling_time(tolerance)
+        if math.isinf(settled):
+            worst = float(np.abs(self.error[-1, self._columns(())]).max())
+            return f"not converged: the error of {hidden} ends at {worst:.2g}, outside {tolerance:g}{resets}"
+        return f"converged: the error of {hidden} stays within {tolerance:g} after {settled:.3g} s{resets}"
+
+    def _columns(self, names: Sequence[str]) -> list[int]:
+        known = [symbol.name for symbol in self.observer.form.coordinates]
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            raise ValueError(f"there is no coordinate {', '.join(unknown)}; there are {', '.join(known)}")
+        return [known.index(name) for name in names or self.observer.form.hidden]
+
+    def __repr__(self) -> str:
+        return f"<Run of the {self.observer.name} observer on {self.recording.source}: {self.verdict()}>"
+
+
+def track(
+    recording: Recording,
+    observer: Observer,
+    start: Mapping[str, float] | Sequence[float] | None = None,
+    hold: Hold = "zero",
+    believed: Motion | None = None,
+    step: float = LONGEST_STEP,
+    language: Literal["python", "numba"] | None = None,
+) -> Run:
+    """Let an observer follow a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    observer : Observer
+        On the recording's surface, with measured outputs that the recording has.
+    start : mapping of coordinate names to values, or n values, optional
+        Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
+        observer's own start (hidden).
+    hold : "zero", "first" or "exact"
+        What the observer takes for the outputs between samples: the last sample; a line to the next one, which a
+        running system does not have yet, so that it looks one sample ahead; or the exact signal without noise,
+        known in simulations only.  A lost sample prolongs the hold.
+    believed : Motion, optional
+        The motion that the observer believes in; the recording's own when left out.
+    step : float
+        Longest integration step in seconds; a sample always ends one.
+    language : "python" or "numba", optional
+        See `solve`.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    DoesNotFit
+        If surface, outputs or motion do not fit the observer.
+    ValueError
+        If the start, the hold or the step make no sense.
+    """
+    form = observer.form
+    believed = believed or recording.motion
+    _refuse_misfits(recording, observer, believed, hold, step)
+    columns = [recording.names.index(name) for name in form.measured]
+    samples = recording.outputs[:, columns]
+    initial = observer.initial_state(
+        dict(zip(form.measured, samples[0].tolist(), strict=True)), _named(start, form.coordinates)
+    )
+    grid, index = step_grid(recording.time, step)
+    table = Table(
+        np.diff(grid),
+        _held(recording, columns, grid, index, hold),
+        _known(recording, believed, grid),
+        _arriving(samples, index, len(grid)),
+    )
+    trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
+    states = trace.states[index]
+    estimate = vectorised((*observer.equations.state, *form.x1), observer.estimate)
+    return Run(
+        recording,
+        observer,
+        np.stack(estimate(*states.T, *(_last_sample(column) for column in samples.T)), axis=-1),
+        states,
+        grid[trace.resets],
+        None if trace.diverged is None else float(grid[trace.diverged]),
+        hold,
+    )
+
+
+def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, hold: str, step: float) -> None:
+    form, surface = observer.form, recording.surface
+    if form.surface is None or not form.surface.fits(surface):
+        raise DoesNotFit(
+            f"the {observer.name} observer was made for the {form.surface.name if form.surface else 'no'} surface "
+            f"{dict(form.values)}, but the recording was seen on the {surface.name} {dict(surface.values)}; derive the "
+            "observer for the recording's surface"
+        )
+    missing = [name for name in form.measured if name not in recording.names]
+    if missing:
+        raise DoesNotFit(
+            f"the observer measures {', '.join(form.measured)}, but the recording has only "
+            f"{', '.join(recording.names)}; measure less: system.measure({', '.join(map(repr, recording.names))})"
+        )
+    expected = (*believed.parameters, *surface.parameters)
+    if form.parameters != expected:
+        raise DoesNotFit(
+            f"the observer was derived for a motion with {', '.join(map(str, form.parameters))}, but the motion that "
+            f"it is to believe has {', '.join(map(str, expected))}; use the same kind of motion for both"
+        )
+    if hold not in ("zero", "first", "exact"):
+        raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
+    if hold == "exact" and recording.signal is None:
+        raise DoesNotFit("the exact signal between samples is known in simulations only; hold them 'zero' or 'first'")
+    if not (math.isfinite(step) and step > 0):
+        raise ValueError(f"the step is {step} s; it must be positive")
+
+
+def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
+    """Estimates at the start by the names of their coordinates."""
+    if start is None or isinstance(start, Mapping):
+        return {name: float(value) for name, value in (start or {}).items()}
+    names = [symbol.name for symbol in coordinates]
+    if len(start) != len(names):
+        raise ValueError(f"the start has {len(start)} values; expected {len(names)}: {', '.join(names)}")
+    return dict(zip(names, map(float, start), strict=True))
+
+
+def _held(recording: Recording, columns: list[int], grid: Array, index: NDArray[np.int_], hold: Hold) -> Array:
+    """Measured outputs at the start, the middle and the end of every step, shape (N, 3, m)."""
+    if hold == "exact" and recording.signal is not None:
+        exact = recording.signal(halves(grid))[:, columns]
+        return np.stack([exact[:-1:2], exact[1::2], exact[2::2]], axis=1)
+    times = halves(grid)
+    held = []
+    for column in recording.outputs[:, columns].T:
+        if hold == "zero":
+            interval = np.repeat(np.arange(len(index) - 1), np.diff(index))
+            value = _last_sample(column)[interval]
+            held.append(np.stack([value, value, value], axis=1))
+        else:
+            there = np.isfinite(column)
+            line = np.interp(times, recording.time[there], column[there])
+            held.append(np.stack([line[:-1:2], line[1::2], line[2::2]], axis=1))
+    return np.stack(held, axis=2)
+
+
+def _last_sample(column: Array) -> Array:
+    """Each sample, or where it was lost the last one before it."""
+    return column[np.maximum.accumulate(np.where(np.isfinite(column), np.arange(len(column)), 0))]
+
+
+def _known(recording: Recording, believed: Motion, grid: Array) -> Array:
+    """Parameters of motion and surface at the starts, middles and ends of the steps."""
+    rows = believed.known(halves(grid))
+    surface = recording.surface
+    shape = [surface.values[symbol] for symbol in surface.parameters]
+    return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])
+
+
+def _arriving(samples: Array, index: NDArray[np.int_], count: int) -> Array:
+    """Samples at the steps' ends at which they arrive, NaN at the others."""
+    arriving = np.full((count, samples.shape[1]), np.nan)
+    arriving[index] = samples
+    return arriving

@@ -1,0 +1,62 @@
+"""What tests share: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
+
+import os
+import shutil
+from pathlib import Path
+
+import hypothesis
+import matplotlib
+import pytest
+
+matplotlib.use("Agg")
+
+hypothesis.settings.register_profile("here", deadline=None)
+hypothesis.settings.register_profile("ci", deadline=None, derandomize=True, database=None)
+hypothesis.settings.load_profile("ci" if os.environ.get("CI") == "true" else "here")
+
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
+)
+
+
+@pytest.fixture(scope="session")
+def node():
+    """The path of Node.js."""
+    return shutil.which("node") or missing(
+        "Node.js is missing. Debian: sudo apt-get install nodejs. macOS: brew install node. "
+        "Windows: winget install OpenJS.NodeJS."
+    )
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """The path of Chromium or Chrome: the system's, or the one that Playwright keeps."""
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    return (
+        found
+        or playwright_chromium()
+        or missing(
+            "Chromium is missing. Debian: sudo apt-get install chromium. "
+            "macOS and Windows: python -m playwright install chromium."
+        )
+    )
+
+
+def playwright_chromium():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        path = playwright.chromium.executable_path
+    return path if Path(path).exists() else None
+
+
+def missing(advice):
+    """Skip on a desk, fail in CI, where a skipped test would go unseen."""
+    if os.environ.get("CI") == "true":
+        pytest.fail(advice)
+    pytest.skip(advice)
