@@ -151,7 +151,7 @@ def vectorised(
 ) -> Callable[..., list[Array]]:
     """A numpy function of arrays for several expressions; constants take the arrays' shape."""
     extra = tuple(values or ())
-    function = sp.lambdify((*symbols, *extra), tuple(expressions), "numpy", cse=True)
+    function = _numpy_function((*symbols, *extra), tuple(expressions))
     constants = tuple((values or {}).values())
 
     def evaluate(*arrays: ArrayLike) -> list[Array]:
@@ -160,6 +160,11 @@ def vectorised(
         return [np.broadcast_to(np.asarray(r, dtype=float), shape) for r in function(*columns, *constants)]
 
     return evaluate
+
+
+@lru_cache(maxsize=512)
+def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> Callable[..., tuple[Any, ...]]:
+    return sp.lambdify(symbols, expressions, "numpy", cse=True)
 
 
 def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
@@ -247,8 +252,19 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
         for k, symbol in enumerate(group)
     }
 
-    def formulas(expressions: Sequence[sp.Expr], targets: str) -> None:
-        text.formulas(expressions, names, targets)
+    fixed: dict[sp.Expr, sp.Symbol] = {}
+    known_gains = {names[symbol] for symbol in equations.gains}
+    variables = [names[symbol] for symbol in (*equations.state, *equations.measured)]
+
+    def prepared(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """The expressions in the loop's names, with what depends on gains only taken out."""
+        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        _refuse_what_differs(renamed)
+        return [_take_out(_nested(e, variables), known_gains, fixed) for e in renamed]
+
+    flow, reset = prepared(equations.flow), prepared(equations.reset)
+    update = [prepared(block) for block in equations.update]
+    (condition,) = prepared([equations.reset_condition])
 
     def load_parameters(row: str) -> None:
         if p:
@@ -263,23 +279,23 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
     def stage(advance: str) -> None:
         for k in range(n):
             text.assign(f"x{k}", f"s{k} + {advance}*d{k}" if advance else f"s{k}")
-        formulas(equations.flow, "d")
+        text.formulas(flow, "d")
 
     def replace_state(expressions: Sequence[sp.Expr]) -> None:
         for k in range(n):
             text.assign(f"x{k}", f"s{k}")
-        formulas(expressions, "s")
+        text.formulas(expressions, "s")
 
     def updates(row: str) -> None:
-        for k, block in enumerate(equations.update):
+        for k, block in enumerate(update):
             value = f"samples[({row})*{m} + {k}]"
             with text.block("if", f"{value} == {value}"):
                 text.assign(f"y{k}", value)
                 replace_state(block)
 
-    def keep(row: str) -> None:
+    def keep() -> None:
         for k in range(n):
-            text.store(f"states[({row})*{n} + {k}]", f"s{k}")
+            text.store(f"states[row + {k}]" if k else "states[row]", f"s{k}")
 
     with text.function(
         "run", ["start", "steps", "measured", "parameters", "samples", "gains", "varying", "states", "resets"]
@@ -291,10 +307,15 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
         ):
             for k in range(count):
                 text.assign(f"{letter}{k}", f"{group}[{k}]")
+        for expression, symbol in fixed.items():
+            text.assign(symbol.name, text.print(expression))
+        text.assign("row", "0")
         updates("0")
-        keep("0")
+        keep()
         with text.loop("k", "steps"):
             text.assign("h", "steps[k]")
+            text.assign("half", "0.5*h")
+            text.assign("sixth", "h/6.0")
             load_parameters("2*k")
             hold(0)
             stage("")
@@ -304,27 +325,26 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
             for middle in range(2):
                 if not middle:
                     hold(1)
-                stage("0.5*h")
+                stage("half")
                 for k in range(n):
                     text.assign(f"q{k}", f"q{k} + 2.0*d{k}")
             load_parameters("2*k + 2")
             hold(2)
             stage("h")
             for k in range(n):
-                text.assign(f"s{k}", f"s{k} + h/6.0*(q{k} + d{k})")
+                text.assign(f"s{k}", f"s{k} + sixth*(q{k} + d{k})")
             updates("k + 1")
             if equations.reset:
                 for k in range(n):
                     text.assign(f"x{k}", f"s{k}")
-                condition = equations.reset_condition.xreplace(names)
-                _refuse_what_differs([condition])
                 with text.block("if", text.print(condition)):
-                    formulas(equations.reset, "s")
+                    text.formulas(reset, "s")
                     text.store("resets[k + 1]", "1.0")
             text.assign("size", " + ".join(f"s{k}*s{k}" for k in range(n)))
             with text.block("unless", f"size < {LARGEST_SQUARED_STATE!r}"):
                 text.leave("k + 1")
-            keep("k + 1")
+            text.assign("row", f"row + {n}")
+            keep()
         text.leave("-1")
     return str(text)
 
@@ -353,11 +373,45 @@ def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, 
     with text.function("evaluate", ["x", "out"]):
         for k, name in enumerate(names.values()):
             text.assign(name.name, f"x[{k}]")
-        text.formulas(expressions, names, "d")
+        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        _refuse_what_differs(renamed)
+        text.formulas(renamed, "d")
         for k in range(len(expressions)):
             text.store(f"out[{k}]", f"d{k}")
         text.leave("out")
     return str(text)
+
+
+def _nested(expression: sp.Basic, variables: Sequence[sp.Symbol]) -> sp.Basic:
+    """Nest sums as in Horner's scheme: the variable that most terms share is multiplied last."""
+    if not isinstance(expression, sp.Add):
+        return expression.func(*(_nested(e, variables) for e in expression.args)) if expression.args else expression
+    powers = [term.as_powers_dict() for term in expression.args]
+    sharing = {
+        v: {k for k, power in enumerate(powers) if sp.S(power.get(v, 0)).is_Integer and power.get(v, 0) > 0}
+        for v in variables
+    }
+    shared = max(variables, key=lambda v: len(sharing[v]), default=None)
+    if shared is None or len(sharing[shared]) < 2:
+        return sp.Add(*(_nested(term, variables) for term in expression.args))
+    inside = sp.Add(*(expression.args[k] / shared for k in sorted(sharing[shared])))
+    outside = sp.Add(*(term for k, term in enumerate(expression.args) if k not in sharing[shared]))
+    return shared * _nested(inside, variables) + _nested(outside, variables)
+
+
+def _take_out(expression: sp.Basic, gains: set[sp.Symbol], fixed: dict[sp.Expr, sp.Symbol]) -> sp.Basic:
+    """Replace the parts that depend on gains only by names, which `fixed` collects."""
+    if not expression.args or not expression.free_symbols & gains:
+        return expression
+    if isinstance(expression, sp.Expr) and expression.free_symbols <= gains:
+        return fixed.setdefault(expression, sp.Symbol(f"f{len(fixed)}", real=True))
+    if isinstance(expression, sp.Mul | sp.Add):
+        fixed_parts = [e for e in expression.args if e.free_symbols and e.free_symbols <= gains]
+        if len(fixed_parts) > 1:
+            together = expression.func(*fixed_parts)
+            rest = [e for e in expression.args if e not in fixed_parts]
+            expression = expression.func(fixed.setdefault(together, sp.Symbol(f"f{len(fixed)}", real=True)), *rest)
+    return expression.func(*(_take_out(e, gains, fixed) for e in expression.args))
 
 
 def _refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
@@ -415,6 +469,8 @@ class _Printer(PythonCodePrinter):
 
     def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
         return repr(float(expr))
+
+    _print_Pi = _print_Exp1 = _print_NumberSymbol
 
     def _print_Function(self, expr: sp.Function) -> str:
         return f"{self.words['math']}.{_FUNCTIONS[expr.func]}({', '.join(map(self._print, expr.args))})"
@@ -486,11 +542,9 @@ class _Text:
     def store(self, place: str, expression: str) -> None:
         self.line(f"{place} = {expression}" + ("" if self.python else ";"))
 
-    def formulas(self, expressions: Sequence[sp.Expr], names: Mapping[sp.Symbol, sp.Symbol], targets: str) -> None:
+    def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
         """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
-        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
-        _refuse_what_differs(renamed)
-        shared, results = sp.cse(renamed, symbols=sp.numbered_symbols("c", real=True))
+        shared, results = sp.cse(expressions, symbols=sp.numbered_symbols("c", real=True))
         for symbol, expression in shared:
             self.assign(symbol.name, self.print(expression))
         for k, expression in enumerate(results):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, cast
 
 import numpy as np
@@ -170,16 +171,16 @@ class Scenario:
         points = self.points(times)
         try:
             return self.surface.project(points)
-        except BehindCamera as error:
-            seen = [k for k in range(len(times)) if not self._in_front(points[k])]
-            raise BehindCamera(f"in the scenario {self.name!r}, at {times[seen[0]]:.4g} s, {error}") from None
-
-    def _in_front(self, point: Array) -> bool:
-        try:
-            self.surface.project(point)
         except BehindCamera:
-            return False
-        return True
+            self._say_when(times, points)
+            raise
+
+    def _say_when(self, times: Array, points: Array) -> None:
+        for time, point in zip(times, points, strict=True):
+            try:
+                self.surface.project(point)
+            except BehindCamera as error:
+                raise BehindCamera(f"in the scenario {self.name!r}, at {time:.4g} s, {error}") from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +205,8 @@ class Recording:
         The outputs without noise at any time, shape (T, m), if they are known.
     noise_variance : float, optional
         Variance of the noise in each output.
+    distances : mapping of names to arrays of shape (K,), optional
+        Independent measurements of the depth or range in metres.
     source : str
         Where the recording comes from, its settings and its seed.
     """
@@ -216,6 +219,7 @@ class Recording:
     truth: Array | None = None
     signal: Callable[[Array], Array] | None = None
     noise_variance: float | None = None
+    distances: Mapping[str, Array] = field(default_factory=dict)
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -259,6 +263,11 @@ class Recording:
                     f"the true inverse distance is {truth[k, -1]:.4g} at {time[k]:.4g} s; only points in front of the "
                     "camera, at positive inverse distances, are seen"
                 )
+        distances = {name: _readonly(values) for name, values in self.distances.items()}
+        object.__setattr__(self, "distances", MappingProxyType(distances))
+        for name, values in distances.items():
+            if values.shape != time.shape or not (np.isfinite(values) & (values > 0)).all():
+                raise ValueError(f"the distances {name!r} must be {len(time)} positive numbers, one a sample")
         self.motion.known(time[[0, -1]])
 
     @property
@@ -269,8 +278,13 @@ class Recording:
     def between(self, begin: float, end: float) -> Recording:
         """The part of the recording with begin <= time <= end."""
         keep = (self.time >= begin) & (self.time <= end)
-        truth = None if self.truth is None else self.truth[keep]
-        return replace(self, time=self.time[keep], outputs=self.outputs[keep], truth=truth)
+        return replace(
+            self,
+            time=self.time[keep],
+            outputs=self.outputs[keep],
+            truth=None if self.truth is None else self.truth[keep],
+            distances={name: values[keep] for name, values in self.distances.items()},
+        )
 
     @classmethod
     def from_csv(
@@ -383,7 +397,7 @@ def record(
         truth,
         lambda times: scenario.coordinates(times)[:, :outputs],
         camera.noise.variance,
-        f"{scenario.name}, {duration:g} s, {camera}, seed {named}",
+        source=f"{scenario.name}, {duration:g} s, {camera}, seed {named}",
     )
 
 

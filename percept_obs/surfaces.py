@@ -117,7 +117,7 @@ class ImagingSurface:
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,) or not np.isfinite(points).all():
             raise ValueError(f"points have shape {points.shape}; expected (..., 3), all finite")
-        distance, *image = self._evaluate(POINT, (self.distance, *self.image), points)
+        (distance,) = self._evaluate(POINT, (self.distance,), points)
         if not (distance > 0).all():
             where = np.unravel_index(int(np.argmin(distance)), distance.shape) if distance.ndim else ()
             raise BehindCamera(
@@ -125,7 +125,7 @@ class ImagingSurface:
                 f"{self.name}; only points at a positive distance are seen, so start the point in front of "
                 "the camera or stop the motion before it passes"
             )
-        return np.stack([*image, 1 / distance], axis=-1)
+        return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
     def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
         """Points of space that have the given coordinates: the ray over the inverse distance.

@@ -21,11 +21,11 @@ LAYERS = (
     ("observability", "tracking"),
     ("scenarios", "datasets"),
     ("recording",),
-    ("compile",),
-    ("observers",),
+    ("observers", "perspective"),
     ("forms",),
-    ("perspective",),
     ("motion", "surfaces"),
+    ("compile",),
+    ("equations", "derivation"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 

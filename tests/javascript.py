@@ -1,0 +1,29 @@
+"""Run printed JavaScript in Node.js."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from percept_obs.compile import Trace, source
+
+
+def solve_in_node(node, equations, start, table, gains):
+    """What `percept_obs.compile.solve` does, in JavaScript."""
+    size, count = len(equations.state), len(table.steps) + 1
+    blocks = (start, table.steps, table.measured, table.parameters, table.samples, gains)
+    flat = [[None if np.isnan(v) else v for v in np.ravel(np.asarray(b, dtype=float)).tolist()] for b in blocks]
+    task = {
+        "source": source(equations, "javascript"),
+        "inputs": flat,
+        "varying": len(table.parameters) > 1,
+        "size": size,
+        "count": count,
+    }
+    script = Path(__file__).with_name("run_kernel.mjs")
+    answer = subprocess.run([node, script], input=json.dumps(task), capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    left = json.loads(answer.stdout)
+    states = np.array([np.nan if v is None else v for v in left["states"]]).reshape(count, size)
+    return Trace(states, np.array(left["resets"]) != 0, None if left["diverged"] < 0 else left["diverged"])

@@ -1,0 +1,212 @@
+"""Python, numba and JavaScript run the same loop, and what would differ between them is refused."""
+
+import builtins
+import time
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import BOTH, NOISY, ONE, ZERO
+from javascript import solve_in_node
+from scipy.integrate import solve_ivp
+
+import percept_obs.compile as compiling
+import percept_obs.tracking as tracking
+from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
+from percept_obs.compile import NotCompilable, Table, solve, source
+from percept_obs.equations import Equations
+
+x, y, u, k, c = sp.symbols("x y u k c", real=True)
+SMOOTH = {"identifier-based": ibo, "extended Kalman": ekf}
+EVERY = {**SMOOTH, "sliding mode": smo}
+FORMS = {"y1": ONE, "y1+y2": BOTH}
+
+
+def table_of(monkeypatch, recording, observer, **settings):
+    """What `track` hands to `solve`."""
+    handed = {}
+
+    def keep(equations, start, table, gains, language):
+        handed.update(equations=equations, start=start, table=table, gains=gains)
+        return solve(equations, start, table, gains, "python")
+
+    monkeypatch.setattr(tracking, "solve", keep)
+    track(recording, observer, **settings)
+    return handed
+
+
+def steps(count, length=0.1, measured=0, parameters=0):
+    return Table(
+        np.full(count, length),
+        np.zeros((count, 3, measured)),
+        np.zeros((1, parameters)),
+        np.full((count + 1, measured), np.nan),
+    )
+
+
+def both_languages(equations, start, table, gains=()):
+    return [solve(equations, start, table, gains, language) for language in ("python", "numba")]
+
+
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+@pytest.mark.parametrize("observer", EVERY.values(), ids=EVERY)
+def test_python_and_numba_agree(observer, form):
+    recording = record(scenarios.ma2005_eq35(), 20, NOISY, seed=3)
+    python, compiled = (track(recording, observer(form), ZERO, language=lang) for lang in ("python", "numba"))
+    np.testing.assert_allclose(compiled.state, python.state, rtol=1e-12, atol=1e-12)
+    assert compiled.resets.tolist() == python.resets.tolist()
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+@pytest.mark.parametrize("observer", SMOOTH.values(), ids=SMOOTH)
+def test_javascript_agrees(monkeypatch, node, observer, form):
+    handed = table_of(monkeypatch, record(scenarios.ma2005_eq35(), 30, NOISY, seed=3), observer(form), start=ZERO)
+    here, there = solve(**handed, language="python"), solve_in_node(node, **handed)
+    np.testing.assert_allclose(there.states, here.states, rtol=1e-9, atol=1e-9)
+    assert there.diverged == here.diverged
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+def test_javascript_agrees_over_a_step_where_the_right_hand_side_switches(monkeypatch, node, form):
+    handed = table_of(monkeypatch, record(scenarios.ma2005_eq35(), 0.01, NOISY, seed=3), smo(form), start=ZERO)
+    np.testing.assert_allclose(
+        solve_in_node(node, **handed).states, solve(**handed, language="python").states, rtol=1e-12, atol=1e-12
+    )
+
+
+@pytest.mark.node
+def test_resets_updates_and_functions_agree_in_javascript(node):
+    flow = (sp.sin(x) * sp.exp(-(x**2)) + sp.tanh(u) + sp.sqrt(1 + x**2) - sp.sign(x) * sp.Abs(x) / 3 + sp.pi / x**3,)
+    condition = sp.And(x > 2, sp.Or(x < 9, k > 0))
+    equations = Equations((x,), flow, (u,), (k,), (c,), ((x + c * (u - x),),), condition, (x / 2,))
+    samples = np.full((41, 1), np.nan)
+    samples[::7] = 1.5
+    table = Table(np.full(40, 0.05), np.ones((40, 3, 1)), np.linspace(0, 1, 81)[:, None], samples)
+    python, compiled = both_languages(equations, [1.0], table, [0.3])
+    there = solve_in_node(node, equations, [1.0], table, [0.3])
+    assert python.resets.any()
+    for other in (compiled, there):
+        np.testing.assert_allclose(other.states, python.states, rtol=1e-12)
+        assert other.resets.tolist() == python.resets.tolist()
+
+
+def test_the_loop_is_the_classical_runge_kutta_method():
+    equations = Equations((x, y), (y, -x - k * y), (), (k,), ())
+    table = steps(50, 0.02, parameters=1)
+    varying = Table(table.steps, table.measured, np.linspace(0.1, 0.5, 101)[:, None], table.samples)
+    trace = solve(equations, [1.0, 0.0], varying, (), "python")
+    reference = solve_ivp(
+        lambda t, s: [s[1], -s[0] - (0.1 + 0.4 * t) * s[1]], (0, 1), [1, 0], rtol=1e-12, atol=1e-13
+    ).y[:, -1]
+    np.testing.assert_allclose(trace.states[-1], reference, atol=1e-8)
+
+
+@pytest.mark.parametrize("language", ["python", "numba"])
+@pytest.mark.parametrize(("flow", "start"), [(x**2, 1.0), (1 / x, 0.0), (sp.exp(x * x), 1.0), (sp.sqrt(1 - x), 0.0)])
+def test_a_run_that_diverges_says_when(language, flow, start):
+    trace = solve(Equations((x,), (flow,)), [start], steps(100), (), language)
+    assert trace.diverged is not None
+    assert np.isfinite(trace.states[: trace.diverged]).all()
+    assert np.isnan(trace.states[trace.diverged :]).all()
+
+
+def test_numbers_compile_nothing(monkeypatch):
+    recordings = [record(scenarios.ma2005_eq35(), 1, Camera(noise=Uniform(n)), seed=1) for n in (0.0, 0.02)]
+    observer = ibo(ONE)
+    track(recordings[0], observer, ZERO)
+    before = compiling._kernel.cache_info().misses, compiling.source.cache_info().misses
+    monkeypatch.setattr(builtins, "exec", None)
+    other = scenarios.ma2005_eq36()
+    for recording in (*recordings, record(other, 1)):
+        for gain in (3, 20):
+            track(recording, observer.with_gains(gain=gain, noise_variance=1e-4), ZERO, believed=other.motion)
+    assert (compiling._kernel.cache_info().misses, compiling.source.cache_info().misses) == before
+
+
+def test_numba_takes_over_once_it_has_compiled():
+    equations = Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,))
+    kernel = compiling._kernel(equations)
+    assert kernel.choose(None) is kernel.python
+    deadline = time.monotonic() + 60
+    while kernel.choose(None) is kernel.python and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert kernel.choose(None) is not kernel.python
+    assert kernel.choose("python") is kernel.python
+
+
+def test_without_numba_python_runs(monkeypatch):
+    monkeypatch.setattr(compiling, "find_spec", lambda name: None)
+    kernel = compiling._kernel(Equations((x,), (-k * x + sp.Rational(1, 9),), (), (k,)))
+    assert kernel.choose(None) is kernel.python
+    assert kernel._beside is None
+
+
+def test_an_unknown_language_is_refused():
+    with pytest.raises(ValueError, match="neither 'python' nor 'numba'"):
+        solve(Equations((x,), (x,)), [1.0], steps(1), (), "fortran")
+    with pytest.raises(ValueError, match="neither 'python' nor 'javascript'"):
+        source(Equations((x,), (x,)), "fortran")
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        x ** sp.Rational(1, 3),
+        x**k,
+        x**9,
+        sp.gamma(x),
+        sp.Function("f")(x),
+        sp.zoo,
+        sp.nan,
+        sp.floor(x),
+        sp.Piecewise((1 / x, x > 0), (0, True)),
+        sp.Piecewise((sp.log(x), x > 0), (0, True)),
+        sp.Piecewise((x, x > 0)),
+    ],
+    ids=str,
+)
+def test_what_would_differ_between_languages_is_refused(expression):
+    with pytest.raises(NotCompilable):
+        source(Equations((x,), (expression,), (), (k,)))
+
+
+def test_small_powers_are_products_in_both_languages():
+    equations = Equations((x,), (y * x**3 / (c * k**2),), (y,), (k,), (c,))
+    for language in ("python", "javascript"):
+        text = source(equations, language)
+        assert "(x0*x0*x0)" in text
+        assert "**" not in text
+        assert "pow" not in text
+
+
+def test_names_that_are_words_of_a_language_do_not_matter():
+    names = sp.symbols("lambda function h k", real=True)
+    equations = Equations(names[:2], (names[1], -names[0] * names[2]), (), names[2:])
+    trace = solve(
+        equations, [1.0, 0.0], Table(np.full(9, 0.1), np.zeros((9, 3, 0)), np.ones((1, 2)), np.zeros((10, 0)))
+    )
+    np.testing.assert_allclose(trace.states[-1, 0], np.cos(0.9), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (((x,), (x, y)), "one expression for each"),
+        (((x,), (y,)), "which nothing provides"),
+        (((x, x), (x, x)), "listed twice"),
+        (((x,), (x,), (), (sp.Symbol("x"),)), "listed twice"),
+        (((x,), (x,), (u, y), (), (), ((x,),)), "1 updates were given for 2"),
+    ],
+)
+def test_equations_that_do_not_close_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        Equations(*arguments)
+
+
+def test_equations_show_flow_update_and_reset():
+    shown = Equations((x,), (-x,), (u,), (), (), ((u,),), x > 2, (sp.Integer(0),))._repr_latex_()
+    assert r"\dot{x} &= - x" in shown
+    assert r"\text{at a sample of } u" in shown
+    assert r"\text{when } & x > 2" in shown

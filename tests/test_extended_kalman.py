@@ -1,0 +1,85 @@
+"""The extended Kalman filter is a Kalman filter where the system is linear, converges on Ma's, and is honest."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import AFFINE, BOTH, NOISY, ONE, ZERO
+from pykalman import KalmanFilter
+from scipy.linalg import expm
+
+from percept_obs import Camera, Gaussian, ekf, record, scenarios, track
+from percept_obs.compile import Table, solve
+from percept_obs.forms import split
+
+EQ35 = scenarios.ma2005_eq35()
+
+
+def test_on_a_linear_system_it_is_the_kalman_filter():
+    """Against pykalman, given the exact discretisation of the same continuous system."""
+    x, v = sp.symbols("x v", real=True)
+    k, c = 0.7, 0.2
+    form = split((x, v), sp.ImmutableMatrix([v, -k * x - c * v]), ["x"], ())
+    observer = ekf(form, noise_variance=0.01, measured_variance=2.0, hidden_variance=3.0)
+    period, count = 0.1, 200
+    samples = np.random.default_rng(1).normal(0, 1, count)
+    reference = KalmanFilter(
+        transition_matrices=expm(period * np.array([[0, 1], [-k, -c]])),
+        observation_matrices=[[1.0, 0.0]],
+        transition_covariance=np.zeros((2, 2)),
+        observation_covariance=[[0.01]],
+        initial_state_mean=[0.0, 0.0],
+        initial_state_covariance=np.diag([2.0, 3.0]),
+    )
+    means, covariances = reference.filter(samples)
+    expected = np.hstack([means, covariances[:, *np.triu_indices(2)]])
+
+    fine = 100
+    arriving = np.full(((count - 1) * fine + 1, 1), np.nan)
+    arriving[::fine, 0] = samples
+    steps = len(arriving) - 1
+    table = Table(np.full(steps, period / fine), np.zeros((steps, 3, 1)), np.zeros((1, 0)), arriving)
+    start = [0.0, 0.0, 2.0, 0.0, 3.0]
+    trace = solve(observer.equations, start, table, [gain.value for gain in observer.gains], "numba")
+    np.testing.assert_allclose(trace.states[::fine], expected, atol=1e-10)
+
+
+@pytest.mark.slow
+def test_one_output_converges_from_zero_in_every_seed():
+    for seed in range(50):
+        run = track(record(EQ35, 20, NOISY, seed=seed), ekf(ONE), ZERO, language="numba")
+        assert abs(run.error[-1, 2]) < 0.01
+
+
+@pytest.mark.slow
+def test_both_outputs_stay_close_from_two_seconds_on():
+    for seed in range(20):
+        run = track(record(EQ35, camera=NOISY, seed=seed), ekf(BOTH), ZERO, language="numba")
+        assert np.abs(run.error[200:, 2]).max() < 0.05
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
+def test_the_claimed_covariance_is_honest(form):
+    """Normalised innovations have the mean that their number of outputs asks; errors keep within three sigma."""
+    camera = Camera(noise=Gaussian(0.01))
+    observer = ekf(form, noise_variance=1e-4, measured_variance=1e-4, hidden_variance=0.01)
+    outputs = len(form.x1)
+    squared, outside = [], []
+    for seed in range(30):
+        recording = record(EQ35, 20, camera, seed=seed)
+        draw = np.random.default_rng(seed).normal(0, 0.1, 3)
+        start = {s.name: float(recording.truth[0, int(s.name[1]) - 1] + draw[int(s.name[1]) - 1]) for s in form.x2}
+        run = track(recording, observer, start, language="numba")
+        squared.append(np.mean(run.normalised_innovation[100:]))
+        sigma = np.sqrt(run.covariance[100:, 2, 2])
+        outside.append(np.mean(np.abs(run.error[100:, 2]) > 3 * sigma))
+    assert np.mean(squared) == pytest.approx(outputs, rel=0.03)
+    assert np.mean(outside) < 0.02
+
+
+def test_outputs_may_take_turns_in_any_order():
+    recording = record(EQ35, 5, NOISY, seed=1)
+    other = ekf(AFFINE.measure("y2", "y1"))
+    np.testing.assert_allclose(
+        track(recording, other, ZERO).estimate, track(recording, ekf(BOTH), ZERO).estimate, atol=1e-9
+    )

@@ -1,0 +1,89 @@
+"""The derived rate is the motion of the image, for every motion on every surface."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import AFFINE, MOTIONS, SURFACES
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from percept_obs import PerspectiveSystem, affine, chained, pinhole, plane
+from percept_obs.compile import vectorised
+from percept_obs.surfaces import X, Y, Z
+
+number = st.floats(-1, 1)
+point = st.tuples(st.floats(-1, 1), st.floats(0.5, 1.5), st.floats(2, 4))
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+@settings(max_examples=20)
+@given(point=point, data=st.data())
+def test_rate_against_a_finite_difference(motion, surface, point, data):
+    system = PerspectiveSystem(motion, surface)
+    numbers = data.draw(st.lists(number, min_size=len(motion.parameters), max_size=len(motion.parameters)))
+    values = dict(zip(motion.parameters, numbers, strict=True))
+    A, b = (np.array(m.subs(values), dtype=float) for m in (motion.A, motion.b))
+    velocity = A @ np.array(point) + b.ravel()
+    step = 1e-5
+    ahead, behind = (surface.project(np.add(point, sign * step * velocity)) for sign in (1, -1))
+    at = surface.project(point)
+    rate = vectorised((*system.coordinates, *motion.parameters), list(system.rate), surface.values)(*at, *numbers)
+    np.testing.assert_allclose(rate, (ahead - behind) / (2 * step), rtol=1e-6, atol=1e-8)
+
+
+def test_the_plane_equals_a_direct_derivation():
+    t = sp.Symbol("t")
+    motion, surface = affine(), plane()
+    path = [sp.Function(name)(t) for name in "XYZ"]
+    velocity = motion.A * sp.Matrix(path) + motion.b
+    y = [e.subs(dict(zip((X, Y, Z), path, strict=True))) for e in (*surface.image, 1 / surface.distance)]
+    direct = [e.diff(t).subs({p.diff(t): v for p, v in zip(path, velocity, strict=True)}) for e in y]
+    inverse = surface.inverse_distance
+    on_ray = {p: m / inverse for p, m in zip(path, surface.ray, strict=True)}
+    derived = PerspectiveSystem(motion, surface).rate
+    assert all(sp.cancel(sp.together(a.subs(on_ray) - b)) == 0 for a, b in zip(direct, derived, strict=True))
+
+
+def test_the_plane_facing_the_camera_is_the_pinhole():
+    facing = dict(zip(sp.symbols("n1:4", real=True), (0, 0, 1), strict=True))
+    assert PerspectiveSystem(affine(), plane()).rate.subs(facing).expand() == AFFINE.rate
+
+
+def test_the_jacobian_against_a_finite_difference():
+    at = sp.Matrix([sp.Rational(1, 3), sp.Rational(-1, 5), sp.Rational(2, 5)])
+    point = dict(zip(AFFINE.coordinates, at, strict=True))
+    step = sp.Rational(1, 10**6)
+    for k, symbol in enumerate(AFFINE.coordinates):
+        ahead, behind = (AFFINE.rate.subs({**point, symbol: point[symbol] + s * step}) for s in (1, -1))
+        difference = ((ahead - behind) / (2 * step)).expand()
+        # the rate is quadratic, so that the central difference is exact
+        assert difference == AFFINE.jacobian().col(k).subs(point).expand()
+
+
+def test_on_the_focus_of_expansion_translation_alone_does_not_move_the_image():
+    for surface in (pinhole(), chained(), plane()):
+        system = PerspectiveSystem(affine(sp.zeros(3), sp.symbols("b1:4", real=True)), surface)
+        at_focus = dict(zip(surface.image_coordinates, system.foe, strict=True))
+        image_rate = system.rate[: len(surface.image)]
+        assert all(sp.cancel(sp.together(entry.subs(at_focus))) == 0 for entry in image_rate)
+
+
+def test_the_focus_of_expansion_of_the_pinhole():
+    b1, b2, b3 = sp.symbols("b1:4", real=True)
+    assert list(AFFINE.foe) == [b1 / b3, b2 / b3]
+
+
+def test_the_derivation_ends_at_the_rate_and_shows_every_part():
+    derivation = AFFINE.derivation()
+    assert sp.latex(AFFINE.rate) in derivation.steps[-2].formula
+    assert sp.latex(AFFINE.foe) in derivation.steps[-1].formula
+    assert derivation._repr_markdown_().count("$$") == 2 * len(derivation.steps)
+    assert str(derivation).startswith("1. The point moves")
+    assert r"\frac{d}{dt}" in AFFINE._repr_latex_()
+
+
+@pytest.mark.parametrize("names", [(), ("y3",), ("z",), ("y1", "y1"), ("y1", "y4")])
+def test_outputs_that_are_none_are_refused(names):
+    with pytest.raises(ValueError, match="the outputs of the pinhole are y1, y2"):
+        AFFINE.measure(*names)

@@ -1,0 +1,87 @@
+"""A point is found again from its image and distance on every surface, and what has no image is refused."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import SURFACES
+from hypothesis import given
+from hypothesis import strategies as st
+
+from percept_obs import BehindCamera, ImagingSurface, chained, pinhole, plane
+from percept_obs.surfaces import X, Y, Z
+
+coordinate = st.floats(-3, 3)
+point = st.tuples(coordinate, st.floats(0.2, 3), st.floats(1.5, 9))
+
+
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+@given(point=point)
+def test_a_point_is_found_again(surface, point):
+    np.testing.assert_allclose(surface.locate(surface.project(point)), point, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+@given(point=point, scale=st.floats(0.1, 10))
+def test_the_image_stays_and_the_distance_scales(surface, point, scale):
+    near, far = surface.project(point), surface.project(np.multiply(scale, point))
+    np.testing.assert_allclose(far[:-1], near[:-1], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(far[-1] * scale, near[-1], rtol=1e-9)
+
+
+def test_the_third_output_of_a_plane_depends_on_the_others():
+    normal = np.array([0.1, -0.2, 0.9])
+    seen = plane(normal, outputs=3).project([[1, 2, 3], [0.3, -1, 2]])
+    np.testing.assert_allclose(seen[:, :3] @ normal, 1)
+
+
+@pytest.mark.parametrize("behind", [(0, 0, -1), (1, 1, 0)])
+def test_a_point_behind_the_camera_is_refused(behind):
+    with pytest.raises(BehindCamera, match="positive distance"):
+        pinhole().project(behind)
+
+
+def test_an_inverse_distance_that_is_not_positive_has_no_finite_point():
+    located = pinhole().locate([[0.1, 0.2, 0.0], [0.1, 0.2, -1.0], [0.1, 0.2, 0.5]])
+    assert np.isinf(located[:2]).all()
+    np.testing.assert_allclose(located[2], [0.2, 0.4, 2])
+
+
+@pytest.mark.parametrize("points", [[1, 2], [[1, 2, 3, 4]], [1, np.nan, 2], [np.inf, 1, 2]])
+def test_points_that_are_none_are_refused(points):
+    with pytest.raises(ValueError, match=r"expected \(\.\.\., 3\), all finite"):
+        pinhole().project(points)
+
+
+def test_coordinates_of_another_length_are_refused():
+    with pytest.raises(ValueError, match=r"expected \(\.\.\., 3\) for the pinhole"):
+        pinhole().locate([1, 2])
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 0), (1, 0, 0), (1, 2), (1, np.nan, 1)])
+def test_a_plane_that_does_not_face_the_camera_is_refused(normal):
+    with pytest.raises(ValueError, match="normal vector"):
+        plane(normal)
+
+
+def test_a_plane_with_four_outputs_is_refused():
+    with pytest.raises(ValueError, match="2 or 3 outputs"):
+        plane(outputs=4)
+
+
+def test_a_symbolic_plane_cannot_project_yet():
+    with pytest.raises(ValueError, match="no values for n1, n2, n3"):
+        plane().project([1, 2, 3])
+
+
+def test_a_ray_off_the_surface_is_refused():
+    y1, y2 = sp.symbols("y1 y2", real=True)
+    with pytest.raises(ValueError, match="must be the point"):
+        ImagingSurface("wrong", (X / Z, Y / Z), Z, (y1, y2, 2))
+    with pytest.raises(ValueError, match="ray of three entries"):
+        ImagingSurface("flat", (X / Z, Y / Z), Z, (y1, y2))
+
+
+def test_what_is_derived_for_a_symbolic_plane_fits_every_plane():
+    assert plane().fits(plane((0.1, 0.2, 1)))
+    assert not plane((0.1, 0.2, 1)).fits(plane((0.2, 0.2, 1)))
+    assert not pinhole().fits(chained())

@@ -1,0 +1,83 @@
+"""On real tracks, one setting chosen on half of them brings the others' distance within the stated errors."""
+
+from functools import lru_cache
+from itertools import product
+
+import numpy as np
+import pytest
+from utias_folder import utias_folder
+
+from percept_obs import PerspectiveSystem, ekf, ibo, pinhole, rigid, track
+from percept_obs.compare import best_setting, relative_distance_errors
+from percept_obs.datasets import load_utias
+
+FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
+IBO_SETTINGS = [
+    ibo(FORM, gain=gain, lyapunov=-feedback / gain**2) for gain, feedback in product((3, 5, 8, 10), (50, 100, 200, 400))
+]
+EKF_SETTINGS = [
+    ekf(FORM, noise_variance=(pixels / 484.5) ** 2, measured_variance=1e-4, hidden_variance=1, process_noise=process)
+    for pixels, process in product((2, 4, 8), (0, 1e-4, 1e-3))
+]
+
+
+@lru_cache
+def recordings():
+    return load_utias(utias_folder())
+
+
+def twice_the_median_depth():
+    return {"y3": 1 / (2 * float(np.median(np.concatenate([1 / r.truth[:, 2] for r in recordings()]))))}
+
+
+def reported(settings, after, hold="zero"):
+    """Runs on the tracks that the setting was not chosen on."""
+
+    def follow(recording, observer):
+        return track(recording, observer, twice_the_median_depth(), hold, language="numba")
+
+    chosen = best_setting(recordings()[::2], settings, follow, after)
+    return [follow(recording, chosen) for recording in recordings()[1::2]]
+
+
+def test_tracks_are_recordings():
+    assert len(recordings()) == 44
+    track0 = recordings()[0]
+    assert track0.names == ("y1", "y2")
+    np.testing.assert_allclose(1 / track0.truth[0, 2], 0.8366, atol=1e-4)
+    np.testing.assert_allclose(track0.distances["stereo"][0], 0.8313, atol=1e-4)
+    np.testing.assert_allclose(
+        track0.outputs[0], [(220.746 - 321.68048) / 484.49985, (360.433 - 247.48145) / 484.49985], atol=1e-5
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("reference", ["truth", "stereo"])
+@pytest.mark.parametrize(("hold", "median"), [("first", 0.08), ("zero", 0.12)])
+def test_identifier_based_observer_after_two_seconds(hold, median, reference):
+    errors = relative_distance_errors(reported(IBO_SETTINGS, (2.0,), hold), 2, reference)
+    assert np.median(errors) <= median
+    assert np.quantile(errors, 0.9) <= 0.35
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("reference", "medians"), [("truth", (0.06, 0.04, 0.04)), ("stereo", (0.07, 0.06, 0.05))])
+def test_extended_kalman_filter_after_one_two_three_seconds(reference, medians):
+    runs = reported(EKF_SETTINGS, (1.0, 2.0, 3.0))
+    for after, median in zip((1, 2, 3), medians, strict=True):
+        assert np.median(relative_distance_errors(runs, after, reference)) <= median
+    assert np.quantile(relative_distance_errors(runs, 3, reference), 0.9) <= 0.15
+
+
+@pytest.mark.slow
+def test_the_printed_gains_are_far_too_slow_here():
+    runs = [track(r, ibo(FORM), twice_the_median_depth(), language="numba") for r in recordings()]
+    assert np.median(relative_distance_errors(runs, 2)) > 0.2
+
+
+def test_questions_that_a_run_cannot_answer_are_refused():
+    run = track(recordings()[0], ibo(FORM))
+    with pytest.raises(ValueError, match=r"lasts .* s, not 60 s"):
+        relative_distance_errors([run], 60)
+    with pytest.raises(ValueError, match="no distance 'sonar'; it has truth, stereo"):
+        relative_distance_errors([run], 1, "sonar")
