@@ -128,7 +128,7 @@ def windowed(
     ----------
     form : CanonicalForm
     recording : Recording
-        Its truth is used where there is one, else its outputs.
+        Its truth is used where there is one, else its outputs, with lost samples interpolated.
     window : float
         Seconds.
     motion : Motion, optional
@@ -154,7 +154,10 @@ def windowed(
 def _information(form: CanonicalForm, recording: Recording, motion: Motion) -> Array:
     """The matrix w w^T at the samples, shape (K, n2, n2)."""
     source = recording.outputs if recording.truth is None else recording.truth
-    outputs = [source[:, recording.names.index(name)] for name in form.measured]
+    columns = [source[:, recording.names.index(name)] for name in form.measured]
+    seen = [np.isfinite(column) for column in columns]
+    time = recording.time
+    outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]
     known = motion.known(recording.time)
     surface = [recording.surface.values[s] for s in recording.surface.parameters]
     entries = vectorised((*form.x1, *form.parameters), list(form.w))(*outputs, *known.T, *surface)

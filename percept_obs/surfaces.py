@@ -121,7 +121,7 @@ class ImagingSurface:
         if not (distance > 0).all():
             where = np.unravel_index(int(np.argmin(distance)), distance.shape) if distance.ndim else ()
             raise BehindCamera(
-                f"the point {points[where].tolist()} has the distance {float(distance[where]):.4g} from the "
+                f"the point ({', '.join(f'{entry:.4g}' for entry in points[where])}) has the distance {float(distance[where]):.4g} from the "
                 f"{self.name}; only points at a positive distance are seen, so start the point in front of "
                 "the camera or stop the motion before it passes"
             )

@@ -1,0 +1,578 @@
+"""Figures draw a run's own numbers, leave gaps where there are none, and say in their text what a reader sees."""
+
+import html
+import re
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure as MatplotlibFigure
+
+from percept_obs import (
+    Camera,
+    PerspectiveSystem,
+    Scenario,
+    Uniform,
+    affine,
+    chained,
+    figures,
+    ibo,
+    pinhole,
+    plane,
+    record,
+    rigid,
+    scenarios,
+    smo,
+    track,
+    windowed,
+)
+
+NOISY = Camera(noise=Uniform(0.01))
+COARSE = Camera(period=0.05, noise=Uniform(0.01))
+ZERO = (0, 0, 0)
+
+
+def form(*measured, surface=None, motion=None):
+    return PerspectiveSystem(motion or affine(), surface or pinhole()).measure(*measured)
+
+
+def varying():
+    """A rigid motion that changes with time."""
+    motion = rigid(
+        lambda t: (0.1 * np.sin(t), 0.1 * np.cos(1.3 * t), 0.1),
+        lambda t: (np.cos(0.8 * t), np.sin(0.7 * t), 0.6 + 0.2 * np.sin(0.5 * t)),
+        lambda t: (0, 0, 0.9),
+    )
+    recording = record(Scenario("varying", motion, (0.3, 0.2, 6), 12, pinhole()), camera=COARSE, seed=2)
+    return track(recording, ibo(form("y1", "y2", motion=rigid())), ZERO)
+
+
+def eq35(*measured, observer=ibo, surface=None, camera=COARSE, duration=20, **gains):
+    recording = record(scenarios.ma2005_eq35(surface), duration, camera, seed=1)
+    return track(recording, observer(form(*measured, surface=surface), **gains))
+
+
+def without_truth():
+    both = eq35("y1", "y2")
+    return track(replace(both.recording, truth=None), both.observer, ZERO)
+
+
+MAKERS = {
+    "(35), both outputs": lambda: track(
+        record(scenarios.ma2005_eq35(), camera=NOISY, seed=1), ibo(form("y1", "y2")), ZERO
+    ),
+    "(35), y1 alone": lambda: track(record(scenarios.ma2005_eq35(), camera=NOISY, seed=1), ibo(form("y1")), ZERO),
+    "(36), y1 alone": lambda: track(record(scenarios.ma2005_eq36(), camera=COARSE, seed=1), ibo(form("y1")), ZERO),
+    "varying": varying,
+    "dropouts": lambda: eq35("y1", "y2", camera=replace(COARSE, dropout=0.3)),
+    "without truth": without_truth,
+    "diverged": lambda: eq35("y1", "y2", gain=1e6, bound=1e300),
+    "diverged, without truth": lambda: track(
+        replace(eq35("y1").recording, truth=None), ibo(form("y1"), gain=1e6, bound=1e300)
+    ),
+    "chained": lambda: eq35("y1", "y2", surface=chained()),
+    "plane": lambda: eq35("y1", "y2", surface=plane((0.1, 0.2, 1))),
+    "three outputs": lambda: eq35("y1", "y2", "y3", surface=plane((0.1, 0.2, 1), outputs=3)),
+}
+FLAT = [name for name in MAKERS if name != "three outputs"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def in_python():
+    """Short runs are over before numba has compiled anything beside them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("percept_obs.compile.find_spec", lambda name: None)
+        yield
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """A run by its name, tracked once."""
+    known = {}
+
+    def run(name):
+        if name not in known:
+            known[name] = MAKERS[name]()
+        return known[name]
+
+    return run
+
+
+def lines(ax, label):
+    """Coordinates of the lines that the legend calls by a name, one array of columns each."""
+    return [np.array(line.get_data()) for line in ax.lines if line.get_label() == label]
+
+
+def line(ax, label):
+    (found,) = lines(ax, label)
+    return found
+
+
+def faint(ax):
+    """Values of the lines without a name: every error, under the bold curves."""
+    return [line.get_ydata() for line in ax.lines if line.get_alpha() and line.get_label().startswith("_")]
+
+
+def paint(figure, layout=False):
+    """Draw, so that what matplotlib warns of comes to light; finding a layout takes most of the time."""
+    if not layout:
+        figure.figure.set_layout_engine("none")
+    FigureCanvasAgg(figure.figure).draw()
+
+
+# ---- signals
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_signals_draws_samples_truth_and_estimate_of_every_coordinate(runs, name):
+    run = runs(name)
+    figure = figures.signals(run)
+    coordinates = [symbol.name for symbol in run.recording.surface.coordinates]
+    assert len(figure.axes) == len(coordinates) + 1
+    for column, (coordinate, ax) in enumerate(zip(coordinates, figure.axes, strict=False)):
+        np.testing.assert_array_equal(line(ax, "estimate"), [run.time, run.estimate[:, column]])
+        if coordinate in run.observer.form.measured:
+            samples = run.recording.outputs[:, run.recording.names.index(coordinate)]
+            np.testing.assert_array_equal(line(ax, "samples")[1], samples)
+        else:
+            assert not lines(ax, "samples")
+        if run.recording.truth is None:
+            assert not lines(ax, "truth")
+        else:
+            np.testing.assert_array_equal(line(ax, "truth")[1], run.truth[:, column])
+    paint(figure)
+
+
+@pytest.mark.parametrize("name", ["(35), both outputs", "(36), y1 alone", "dropouts"])
+def test_signals_draws_the_errors_on_a_logarithmic_axis(runs, name):
+    run = runs(name)
+    last = figures.signals(run).axes[-1]
+    np.testing.assert_array_equal(faint(last), np.abs(run.error).T)
+    assert last.get_yscale() == "log"
+    assert last.get_ylabel() == "|error|"
+
+
+def test_signals_draws_the_innovation_where_there_is_no_truth(runs):
+    run = runs("without truth")
+    last = figures.signals(run).axes[-1]
+    np.testing.assert_array_equal(faint(last), np.abs(run.innovation).T)
+    assert last.get_ylabel() == "|innovation|"
+
+
+def test_bold_errors_are_root_mean_squares():
+    values = np.array([3.0, 4.0, np.nan, 0.0, 1e200])
+    root = figures.over_time._root_mean_square(values, 3)
+    np.testing.assert_allclose(root, [np.sqrt(12.5), np.sqrt(12.5), np.nan, 1e200 / np.sqrt(2), 1e200 / np.sqrt(2)])
+
+
+def test_signals_marks_every_reset_and_counts_them(runs):
+    run = runs("(35), y1 alone")
+    figure = figures.signals(run)
+    for ax in figure.axes[::3]:
+        (ticks,) = (collection for collection in ax.collections if collection.get_label() == "reset")
+        np.testing.assert_array_equal([segment[0, 0] for segment in ticks.get_segments()], run.resets)
+    assert f"reset {len(run.resets)} times" in figure.text
+    assert "Outside the axis" in figure.text
+
+
+def test_signals_ends_the_estimate_where_it_diverged_and_says_when(runs):
+    run = runs("diverged")
+    figure = figures.signals(run)
+    assert [text.get_text() for text in figure.axes[-1].texts] == [f"diverged at {run.diverged_at:.3g} s"]
+    assert f"Diverged at {run.diverged_at:.3g} s" in figure.text
+    missing = np.isnan(line(figure.axes[-2], "estimate")[1]).sum()
+    assert missing == np.isnan(run.estimate[:, -1]).sum() > 0
+    assert f"{missing} estimates are missing" in figure.text
+    assert figure.axes[2].get_ylim()[1] < 2  # what goes before the divergence does not squeeze the truth
+
+
+def test_the_text_has_ranges_settling_time_error_levels_and_lost_samples(runs):
+    run = runs("(35), both outputs")
+    text = figures.signals(run).text
+    assert f"within 0.05 after {run.settling_time():.3g} s" in text
+    assert f"true y1 is from {run.truth[:, 0].min():.3g} to {run.truth[:, 0].max():.3g}" in text
+    assert f"{run.rms(40.01, 80, 'y3'):.2g} (y3)" in text
+    lost = runs("dropouts")
+    gaps = int(np.isnan(lost.recording.outputs).any(axis=1).sum())
+    assert f"{gaps} of {len(lost.time)} samples were lost" in figures.signals(lost).text
+
+
+def test_labels_have_symbols_letters_and_units(runs):
+    expected = ["$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"]
+    assert [ax.get_ylabel() for ax in figures.signals(runs("dropouts")).axes] == expected
+    assert figures.signals(runs("chained")).axes[2].get_ylabel() == "$y_{3} = 1/Y$ (1/m)"
+    assert figures.signals(runs("plane")).axes[2].get_ylabel() == "$y_{3} = 1/l$ (1/m)"
+
+
+# ---- image plane
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_the_image_has_the_path_its_ends_and_the_estimate(runs, name):
+    run = runs(name)
+    figure = figures.image_plane(run)
+    (ax,) = figure.axes
+    known = run.recording.truth is not None
+    path = run.truth[:, :2] if known else run.recording.outputs[:, :2]
+    if known or path.shape[1] == 2:
+        np.testing.assert_array_equal(line(ax, "truth" if known else "samples"), path.T)
+        np.testing.assert_array_equal(line(ax, "start").ravel(), path[0])
+        np.testing.assert_array_equal(line(ax, "end").ravel(), path[-1])
+    np.testing.assert_array_equal(line(ax, "estimate"), run.estimate[:, :2].T)
+    assert ax.get_aspect() == 1
+    paint(figure)
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "radius"),
+    [
+        ("(35), both outputs", (5 / 3, 5 / 6), 0.1 / 0.3),
+        ("without truth", (5 / 3, 5 / 6), 0.1 / 0.3),
+        ("chained", (2, 1.2), 0.1 / 0.25),
+        ("plane", (1.25, 0.625), 0.1 / 0.4),
+    ],
+)
+def test_the_disk_of_small_w_lies_around_the_focus_of_expansion(runs, name, place, radius):
+    figure = figures.image_plane(runs(name))
+    (ax,) = figure.axes
+    (disk,) = ax.patches
+    np.testing.assert_allclose(line(ax, "focus of expansion").ravel(), place)
+    np.testing.assert_allclose([*disk.center, disk.radius], [*place, radius])
+    assert disk.get_label() == "$|w| < 0.1$"
+    assert f"at ({place[0]:.3g}, {place[1]:.3g})" in figure.text
+    assert f"radius {radius:.3g}; the path does not enter it" in figure.text
+
+
+def test_the_text_has_the_closest_approach_and_how_many_samples_are_in_the_disk(runs):
+    recording = runs("(35), both outputs").recording
+    figure = figures.image_plane(recording, threshold=0.5)
+    distances = np.hypot(*(recording.truth[:, :2] - [5 / 3, 5 / 6]).T)
+    assert figure.axes[0].patches[0].radius == pytest.approx(0.5 / 0.3)
+    assert "closest approach 0.832 at 16.4 s" in figure.text
+    assert f"{(distances < 0.5 / 0.3).sum()} of 8001 samples lie in it" in figure.text
+
+
+def test_a_far_focus_of_expansion_is_pointed_at_from_the_edge(runs):
+    run = runs("(36), y1 alone")
+    figure = figures.image_plane(run)
+    (ax,) = figure.axes
+    pointer = line(ax, "focus of expansion (outside)").ravel()
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert left < pointer[0] < right < 5 / 3
+    assert low < pointer[1] < high
+    towards, expected = pointer - [(left + right) / 2, (low + high) / 2], [5 / 3, 5 / 6] - pointer
+    assert np.cross([*towards, 0], [*expected, 0])[2] == pytest.approx(0, abs=1e-3)
+    assert "at (1.67, 0.833)" in figure.text
+    assert "outside the picture" in figure.text
+
+
+def test_a_moving_focus_of_expansion_is_drawn_as_its_path_and_without_a_disk(runs):
+    run = runs("varying")
+    figure = figures.image_plane(run)
+    (ax,) = figure.axes
+    known = run.recording.motion.known(run.time)
+    velocity = known[:, 6:9] - known[:, 3:6]
+    (path,) = (points for points in lines(ax, "focus of expansion (outside)") if points.shape[1] == len(run.time))
+    np.testing.assert_allclose(path, (velocity[:, :2] / velocity[:, 2:]).T)
+    assert not ax.patches
+    assert "focus of expansion moves" in figure.text
+
+
+@pytest.mark.parametrize("translation", [(1, 0.2, 0), (0, 0, 0)])
+def test_without_a_focus_of_expansion_the_figure_says_so(translation):
+    motion = affine(np.diag([0.1, 0, 0]), translation)
+    figure = figures.image_plane(record(Scenario("aside", motion, (0.5, 0, 5), 5, pinhole()), camera=COARSE))
+    assert "no focus of expansion" in figure.text
+    assert not figure.axes[0].patches
+    paint(figure)
+
+
+def test_with_one_output_the_line_without_w_is_drawn():
+    motion = affine([[0, 0.4, 0], [0, 0, 0.1], [0, 0.2, 0]], (0.6, 0.1, 0.3))
+    recording = record(Scenario("blind", motion, (5, 0.5, 3), 2, pinhole()), camera=COARSE)
+    run = track(replace(recording, outputs=recording.outputs[:, :1], names=("y1",)), ibo(form("y1")))
+    figure = figures.image_plane(run)
+    np.testing.assert_allclose(line(figure.axes[0], "$w = 0$")[0], [2, 2])
+    assert "w vanishes at y1 = 2" in figure.text
+
+
+def test_with_one_output_w_may_vanish_nowhere(runs):
+    figure = figures.image_plane(runs("(35), y1 alone"))
+    assert not figure.axes[0].patches
+    assert "w vanishes nowhere" in figure.text
+
+
+# ---- scene
+
+
+def places(ax, label):
+    (found,) = (line for line in ax.lines if line.get_label() == label)
+    return np.array(found.get_data_3d())
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_the_scene_has_the_true_places_and_the_credible_estimates(runs, name):
+    run = runs(name)
+    figure = figures.scene(run, far=2)
+    (ax,) = figure.axes
+    drawn = places(ax, "estimate")
+    if run.recording.truth is not None:
+        np.testing.assert_array_equal(places(ax, "truth"), run.recording.points.T[[2, 0, 1]])
+        credible = run.distance < 2 / run.truth[:, -1]
+        np.testing.assert_array_equal(drawn, np.where(credible, run.points.T[[2, 0, 1]], np.nan))
+    left_out = int(np.isnan(drawn[0]).sum())
+    assert (f"Left out: {left_out} of {len(run.time)} estimates" in figure.text) == (left_out > 0)
+    paint(figure)
+
+
+def test_the_scene_has_the_viewing_ray_to_the_end_and_the_closest_approach(runs):
+    run = runs("varying")
+    figure = figures.scene(run)
+    (ax,) = figure.axes
+    end = run.recording.points[-1]
+    np.testing.assert_allclose(places(ax, "viewing ray"), np.array([(0, 0, 0), end]).T[[2, 0, 1]])
+    np.testing.assert_array_equal(places(ax, "end").ravel(), end[[2, 0, 1]])
+    np.testing.assert_array_equal(places(ax, "camera")[:, 0], ZERO)
+    assert places(ax, "camera")[0].max() > 0  # it opens along Z
+    assert f"within {np.linalg.norm(run.recording.points, axis=1).min():.3g} m" in figure.text
+
+
+def test_the_scene_of_a_recording_has_no_estimate(runs):
+    figure = figures.scene(runs("chained").recording)
+    assert "estimate" not in [line.get_label() for line in figure.axes[0].lines]
+
+
+def test_the_scene_has_one_scale(runs):
+    (ax,) = figures.scene(runs("plane")).axes
+    sides = np.ptp([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()], axis=1)
+    np.testing.assert_allclose(ax.get_box_aspect() / sides, (ax.get_box_aspect() / sides)[0])
+
+
+# ---- several runs
+
+
+def test_compare_draws_the_truth_once_and_every_estimate(runs):
+    both = runs("(35), both outputs")
+    some = [both, runs("(35), y1 alone"), track(both.recording, smo(form("y1", "y2")), ZERO)]
+    figure = figures.compare(some)
+    upper, lower = figure.axes
+    np.testing.assert_array_equal(line(upper, "truth"), [both.time, both.truth[:, 2]])
+    names = ["identifier-based (y1, y2)", "identifier-based (y1)", "sliding mode (y1, y2)"]
+    for name, run, error in zip(names, some, faint(lower), strict=True):
+        np.testing.assert_array_equal(line(upper, name)[1], run.estimate[:, 2])
+        np.testing.assert_array_equal(error, np.abs(run.error[:, 2]))
+        assert f"{name}: {run.verdict().capitalize()[:9]}" in figure.text
+    paint(figure)
+
+
+def test_curves_differ_in_line_marker_and_colour():
+    looks = [figures.base.style(number) for number in range(4)]
+    for key in ("linestyle", "marker", "color"):
+        assert len({str(look[key]) for look in looks}) == 4
+    every = [figures.base.style(number) for number in range(28)]
+    assert len({(str(look["linestyle"]), look["marker"]) for look in every}) == 28  # without any colour
+
+
+def test_colours_are_those_of_okabe_and_ito():
+    palette = {"#000000", "#e69f00", "#56b4e9", "#009e73", "#0072b2", "#d55e00", "#cc79a7"}
+    base = figures.base
+    assert {to_hex(c) for c in (base.BLACK, base.SKY, *base.COLOURS)} <= palette
+
+
+def test_compare_names_what_differs_and_when_a_run_diverged(runs):
+    some = [eq35("y1", "y2"), eq35("y1", "y2", gain=3), runs("diverged")]
+    figure = figures.compare(some, coordinate="y1")
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert labels[1:] == [
+        "identifier-based (y1, y2), gain 10, bound 10",
+        "identifier-based (y1, y2), gain 3, bound 10",
+        f"identifier-based (y1, y2), gain 1e+06, bound 1e+300, diverged at {some[2].diverged_at:.3g} s",
+    ]
+    assert figure.axes[0].get_ylabel() == "$y_{1}$"
+    assert f"Diverged at {some[2].diverged_at:.3g} s" in figure.text
+    paint(figure, layout=True)
+
+
+def test_compare_takes_runs_with_and_without_noise(runs):
+    clean = record(scenarios.ma2005_eq35(), camera=Camera(), seed=1)
+    some = [runs("(35), both outputs"), track(clean, ibo(form("y1", "y2")), ZERO)]
+    figure = figures.compare(some, ["noisy", "clean"])
+    assert figure.axes[0].get_legend_handles_labels()[1] == ["truth", "noisy", "clean"]
+    assert "clean: Converged" in figure.text
+    numbered = figures.compare(some).axes[0].get_legend_handles_labels()[1]
+    assert numbered[1:] == ["identifier-based (y1, y2) [1]", "identifier-based (y1, y2) [2]"]
+
+
+# ---- distance
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_distance_is_in_metres_with_gaps_behind_the_camera(runs, name):
+    run = runs(name)
+    figure = figures.distance(run, labels=["estimate"])
+    (drawn,) = (curve for curve in figure.axes[0].lines if curve.get_label().startswith("estimate"))
+    values = drawn.get_ydata()
+    seen = run.estimate[:, -1] > 0
+    np.testing.assert_allclose(values[seen], 1 / run.estimate[seen, -1])
+    assert np.isnan(values[~seen]).all()
+    assert (f"{(~seen).sum()} of {len(run.time)} estimates are not in front" in figure.text) == (not seen.all())
+    if run.recording.truth is not None:
+        np.testing.assert_allclose(line(figure.axes[0], "truth")[1], 1 / run.truth[:, -1])
+    paint(figure)
+
+
+def test_another_measurement_of_the_distance_is_drawn_and_may_be_the_reference(runs):
+    run = runs("without truth")
+    stereo = np.linspace(2, 5, len(run.time))
+    measured = replace(run, recording=replace(run.recording, distances={"stereo": stereo}))
+    figure = figures.distance(measured)
+    np.testing.assert_array_equal(line(figure.axes[0], "stereo")[1], stereo)
+    relative = 100 * np.abs(run.distance / stereo - 1)
+    np.testing.assert_allclose(faint(figure.axes[1])[0], np.where(np.isfinite(relative), relative, np.nan))
+    assert "By the stereo it is from 2 to 5 m" in figure.text
+    assert f"median relative error is {np.median(relative[len(stereo) // 2 :]):.2g} %" in figure.text
+
+
+def test_without_any_reference_there_is_one_row(runs):
+    assert len(figures.distance(runs("without truth")).axes) == 1
+
+
+# ---- excitation
+
+
+def test_excitation_is_drawn_with_its_least_value(runs):
+    recording = runs("(35), both outputs").recording
+    some = [windowed(form(*names), recording) for names in (("y1", "y2"), ("y1",))]
+    figure = figures.excitation(some, ["both", "y1"])
+    (ax,) = figure.axes
+    assert ax.get_yscale() == "log"
+    for name, one in zip(("both", "y1"), some, strict=True):
+        np.testing.assert_array_equal(line(ax, name), [one.time, one.smallest])
+        assert f"{name}: the least is {one.least:.3g}" in figure.text
+    assert [text.get_text() for text in ax.texts] == [f"least {one.least:.2g}" for one in some]
+    assert ax.get_xlabel() == "end of the 10 s window (s)"
+    paint(figure)
+
+
+def test_round_off_is_clipped_and_counted(runs):
+    one = windowed(form("y1"), runs("(35), both outputs").recording)
+    figure = figures.excitation(replace(one, smallest=np.where(one.time > 70, -1e-20, one.smallest)))
+    assert figure.axes[0].lines[0].get_ydata().min() == 1e-16
+    assert f"{(one.time > 70).sum()} values below 1e-16" in figure.text
+    paint(figure)
+
+
+def test_unknown_windows_are_gaps_and_counted(runs):
+    one = windowed(form("y1"), runs("(35), both outputs").recording)
+    late = one.time > 70
+    figure = figures.excitation(replace(one, smallest=np.where(late, np.nan, one.smallest)))
+    np.testing.assert_array_equal(np.isnan(figure.axes[0].lines[0].get_ydata()), late)
+    assert f"Unknown: {late.sum()} of {len(late)} windows" in figure.text
+    with pytest.raises(ValueError, match="no finite value"):
+        figures.excitation(replace(one, smallest=np.full(len(late), np.nan)))
+
+
+# ---- what a figure is
+
+
+def test_in_jupyter_a_figure_is_a_picture_with_alternative_text(runs):
+    figure = figures.image_plane(runs("(35), both outputs"))
+    shown = figure._repr_html_()
+    (alternative,) = re.findall(r'<img alt="([^"]*)"', shown)
+    assert "|w| &lt; 0.1" in alternative
+    assert html.unescape(alternative) == figure.text
+    assert "after 1.66 s" in alternative
+    assert "max-width: 100%" in shown
+    assert "data:image/png;base64,iVBOR" in shown
+    assert figure.text in repr(figure)
+
+
+def test_pyplots_axes_are_shown_once(runs):
+    import matplotlib.pyplot as plt
+
+    figure, ax = plt.subplots()
+    drawn = figures.image_plane(runs("chained"), ax=ax)
+    assert drawn.figure is figure
+    assert drawn.axes == (ax,)
+    drawn._repr_html_()
+    assert not plt.fignum_exists(figure.number)
+
+
+def test_figures_of_their_own_stay_out_of_pyplot(runs):
+    import matplotlib.pyplot as plt
+
+    before = plt.get_fignums()
+    figures.signals(runs("plane"))
+    figures.scene(runs("plane"))
+    assert plt.get_fignums() == before
+
+
+def test_importing_the_package_does_not_load_matplotlib():
+    program = "import sys, percept_obs; print('matplotlib' in sys.modules); import percept_obs.figures;"
+    program += "print('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.check_output([sys.executable, "-c", program], text=True).split() == ["False", "False"]
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
+    figure = figures.excitation(windowed(form("y1"), runs("chained").recording, 5))
+    path = tmp_path / f"figure.{ending}"
+    figure.save(path)
+    assert path.stat().st_size > 1000
+    if ending != "pdf":  # which compresses it
+        assert figure.text.encode() in path.read_bytes()
+
+
+def test_figures_draw_on_the_axes_they_are_given(runs):
+    run = runs("plane")
+    four = MatplotlibFigure().subplots(2, 2)
+    assert figures.signals(run, axes=four).axes == tuple(four.ravel())
+    two = MatplotlibFigure().subplots(2)
+    assert figures.compare(run, axes=two).axes == tuple(two)
+    assert figures.distance(run, axes=two).axes == tuple(two)
+    solid = MatplotlibFigure().add_subplot(projection="3d")
+    assert figures.scene(run, ax=solid).axes == (solid,)
+
+
+# ---- bad input
+
+
+@pytest.mark.parametrize(
+    ("draw", "complaint"),
+    [
+        (lambda run: figures.signals(run("plane").recording), "one Run"),
+        (lambda run: figures.signals([run("plane"), run("plane")]), "one Run"),
+        (lambda run: figures.signals(run("plane"), tolerance=0), "tolerance is 0"),
+        (lambda run: figures.signals(run("plane"), axes=MatplotlibFigure().subplots(2)), "has 2 axes; 4 are needed"),
+        (lambda run: figures.image_plane(run("three outputs")), "has 3 image coordinates"),
+        (lambda run: figures.image_plane(run("diverged, without truth").recording, -1), "threshold is -1"),
+        (lambda run: figures.image_plane("run"), "a Run or a Recording"),
+        (lambda run: figures.scene(run("without truth").recording), "no truth"),
+        (lambda run: figures.scene(run("plane"), far=1), "more than 1"),
+        (lambda run: figures.scene(run("plane"), ax=MatplotlibFigure().add_subplot()), "flat"),
+        (lambda run: figures.compare([]), "no runs"),
+        (lambda run: figures.compare(run("plane").recording), "a Run is needed"),
+        (lambda run: figures.compare(run("without truth")), "no truth to compare"),
+        (lambda run: figures.compare(run("plane"), coordinate="y4"), "no coordinate 'y4'; there are y1, y2, y3"),
+        (lambda run: figures.compare(run("plane"), labels="one"), "a list of 1 is needed"),
+        (lambda run: figures.compare([run("plane"), run("chained")]), "their surfaces and truths differ"),
+        (lambda run: figures.compare([run("dropouts"), run("varying")]), "their times and truths differ"),
+        (lambda run: figures.distance([run("dropouts"), run("without truth")]), "their truths differ"),
+        (lambda run: figures.distance(run("plane"), reference="stereo"), "no reference 'stereo'; there are truth"),
+        (lambda run: figures.excitation([]), "an Excitation"),
+        (lambda run: figures.excitation(run("plane")), "an Excitation"),
+    ],
+)
+def test_bad_input_is_refused_in_words(runs, draw, complaint):
+    with pytest.raises(ValueError, match=re.escape(complaint)):
+        draw(runs)
+
+
+def test_an_image_of_one_output_alone_is_refused(runs):
+    recording = runs("without truth").recording
+    with pytest.raises(ValueError, match="only y1 was recorded"):
+        figures.image_plane(replace(recording, outputs=recording.outputs[:, :1], names=("y1",)))

@@ -1,0 +1,201 @@
+"""Each notebook runs top to bottom, survives every control, pins a number, names its pictures; JupyterLab shows it."""
+
+import ast
+import re
+import shutil
+
+import nbformat
+import pytest
+from jupyter_harness import (
+    LOG,
+    NOTEBOOKS,
+    execute,
+    jupyterlab,
+    lab_page,
+    log_entries,
+    open_notebook,
+    run_all,
+    silent_pictures,
+)
+from nbclient.exceptions import CellExecutionError
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
+from utias_folder import utias_folder
+
+NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
+
+
+def read(name):
+    return nbformat.read(NOTEBOOKS / name, as_version=4)
+
+
+def code(notebook):
+    return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def test_there_are_notebooks():
+    assert {"00_start.ipynb", "01_perspective_dynamics.ipynb"} <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_of_a_run_is_stored(name):
+    notebook = read(name)
+    assert set(notebook.metadata) <= {"kernelspec", "language_info"}
+    assert notebook.metadata.kernelspec.name == "python3"
+    assert set(notebook.metadata.get("language_info", ())) <= {"name"}
+    for cell in notebook.cells:
+        assert not re.fullmatch(r"[0-9a-f]{8}", cell.id), "an id by which a cell is known, not a random one"
+        assert not cell.get("outputs")
+        assert cell.get("execution_count") is None
+        assert set(cell.metadata) <= {"tags"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_number_is_pinned(name):
+    trees = [ast.parse(source) for source in code(read(name))]
+    assert any(isinstance(node, ast.Assert) for tree in trees for node in ast.walk(tree))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
+    notebook = read(name)
+    if "load_utias" in "".join(code(notebook)):
+        monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
+    widgets = execute(notebook, tmp_path)
+    assert silent_pictures(notebook, widgets) == []
+
+
+FAILING = """
+import asyncio, warnings
+import ipywidgets as widgets
+
+def fails(name):
+    def callback(*_, **__):
+        raise ArithmeticError(name)
+    return callback
+
+slider, button, later = widgets.IntSlider(), widgets.Button(), widgets.Checkbox()
+slider.observe(fails("observed"), "value")
+button.on_click(fails("clicked"))
+
+interactive = widgets.interactive(lambda x: fails("interactive")(), x=(0.0, 1.0))
+
+later.observe(lambda _: asyncio.get_running_loop().call_later(0.01, fails("put off")), "value")
+
+warns = widgets.Dropdown(options=["a", "b"])
+warns.observe(lambda _: warnings.warn("a warning"), "value")
+
+swallows, words = widgets.ToggleButton(), widgets.HTML()
+def swallow(_):
+    words.add_class("percept-obs-error")
+    words.value = "told to the student only"
+swallows.observe(swallow, "value")
+
+unknown = widgets.ColorPicker()
+"""
+
+
+@pytest.mark.slow
+def test_an_error_in_a_callback_fails_the_test(tmp_path):
+    with pytest.raises(CellExecutionError) as failure:
+        execute(new_notebook(cells=[new_code_cell(FAILING)]), tmp_path)
+    for words in (
+        *(f"ArithmeticError: {name}" for name in ("observed", "clicked", "interactive", "put off")),
+        "UserWarning: a warning",
+        "the lab says: told to the student only",
+        "how is a ColorPicker moved?",
+    ):
+        assert words in str(failure.value)
+
+
+@pytest.mark.slow
+def test_a_warning_of_a_cell_fails_the_test(tmp_path):
+    with pytest.raises(CellExecutionError, match="UserWarning"):
+        execute(new_notebook(cells=[new_code_cell("import warnings; warnings.warn('a warning')")]), tmp_path)
+
+
+def shown(data, **metadata):
+    """A code cell and what it displayed."""
+    return new_code_cell(id="c", outputs=[new_output("display_data", data=data, metadata=metadata)])
+
+
+PNG, NAMED = {"image/png": "AAAA"}, '<img alt="what it shows" src="a.png">'
+
+
+@pytest.mark.parametrize(
+    ("cell", "complaints"),
+    [
+        (new_markdown_cell("![what it shows](a.png)", id="m"), []),
+        (new_markdown_cell("![ ](a.png)", id="m"), ["m: ![] without a text"]),
+        (new_markdown_cell('<img src="a.png">', id="m"), ["m: <img> without alt"]),
+        (shown({"text/html": NAMED} | PNG), []),
+        (shown({"text/html": '<p><img alt=" "></p>'}), ["c: <img> without alt"]),
+        (shown({"text/html": "<svg></svg>"}), ["c: <svg> without aria-label"]),
+        (shown(PNG), ["c: image/png without alt"]),
+        (shown(PNG, **{"image/png": {"alt": "what it shows"}}), []),
+    ],
+)
+def test_a_picture_without_a_text_is_found(cell, complaints):
+    assert silent_pictures(new_notebook(cells=[cell]), {}) == complaints
+
+
+@pytest.mark.parametrize(
+    ("state", "complaints"),
+    [
+        ({"_model_name": "HTMLModel", "value": NAMED}, []),
+        ({"_model_name": "HTMLModel", "value": "<img>"}, ["HTMLModel: <img> without alt"]),
+        (
+            {"_model_name": "ImageModel", "value": b""},
+            ["ImageModel: no alternative text; put an <img> into HTML"],
+        ),
+    ],
+)
+def test_a_widget_without_a_text_is_found(state, complaints):
+    assert silent_pictures(new_notebook(), {"an id": state}) == complaints
+
+
+@pytest.fixture
+def page(chromium, tmp_path):
+    """JupyterLab on the notebooks, in a browser."""
+    folder, home, profile = (tmp_path / name for name in ("notebooks", "home", "profile"))
+    shutil.copytree(NOTEBOOKS, folder)
+    with jupyterlab(folder, home) as server, lab_page(chromium, server, profile) as page:
+        yield page
+
+
+# What the lab shows: the address of its picture, and its words.
+SHOWN = """() => {
+    const lab = document.querySelector('.jp-OutputArea .widget-vbox');
+    return [lab.querySelector('img').src, lab.querySelector('[role=status]').textContent];
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_the_first_notebook_moves_in_jupyterlab(page):
+    open_notebook(page, "00_start.ipynb")
+    run_all(page)
+    gain = page.locator(".widget-slider", has_text="Gain G").locator(".noUi-handle")
+    y2 = page.get_by_label("y2 is measured")
+    for control, key in ((gain, "ArrowRight"), (y2, "Space")):
+        before = page.evaluate(SHOWN)
+        control.focus()
+        control.press(key)
+        both_changed = f"before => ({SHOWN})().every((part, k) => part !== before[k])"
+        page.wait_for_function(both_changed, arg=before, timeout=2000)
+    assert "converged: the error of y2, y3" in page.evaluate(SHOWN)[1]
+    assert log_entries(page) == ""
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_an_error_in_a_callback_reaches_the_log_console(page, tmp_path):
+    kernel = {"kernelspec": read("00_start.ipynb").metadata.kernelspec}
+    failing = new_notebook(cells=[new_code_cell(FAILING + "slider")], metadata=kernel)
+    nbformat.write(failing, tmp_path / "notebooks/failing.ipynb")
+    open_notebook(page, "failing.ipynb")
+    run_all(page)
+    handle = page.locator(".noUi-handle")
+    handle.focus()
+    handle.press("ArrowRight")
+    page.wait_for_function(LOG)

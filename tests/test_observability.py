@@ -1,0 +1,88 @@
+"""An instant suffices with both outputs off the focus of expansion, and never with one; a window may."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import BOTH, NOISY, ONE
+
+from percept_obs import (
+    Camera,
+    PerspectiveSystem,
+    Recording,
+    Scenario,
+    affine,
+    ibo,
+    instantaneous,
+    pinhole,
+    plane,
+    record,
+    scenarios,
+    track,
+    windowed,
+)
+
+b1, b2, b3, y1, y2 = sp.symbols("b1 b2 b3 y1 y2", real=True)
+
+
+def test_both_outputs_suffice_off_the_focus_of_expansion():
+    found = instantaneous(BOTH)
+    assert found.suffices
+    assert sp.expand(found.measure - (b1 - b3 * y1) ** 2 - (b2 - b3 * y2) ** 2) == 0
+    assert found.zero_set == [{y1: b1 / b3, y2: b2 / b3}]
+    assert "can suffice" in found._repr_latex_()
+
+
+def test_one_output_never_suffices():
+    found = instantaneous(ONE)
+    assert (found.rank, found.suffices, found.measure) == (1, False, 0)
+    assert sp.expand(found.information.det()) == 0
+    assert "no instant suffices" in found._repr_latex_()
+    with pytest.raises(ValueError, match="no circle"):
+        found.circle(0.1)
+
+
+def test_the_circle_around_the_focus_of_expansion():
+    centre, radius = instantaneous(BOTH).circle(0.1)
+    assert centre == (b1 / b3, b2 / b3)
+    assert radius == sp.Float(0.1) / sp.Abs(b3)
+    centre, radius = instantaneous(PerspectiveSystem(affine(), plane()).measure("y1", "y2")).circle(1)
+    n1, n2, n3 = sp.symbols("n1:4", real=True)
+    assert sp.cancel(centre[0] - b1 / (n1 * b1 + n2 * b2 + n3 * b3)) == 0
+    assert sp.expand(1 / radius**2 - (n1 * b1 + n2 * b2 + n3 * b3) ** 2) == 0
+
+
+def test_a_counter_example_to_the_printed_condition():
+    """Ma 2005, (20), equals 2 here, and yet the direction (0, 1, -1) of the state is never seen."""
+    A = np.zeros((3, 3))
+    A[0, 1] = 1
+    motion = affine(A, [1, 0, 0])
+    recording = record(Scenario("counter-example", motion, (0, 1, 2), 20, pinhole()))
+    values = motion.values
+    assert float(sum(entry**2 for entry in ONE.w).subs(values)) == 2
+    run = track(recording, ibo(ONE), (0, 0, 0.2))
+    difference = run.error[:, 1] - run.error[:, 2]
+    np.testing.assert_allclose(difference, 0.2, atol=1e-9)
+    np.testing.assert_allclose(run.error[-1, 1] + run.error[-1, 2], 0, atol=1e-3)
+    assert windowed(ONE, recording, 5).least == pytest.approx(0, abs=1e-9)
+
+
+def test_the_window_gathers_what_an_instant_lacks():
+    recording = record(scenarios.ma2005_eq35())
+    found = windowed(ONE, recording, 10)
+    assert found.time[0] == 10
+    assert found.least == found.smallest.min() > 0.03
+    assert windowed(BOTH, recording, 10).least > 1
+
+
+def test_lost_samples_are_interpolated_where_there_is_no_truth():
+    whole = record(scenarios.ma2005_eq35(), 20, NOISY, seed=1)
+    lossy = record(scenarios.ma2005_eq35(), 20, Camera(noise=NOISY.noise, dropout=0.3), seed=1)
+    bare = [Recording(r.time, r.outputs, r.names, r.surface, r.motion) for r in (whole, lossy)]
+    least = [windowed(ONE, r, 5).smallest for r in bare]
+    np.testing.assert_allclose(least[1], least[0], rtol=0.1, atol=1e-3)
+
+
+@pytest.mark.parametrize("window", [0, -1, 21, np.nan])
+def test_windows_that_do_not_fit_are_refused(window):
+    with pytest.raises(ValueError, match="must be positive and at most 20 s"):
+        windowed(ONE, record(scenarios.ma2005_eq35(), 20), window)
