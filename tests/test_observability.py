@@ -56,7 +56,7 @@ def test_a_counter_example_to_the_printed_condition():
     A = np.zeros((3, 3))
     A[0, 1] = 1
     motion = affine(A, [1, 0, 0])
-    recording = record(Scenario("counter-example", motion, (0, 1, 2), 20, pinhole()))
+    recording = record(Scenario("counter-example", motion, (0, 1, 2), 8, pinhole()))
     values = motion.values
     assert float(sum(entry**2 for entry in ONE.w).subs(values)) == 2
     run = track(recording, ibo(ONE), (0, 0, 0.2))
