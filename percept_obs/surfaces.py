@@ -120,10 +120,11 @@ class ImagingSurface:
         (distance,) = self._evaluate(POINT, (self.distance,), points)
         if not (distance > 0).all():
             where = np.unravel_index(int(np.argmin(distance)), distance.shape) if distance.ndim else ()
+            point = ", ".join(f"{entry:.4g}" for entry in points[where])
             raise BehindCamera(
-                f"the point ({', '.join(f'{entry:.4g}' for entry in points[where])}) has the distance {float(distance[where]):.4g} from the "
-                f"{self.name}; only points at a positive distance are seen, so start the point in front of "
-                "the camera or stop the motion before it passes"
+                f"the point ({point}) has the distance {float(distance[where]):.4g} from the {self.name}; only points "
+                "at a positive distance are seen, so start the point in front of the camera or stop the motion before "
+                "it passes"
             )
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
