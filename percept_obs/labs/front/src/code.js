@@ -1,0 +1,63 @@
+// The few lines of Python that make the same run.
+
+const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
+
+/** Python text for settings that are shown. */
+export function pythonOf(shown, model) {
+  const { settings } = shown;
+  const names = new Set(["PerspectiveSystem", "track", ...settings.observers]);
+  const lines = model.recordings[settings.scenario] ? [] : simulation(shown, names);
+  const recorded = model.recordings[settings.scenario];
+  const motion = recorded ? recorded.kind : "affine";
+  names.add(motion);
+  names.add(settings.surface);
+  if (recorded) lines.push("# recording = the one that you gave to the lab", "");
+  const outputs = settings.outputs.map((o) => `"${o}"`).join(", ");
+  lines.push(`form = PerspectiveSystem(${motion}(), ${settings.surface}()).measure(${outputs})`);
+  const options = [];
+  const { mode, values } = settings.start;
+  if (mode !== "own") options.push(`start=${list(mode === "zero" ? [0, 0, 0] : values)}`);
+  if (settings.hold !== "zero") options.push(`hold="${settings.hold}"`);
+  if (settings.believed) {
+    lines.push(`believed = affine(${matrix(settings.believed.A)}, ${list(settings.believed.b)})`);
+    options.push("believed=believed");
+  }
+  for (const name of settings.observers) {
+    const changed = model.observers[name].gains.filter((gain) => settings.gains[name][gain.name] !== gain.value);
+    const gains = changed.map((gain) => `, ${gain.name}=${number(settings.gains[name][gain.name])}`).join("");
+    const result = settings.observers.length > 1 ? `run_${name}` : "run";
+    lines.push(`${result} = track(${["recording", `${name}(form${gains})`, ...options].join(", ")})`);
+    lines.push(`print(${result}.verdict())`);
+  }
+  return `${imports(names)}\n\n${lines.join("\n")}\n`;
+}
+
+function simulation({ settings, time, leavesAt }, names) {
+  for (const name of ["affine", "Camera", "Scenario", "record", NOISES[settings.noise.kind]]) names.add(name);
+  // As long as the point is seen, which may be shorter than what was asked for.
+  const duration = leavesAt === null ? settings.duration : time.at(-1);
+  const noise = `${NOISES[settings.noise.kind]}(${number(settings.noise.size)})`;
+  const surface = settings.surface === "plane" ? `plane(${list(settings.normal)})` : `${settings.surface}()`;
+  return [
+    `motion = affine(${matrix(settings.A)}, ${list(settings.b)})`,
+    `scenario = Scenario("from the lab", motion, ${list(settings.X0)}, ${number(duration)}, ${surface})`,
+    `camera = Camera(period=${number(settings.period)}, noise=${noise}, dropout=${number(settings.dropout)})`,
+    `recording = record(scenario, camera=camera, seed=${settings.seed})`,
+  ];
+}
+
+function imports(names) {
+  return `from percept_obs import ${[...names].sort().join(", ")}`;
+}
+
+function number(value) {
+  return String(value);
+}
+
+function list(values) {
+  return `[${values.map(number).join(", ")}]`;
+}
+
+function matrix(rows) {
+  return `[${rows.map(list).join(", ")}]`;
+}

@@ -1,0 +1,80 @@
+// What the panels of all labs are made of: groups of controls that read from a lab's settings and change them.
+
+import { element, grid, slider } from "./controls.js";
+
+/** Controls of a lab that has settings, change(), rest(), say() and formulas. */
+export class Fieldsets {
+  constructor(lab) {
+    this.lab = lab;
+    this.controls = [];
+  }
+
+  /** Leave the settings as they are, and say why. */
+  refuse(reason) {
+    this.lab.say(reason);
+    this.shownFor = null;
+    this.show();
+  }
+
+  add(control) {
+    this.controls.push(control);
+    return control.row;
+  }
+
+  fieldset(legend, attributes, ...rows) {
+    return element("fieldset", attributes, element("legend", {}, legend), ...rows);
+  }
+
+  number(key, options) {
+    const { lab } = this;
+    return this.add(
+      slider({
+        name: key,
+        get: () => lab.settings[key],
+        set: (value) => lab.change({ [key]: value }),
+        rest: () => lab.rest(),
+        allowed: (v) => v >= options.least && v <= options.most,
+        ...options,
+      }),
+    );
+  }
+
+  /** A slider for one entry of a list in the settings. */
+  entry(key, k, options) {
+    const { lab } = this;
+    const put = (value) => lab.change({ [key]: lab.settings[key].map((old, i) => (i === k ? value : old)) });
+    const rest = () => lab.rest();
+    const allowed = (v) => Math.abs(v) <= 1000 && !(options.notZero && v === 0);
+    return this.add(slider({ get: () => lab.settings[key][k], set: put, rest, allowed, ...options }));
+  }
+
+  matrix(name, label, get, set) {
+    const { lab } = this;
+    const names = [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => `a${i}${j}`));
+    const control = grid({
+      name,
+      label,
+      rows: 3,
+      columns: 3,
+      names,
+      get: () => get()?.flat(),
+      set: (k, value) => set(get().map((row, i) => row.map((old, j) => (3 * i + j === k ? value : old)))),
+      rest: () => lab.rest(),
+    });
+    for (const field of control.parts) {
+      field.addEventListener("focus", () => lab.formulas.highlight("motion", field.dataset.entry));
+      field.addEventListener("blur", () => lab.formulas.highlight("", ""));
+    }
+    return this.add(control);
+  }
+}
+
+/** Light up a control's letter in the formulas while the hand or the focus is on it. */
+export function linkToFormula(control, formulas, owner, letter) {
+  const on = () => formulas().highlight(owner, letter);
+  const off = () => formulas().highlight("", "");
+  control.row.addEventListener("pointerenter", on);
+  control.row.addEventListener("pointerleave", off);
+  control.row.addEventListener("focusin", on);
+  control.row.addEventListener("focusout", off);
+}

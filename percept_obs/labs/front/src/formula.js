@@ -1,0 +1,75 @@
+// Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
+
+import { element } from "./controls.js";
+import { readable } from "./scales.js";
+
+/** The panel of equations: of the form, and of each observer. */
+export class Formulas {
+  constructor(model) {
+    this.model = model;
+    this.body = element("div", { class: "formulas", role: "region", tabindex: 0, "aria-label": "Equations" });
+    this.shownFor = "";
+  }
+
+  /** Show the equations of these settings, with their numbers. */
+  show(settings) {
+    const key = JSON.stringify([settings.surface, settings.outputs, settings.observers]);
+    if (key !== this.shownFor) {
+      this.shownFor = key;
+      this.build(settings);
+    }
+    const motion = Object.fromEntries([
+      ...settings.A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])),
+      ...settings.b.map((value, i) => [`b${i + 1}`, value]),
+      ...settings.normal.map((value, i) => [`n${i + 1}`, value]),
+    ]);
+    for (const place of this.numbers) {
+      const value = (settings.gains[place.owner] ?? motion)[place.letter];
+      const text = value === undefined ? "" : value < 0 ? `(${readable(value)})` : readable(value);
+      if (place.node.textContent !== text) place.node.textContent = text;
+    }
+  }
+
+  /** Light up a letter. */
+  highlight(owner, letter) {
+    for (const node of this.body.querySelectorAll("[data-letter]")) {
+      const mine = node.closest("[data-owner]").dataset.owner === owner;
+      node.classList.toggle("lit", mine && node.dataset.letter === letter);
+    }
+  }
+
+  build(settings) {
+    this.body.replaceChildren();
+    this.numbers = [];
+    const structure = this.model.surfaces[settings.surface].structures[settings.outputs.join("+")];
+    this.section("What is measured and what is hidden", "motion", structure.formulas);
+    for (const name of settings.observers) {
+      const { title, formulas } = this.model.observers[name];
+      this.section(`The ${title} observer`, name, formulas);
+    }
+  }
+
+  section(title, owner, formulas) {
+    const lines = formulas.flatMap((text) => {
+      const [inLetters, withNumbers] = ["in-letters", "with-numbers"].map((kind) => element("div", { class: `line ${kind}` }));
+      inLetters.innerHTML = withNumbers.innerHTML = `<math displaystyle="true">${text}</math>`;
+      this.putNumbers(withNumbers, owner);
+      return withNumbers.querySelector("[data-letter]") ? [inLetters, withNumbers] : [inLetters];
+    });
+    this.body.append(element("section", { "data-owner": owner }, element("h4", {}, title), ...lines));
+  }
+
+  putNumbers(line, owner) {
+    const space = "http://www.w3.org/1998/Math/MathML";
+    for (const operator of line.querySelectorAll("mo")) {
+      // Between numbers an invisible sign of multiplication would join them.
+      if (operator.textContent === "\u2062") operator.textContent = "·";
+    }
+    for (const marked of line.querySelectorAll("[data-letter]")) {
+      const node = document.createElementNS(space, "mn");
+      const letter = marked.dataset.letter;
+      marked.replaceChildren(node);
+      this.numbers.push({ node, owner, letter });
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// What is read off a run: excitation, error, settling time.
+
+export const TOLERANCE = 0.05;
+
+/** Smallest eigenvalue of a symmetric matrix of size 1 or 2, given row by row. */
+export function smallestEigenvalue(matrix) {
+  if (matrix.length === 1) return matrix[0];
+  const [a, b, , d] = matrix;
+  const mean = (a + d) / 2;
+  const root = Math.hypot((a - d) / 2, b);
+  // The quotient keeps digits that the difference of two almost equal numbers would lose.
+  return mean > 0 ? (a * d - b * b) / (mean + root) : mean - root;
+}
+
+/** Smallest eigenvalue of the integral of w w^T over the window that ends at each sample, from one window on. */
+export function windowed(time, w, hidden, measured, window) {
+  const samples = time.length;
+  const size = hidden * hidden;
+  const gathered = new Float64Array(samples * size);
+  const before = new Float64Array(size);
+  const now = new Float64Array(size);
+  for (let k = 0; k < samples; k++) {
+    for (let i = 0; i < hidden; i++) {
+      for (let j = 0; j < hidden; j++) {
+        let sum = 0;
+        for (let m = 0; m < measured; m++) {
+          sum += w[(k * hidden + i) * measured + m] * w[(k * hidden + j) * measured + m];
+        }
+        now[i * hidden + j] = sum;
+      }
+    }
+    for (let c = 0; c < size && k > 0; c++) {
+      gathered[k * size + c] = gathered[(k - 1) * size + c] + ((time[k] - time[k - 1]) * (before[c] + now[c])) / 2;
+    }
+    before.set(now);
+  }
+  const first = time.findIndex((t) => t >= time[0] + window - 1e-9);
+  const ends = time.subarray(first < 0 ? samples : first);
+  const smallest = new Float64Array(ends.length);
+  const inside = new Array(size);
+  let at = 0;
+  for (let k = 0; k < ends.length; k++) {
+    const begin = Math.max(ends[k] - window, time[0]);
+    while (at + 2 < samples && time[at + 1] <= begin) at++;
+    const part = Math.min(1, (begin - time[at]) / (time[at + 1] - time[at]));
+    for (let c = 0; c < size; c++) {
+      const low = gathered[at * size + c];
+      const start = low + (gathered[(at + 1) * size + c] - low) * part;
+      inside[c] = gathered[(first + k) * size + c] - start;
+    }
+    smallest[k] = smallestEigenvalue(inside);
+  }
+  return { time: ends, smallest };
+}
+
+/** Largest absolute error of the hidden coordinates at each sample. */
+export function hiddenError(truth, estimate, width, hidden) {
+  const error = new Float64Array(truth.length / width);
+  for (let k = 0; k < error.length; k++) {
+    for (const c of hidden) {
+      const size = Math.abs(truth[k * width + c] - estimate[k * width + c]);
+      // Not Math.max alone: what is not a number must stay so.
+      if (!(size <= error[k])) error[k] = size;
+    }
+  }
+  return error;
+}
+
+/** When the error entered the tolerance for good, in seconds since the first sample. */
+export function settlingTime(time, error, tolerance = TOLERANCE) {
+  let last = error.length - 1;
+  if (!(error[last] < tolerance)) return Infinity;
+  while (last >= 0 && error[last] < tolerance) last--;
+  return last < 0 ? 0 : time[last + 1] - time[0];
+}

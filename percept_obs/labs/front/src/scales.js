@@ -1,0 +1,74 @@
+// Ranges, ticks and number words of axes.
+
+/** A number as Python's format(value, ".3g") writes it. */
+export function short(value, digits = 3) {
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
+  if (value === 0) return Object.is(value, -0) ? "-0" : "0";
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  const power = Number(exponent);
+  if (power < -4 || power >= digits) {
+    const bare = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
+    return `${bare}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
+  }
+  const plain = value.toFixed(Math.max(0, digits - 1 - power));
+  return plain.includes(".") ? plain.replace(/\.?0+$/, "") : plain;
+}
+
+/** A number for people: a true minus sign, no padded exponent. */
+export function readable(value, digits = 3) {
+  return short(value, digits)
+    .replace(/e\+?(-?)0*(\d+)/, "e$1$2")
+    .replace(/-/g, "−");
+}
+
+/** Distance between ticks that divides a span into about so many round parts. */
+export function roundStep(span, parts) {
+  const rough = span / Math.max(1, parts);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const factor = [1, 2, 5, 10].find((f) => f * power >= rough * 0.999);
+  return factor * power;
+}
+
+/** A linear range, widened to round numbers. */
+export function linearScale(low, high, parts = 4) {
+  if (!(high > low)) {
+    const margin = Math.max(Math.abs(low) * 0.1, 1e-3);
+    [low, high] = [low - margin, high + margin];
+  }
+  const step = roundStep(high - low, parts);
+  const [bottom, top] = [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
+  const count = Math.round((top - bottom) / step);
+  const ticks = Array.from({ length: count + 1 }, (_, k) => Number((bottom + k * step).toPrecision(12)));
+  return { low: bottom, high: top, ticks, log: false };
+}
+
+/** A logarithmic range of whole decades. */
+export function logScale(low, high) {
+  const bottom = Math.floor(Math.log10(low) + 1e-9);
+  const top = Math.max(bottom + 1, Math.ceil(Math.log10(high) - 1e-9));
+  const every = Math.ceil((top - bottom) / 4);
+  const ticks = [];
+  for (let power = bottom; power <= top; power += every) ticks.push(10 ** power);
+  return { low: 10 ** bottom, high: 10 ** top, ticks, log: true };
+}
+
+/** Bounds between which the given parts of the finite values above a least lie, from about 400 of them. */
+export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infinity } = {}) {
+  const every = Math.max(1, Math.floor(values.length / 400));
+  let some = [];
+  for (let k = 0; k < values.length; k += every) {
+    if (Number.isFinite(values[k]) && values[k] > above) some.push(values[k]);
+  }
+  if (!some.length) return null;
+  some = Float64Array.from(some).sort();
+  const at = (part) => some[Math.min(some.length - 1, Math.max(0, Math.round(part * (some.length - 1))))];
+  return [at(lowPart), at(highPart)];
+}
+
+/** A tick's label. */
+export function tickLabel(value, log) {
+  if (!log) return readable(value, 4);
+  const power = Math.round(Math.log10(value));
+  const raised = String(power).replace(/[-\d]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]));
+  return power === 0 ? "1" : power === 1 ? "10" : `10${raised}`;
+}

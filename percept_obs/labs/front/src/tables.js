@@ -1,0 +1,123 @@
+// What an observer may know at the start, the middle and the end of every step, laid out once; see tracking.py.
+
+/** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
+export function stepGrid(times, longest) {
+  const index = new Int32Array(times.length);
+  const counts = new Int32Array(times.length - 1);
+  for (let k = 0; k < counts.length; k++) {
+    const interval = times[k + 1] - times[k];
+    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - 1e-9)) : 0;
+    index[k + 1] = index[k] + counts[k];
+  }
+  const grid = new Float64Array(index[index.length - 1] + 1);
+  for (let k = 0; k < counts.length; k++) {
+    const interval = times[k + 1] - times[k];
+    for (let j = 1; j < counts[k]; j++) grid[index[k] + j] = times[k] + interval * (j / counts[k]);
+  }
+  for (let k = 0; k < index.length; k++) grid[index[k]] = times[k];
+  return { grid, index };
+}
+
+/** The lengths of the steps of a grid. */
+export function differences(grid) {
+  const steps = new Float64Array(grid.length - 1);
+  for (let k = 0; k < steps.length; k++) steps[k] = grid[k + 1] - grid[k];
+  return steps;
+}
+
+/** The grid with the middles of its steps put between. */
+export function halves(grid) {
+  const both = new Float64Array(2 * grid.length - 1);
+  for (let k = 0; k < grid.length; k++) both[2 * k] = grid[k];
+  for (let k = 0; k + 1 < grid.length; k++) both[2 * k + 1] = (grid[k] + grid[k + 1]) / 2;
+  return both;
+}
+
+/** Linear interpolation at increasing places, constant outside. */
+export function interpolate(places, times, values) {
+  const result = new Float64Array(places.length);
+  const last = times.length - 1;
+  let k = 0;
+  for (let j = 0; j < places.length; j++) {
+    const t = places[j];
+    if (t <= times[0]) result[j] = values[0];
+    else if (t >= times[last]) result[j] = values[last];
+    else {
+      while (times[k + 1] <= t) k++;
+      result[j] = values[k] + ((values[k + 1] - values[k]) / (times[k + 1] - times[k])) * (t - times[k]);
+    }
+  }
+  return result;
+}
+
+/** One column of a table of rows. */
+export function column(rows, width, which) {
+  const result = new Float64Array(rows.length / width);
+  for (let k = 0; k < result.length; k++) result[k] = rows[k * width + which];
+  return result;
+}
+
+/** Each sample, or where it was lost (NaN) the last one before it. */
+export function lastSamples(values) {
+  const result = values.slice();
+  for (let k = 1; k < result.length; k++) if (Number.isNaN(result[k])) result[k] = result[k - 1];
+  return result;
+}
+
+/** Measured outputs as held at the start, the middle and the end of each step: rows of 3 x outputs. */
+export function held(columns, times, grid, index, hold, exact, room = (length) => new Float64Array(length)) {
+  const outputs = columns.length;
+  const steps = grid.length - 1;
+  const table = room(steps * 3 * outputs);
+  columns.forEach((values, m) => {
+    if (hold === "zero") {
+      const last = lastSamples(values);
+      for (let k = 0; k + 1 < index.length; k++) {
+        for (let j = index[k]; j < index[k + 1]; j++) {
+          for (let stage = 0; stage < 3; stage++) table[(3 * j + stage) * outputs + m] = last[k];
+        }
+      }
+      return;
+    }
+    const line = hold === "exact" ? exact[m] : lineThrough(values, times, halves(grid));
+    for (let j = 0; j < steps; j++) {
+      for (let stage = 0; stage < 3; stage++) table[(3 * j + stage) * outputs + m] = line[2 * j + stage];
+    }
+  });
+  return table;
+}
+
+function lineThrough(values, times, places) {
+  const there = [...values.keys()].filter((k) => !Number.isNaN(values[k]));
+  return interpolate(places, Float64Array.from(there, (k) => times[k]), Float64Array.from(there, (k) => values[k]));
+}
+
+/** Samples at the steps' ends at which they arrive, NaN at the others. */
+export function arriving(columns, index, count, room = (length) => new Float64Array(length)) {
+  const outputs = columns.length;
+  const table = room(count * outputs).fill(NaN);
+  for (let k = 0; k < index.length; k++) {
+    for (let m = 0; m < outputs; m++) table[index[k] * outputs + m] = columns[m][k];
+  }
+  return table;
+}
+
+/** Numbers known at the starts, middles and ends of a grid's steps, or the one row that is constant. */
+export function known(motion, shape, grid) {
+  return knownAt(motion, shape, motion.times.length === 1 ? grid : halves(grid));
+}
+
+/** Rows of known numbers at some times. */
+export function knownAt(motion, shape, places) {
+  if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), varying: false };
+  const width = motion.rows[0].length + shape.length;
+  const rows = new Float64Array(places.length * width);
+  motion.rows[0].forEach((_, p) => {
+    const line = interpolate(places, motion.times, motion.columns[p]);
+    for (let k = 0; k < places.length; k++) rows[k * width + p] = line[k];
+  });
+  shape.forEach((value, p) => {
+    for (let k = 0; k < places.length; k++) rows[k * width + motion.rows[0].length + p] = value;
+  });
+  return { rows, varying: true };
+}

@@ -1,0 +1,246 @@
+"""Ma, Chen and Moore 2005, sections 1, 2 and 3.4: the moving point, and how it is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import sympy as sp
+
+from percept_obs.motion import affine
+from percept_obs.papers.base import (
+    Entry,
+    Finding,
+    Printed,
+    Values,
+    Verdict,
+    column,
+    dot,
+    equal,
+    identities,
+    judged,
+    vanishes,
+)
+from percept_obs.perspective import PerspectiveSystem
+from percept_obs.surfaces import POINT, X, Y, Z, chained, pinhole, plane
+
+SYSTEM = PerspectiveSystem(affine(), pinhole())
+CHAINED = PerspectiveSystem(affine(), chained())
+
+a11, a12, a13, a21, a22, a23, a31, a32, a33, b1, b2, b3 = SYSTEM.motion.parameters
+y1, y2, y3 = SYSTEM.coordinates
+n1, n2, n3 = plane().parameters
+Xp, Yp, Zp, ell = sp.symbols("X_p Y_p Z_p l_p", real=True)
+yg1, yg2, yg3, yg4 = sp.symbols("y_g1:5", real=True)
+a_new, b_new = sp.MatrixSymbol("a", 3, 3), sp.MatrixSymbol("b", 3, 1)
+
+
+def velocity() -> Values:
+    """Velocity of the point."""
+    rates = SYSTEM.motion.A * column(*POINT) + SYSTEM.motion.b
+    return dict(zip(map(dot, POINT), rates, strict=True))
+
+
+def seen_by(system: PerspectiveSystem) -> Callable[[], Values]:
+    """Coordinates of the point."""
+    image = (*system.surface.image, 1 / system.surface.distance)
+    return lambda: dict(zip(system.coordinates, image, strict=True))
+
+
+def rates_of(system: PerspectiveSystem) -> Callable[[], Values]:
+    """Rates of the coordinates."""
+    return lambda: dict(zip(map(dot, system.coordinates), system.rate, strict=True))
+
+
+@cache
+def on_the_plane() -> Values:
+    """Projection and outputs on the general plane.
+
+    The package's plane is n . X = 1; the printed one passes through (0, 0, 1), so the image is scaled until
+    that point is its own image.
+    """
+    surface = plane(outputs=3)
+    scale = 1 / surface.image[2].subs(dict(zip(POINT, (0, 0, 1), strict=True)))
+    projection = [scale * entry for entry in surface.image]
+    outputs = (*surface.image, 1 / surface.distance)
+    letters = (Xp, Yp, Zp, ell, yg1, yg2, yg3, yg4)
+    return dict(zip(letters, (*projection, surface.distance, *outputs), strict=True))
+
+
+def on_the_usual_plane() -> Values:
+    """The same with the normal vector along Z."""
+    normal = {n1: sp.S.Zero, n2: sp.S.Zero, n3: sp.S.One}
+    return {letter: sp.cancel(value.xreplace(normal)) for letter, value in on_the_plane().items()}
+
+
+def turned_axes(printed: Printed) -> Finding:
+    """(34): with the new coefficients the pinhole's rate is that of the chained projection."""
+    given = {line.lhs: line.rhs for line in printed}
+    if set(given) != {a_new, b_new}:
+        return judged(False)
+    coefficients = (*SYSTEM.motion.A, *SYSTEM.motion.b)
+    renamed = dict(zip(coefficients, (*given[a_new], *given[b_new]), strict=True))
+    return judged(all(map(vanishes, SYSTEM.rate.xreplace(renamed) - CHAINED.rate)))
+
+
+def third_output(printed: Printed) -> Finding:
+    """Remark 2: three outputs of a plane depend on each other, so that two of them tell all."""
+    surface = plane(outputs=3)
+    seen = dict(zip(POINT, surface.image, strict=True))
+    dependent = vanishes(surface.distance.subs(seen, simultaneous=True) - 1)
+    point = dict(zip((*POINT, n1, n2, n3), map(sp.Integer, (1, 2, 7, 3, 4, 5)), strict=True))
+    ranks = [int(column(*s.image).jacobian(POINT).subs(point).rank()) for s in (surface, pinhole())]
+    numbers = {"independent outputs, plane": ranks[0], "pinhole": ranks[1]}
+    return judged(not dependent or ranks[0] > ranks[1], Verdict.FALSE, numbers)
+
+
+ENTRIES = (
+    Entry(
+        "(1)",
+        "63",
+        "1",
+        "affine motion of the point",
+        (
+            equal(
+                column(dot(X), dot(Y), dot(Z)),
+                sp.ImmutableMatrix([[a11, a12, a13], [a21, a22, a23], [a31, a32, a33]]) * column(X, Y, Z)
+                + column(b1, b2, b3),
+            ),
+        ),
+        identities(velocity),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(2)",
+        "63",
+        "1",
+        "homogeneous outputs",
+        (equal(y1, X / Z), equal(y2, Y / Z)),
+        identities(seen_by(SYSTEM)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(3)",
+        "64",
+        "1",
+        "coordinates y",
+        (equal(column(y1, y2, y3), column(X / Z, Y / Z, 1 / Z)),),
+        identities(seen_by(SYSTEM)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(4)",
+        "64",
+        "1",
+        "perspective dynamics, pinhole",
+        (
+            equal(
+                dot(y1),
+                a13 + (a11 - a33) * y1 + a12 * y2 - a31 * y1**2 - a32 * y1 * y2 + (b1 - b3 * y1) * y3,
+            ),
+            equal(
+                dot(y2),
+                a23 + a21 * y1 + (a22 - a33) * y2 - a31 * y1 * y2 - a32 * y2**2 + (b2 - b3 * y2) * y3,
+            ),
+            equal(dot(y3), -(a31 * y1 + a32 * y2 + a33) * y3 - b3 * y3**2),
+        ),
+        identities(rates_of(SYSTEM)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(5)",
+        "64",
+        "2",
+        "general plane through (0, 0, 1)",
+        (equal(n1 * Xp + n2 * Yp + n3 * (Zp - 1), 0),),
+        identities(on_the_plane),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(6)",
+        "64",
+        "2",
+        "a point and its projection are in line",
+        (equal(Xp, Zp * X / Z), equal(Yp, Zp * Y / Z)),
+        identities(on_the_plane),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(7)",
+        "64",
+        "2",
+        "projection on the plane",
+        (
+            equal(Xp, n3 * X / ell),
+            equal(Yp, n3 * Y / ell),
+            equal(Zp, n3 * Z / ell),
+            equal(ell, n1 * X + n2 * Y + n3 * Z),
+        ),
+        identities(on_the_plane),
+        Verdict.HOLDS,
+        "letter of the denominator lost by the scan",
+    ),
+    Entry(
+        "(8)",
+        "64",
+        "2",
+        "outputs on the general plane",
+        (equal(yg1, X / ell), equal(yg2, Y / ell), equal(yg3, Z / ell), equal(yg4, 1 / ell)),
+        identities(on_the_plane),
+        Verdict.HOLDS,
+        "letter of the denominator lost by the scan",
+    ),
+    Entry(
+        "(9)",
+        "64",
+        "2",
+        "the same with n = (0, 0, 1)",
+        (equal(yg1, X / Z), equal(yg2, Y / Z), equal(yg3, 1), equal(yg4, 1 / Z)),
+        identities(on_the_usual_plane),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(32)",
+        "69",
+        "3.4",
+        "coordinates of the chained projection",
+        (equal(column(y1, y2, y3), column(X / Y, Z / Y, 1 / Y)),),
+        identities(seen_by(CHAINED)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(33)",
+        "69",
+        "3.4",
+        "perspective dynamics, chained",
+        (
+            equal(dot(y1), a11 * y1 + a12 + a13 * y2 - (a21 * y1 + a22 + a23 * y2) * y1 + (b1 - b2 * y1) * y3),
+            equal(dot(y2), a31 * y1 + a32 + a33 * y2 - (a21 * y1 + a22 + a23 * y2) * y2 + (b3 - b2 * y2) * y3),
+            equal(dot(y3), -(a21 * y1 + a22 + a23 * y2) * y3 - b2 * y3**2),
+        ),
+        identities(rates_of(CHAINED)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(34)",
+        "69",
+        "3.4",
+        "coefficients that turn (4) into (33)",
+        (
+            equal(a_new, sp.ImmutableMatrix([[a11, a13, a12], [a31, a33, a32], [a21, a23, a22]])),
+            equal(b_new, column(b1, b3, b2)),
+        ),
+        turned_axes,
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "Remark 2",
+        "71",
+        "4",
+        "a tilted plane's third output helps",
+        (),
+        third_output,
+        Verdict.FALSE,
+        "n1 yg1 + n2 yg2 + n3 yg3 = 1: the third output follows from the other two",
+    ),
+)

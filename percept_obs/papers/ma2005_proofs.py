@@ -1,0 +1,489 @@
+"""Ma, Chen and Moore 2005, section 3.3 and the appendix: the error dynamics and the proofs of convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, partial
+
+import sympy as sp
+
+from percept_obs.forms import CanonicalForm
+from percept_obs.motion import affine
+from percept_obs.observers import Observer, identifier_based, sliding_mode
+from percept_obs.observers.base import sigma2
+from percept_obs.observers.identifier_based import A, G, P
+from percept_obs.observers.sliding_mode import alpha, delta
+from percept_obs.papers.base import (
+    Entry,
+    Finding,
+    Inner,
+    Norm,
+    Printed,
+    SumNorm,
+    Values,
+    Verdict,
+    at_most,
+    column,
+    dot,
+    equal,
+    explicit,
+    identities,
+    is_identity,
+    judged,
+    less,
+    not_checkable,
+    strict_at_zero,
+    vanishes,
+    vectors,
+    weakened,
+)
+from percept_obs.perspective import PerspectiveSystem
+from percept_obs.surfaces import pinhole
+
+SYSTEM = PerspectiveSystem(affine(), pinhole())
+FORMS = (SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1"), SYSTEM.measure("y2"))
+
+# Numbers
+lam, V1, V2, V2_at_24, V2_at_26, t, tau = sp.symbols("lambda V1 V2 V_24 V_26 t tau", real=True)
+lambdabar, alphabar, lambdatilde, beta, window = sp.symbols("lambdabar alphabar lambdatilde beta delta", positive=True)
+alpha0, c1, c2, c3, c4 = sp.symbols("alpha0 c1 c2 c3 c4", positive=True)
+g_of_x, g_of_xhat = sp.symbols("g ghat", real=True)
+e1_, e2_, w_, V1dot_ = (sp.Function(name, real=True) for name in ("e1", "e2", "w", "Vdot1"))
+
+# Vectors and matrices
+n1, n2, n = sp.symbols("n1 n2 n", integer=True, positive=True)
+e1, xi1, dxi1 = vectors("e1 xi1 dxi1", n1)
+e2, xi2, dxi2, x2, xhat2, g, ghat = vectors("e2 xi2 dxi2 x2 xhat2 g ghat", n2)
+e, xi, slope = vectors("e xi dV2", n)
+w, wbar = sp.MatrixSymbol("w", n2, n1), sp.MatrixSymbol("wbar", n2, n1)
+A_, P_ = sp.MatrixSymbol("A", n1, n1), sp.MatrixSymbol("P", n1, n1)
+sgn_e1 = e1.applyfunc(sp.sign)
+
+
+def smallest_form() -> CanonicalForm:
+    """The form with n1 = n2 = 1 and any w, phi and g(x2)."""
+    p, q, slope_, rest = sp.symbols("p q w phi", real=True)
+    return CanonicalForm(
+        (p,), (q,), column(slope_), column(rest), column(sp.Function("g", real=True)(q)), (slope_, rest), (p, q)
+    )
+
+
+SMALL = smallest_form()
+
+
+def with_g_left_out(form: CanonicalForm) -> CanonicalForm:
+    """The form with g = 0, so that (25) is true."""
+    return replace(form, g=sp.ImmutableMatrix.zeros(*form.g.shape))
+
+
+def errors(observer: Observer, scales: tuple[sp.Expr, sp.Expr] = (sp.S.One, sp.S.One)) -> Values:
+    """The error dynamics of an observer in vectors: of e, or with scales of xi = (scale1 e1, scale2 e2)."""
+    form = observer.form
+    letters = dict(zip(form.coordinates, observer.error, strict=True))
+    parts = [[letters[s] for s in part] for part in (form.x1, form.x2)]
+    unscaled = {letter: letter / scale for part, scale in zip(parts, scales, strict=True) for letter in part}
+    dynamics = observer.error_dynamics().subs(sigma2, 0).subs(unscaled, simultaneous=True)
+    rates = dict(zip(letters.values(), dynamics, strict=True))
+    rate1, rate2 = (
+        scale * column(*(rates[letter] for letter in part)) for part, scale in zip(parts, scales, strict=True)
+    )
+    estimated = {s: s - unscaled[letters[s]] for s in form.x2}
+    size = sp.eye(len(form.x1))
+    values = {
+        w: form.w,
+        wbar: form.w,
+        g: form.g,
+        ghat: form.g.subs(estimated, simultaneous=True),
+        A_: sp.ImmutableMatrix(A * size),
+        P_: sp.ImmutableMatrix(P * size),
+    }
+    values |= dict.fromkeys((e1, xi1), column(*parts[0])) | dict.fromkeys((e2, xi2), column(*parts[1]))
+    values |= dict.fromkeys((dot(e1), dot(xi1)), rate1) | dict.fromkeys((dot(e2), dot(xi2)), rate2)
+    return values | {dxi1: rate1 / G, dxi2: rate2 / G}
+
+
+@cache
+def sliding(form: CanonicalForm) -> Values:
+    """The sliding mode observer's error dynamics as its boundary layer vanishes, away from e1 = 0."""
+    observer = sliding_mode(form)
+    values = errors(observer)
+    limit = {delta: sp.S.Zero} | {s: lam for s in observer.equations.state if s.name.startswith("lambda")}
+    # |e| = e / sgn(e)
+    signs = {sp.Abs(error): error / sp.sign(error) for error in values[e1]}
+    return {letter: value.subs(limit).xreplace(signs) for letter, value in values.items()}
+
+
+@cache
+def identifying(form: CanonicalForm) -> Values:
+    """The identifier-based observer's error dynamics."""
+    return errors(identifier_based(form))
+
+
+@cache
+def scaled(form: CanonicalForm) -> Values:
+    """The same in the coordinates xi, which the paper defines."""
+    return errors(identifier_based(form), SCALES)
+
+
+def in_all_forms(derive: Callable[[CanonicalForm], Values], without_g: bool) -> list[Callable[[], Values]]:
+    """One derivation for each choice of measured outputs."""
+    forms = [with_g_left_out(form) if without_g else form for form in FORMS]
+    return [partial(derive, form) for form in forms]
+
+
+def energy_rate(form: CanonicalForm, energy: sp.Expr) -> tuple[Values, sp.Expr]:
+    """The error dynamics (26) of a form, and the rate of an energy along them."""
+    values = sliding(with_g_left_out(form))
+    worth = explicit(energy, values)
+    pairs = zip((*values[e1], *values[e2]), (*values[dot(e1)], *values[dot(e2)]), strict=True)
+    return values, sum(worth.diff(error) * rate for error, rate in pairs)
+
+
+def energy_balance(printed: Printed) -> Finding:
+    """(27): every line is the rate of the printed energy along (26)."""
+    definition, *lines = printed
+    squares = Inner(e1, e1), Inner(e2, e2)
+    if definition.lhs != V1 or not definition.rhs.atoms(Inner) <= set(squares):
+        return judged(False)
+    balances = []
+    for form in FORMS:
+        values, rate = energy_rate(form, definition.rhs)
+        balances += [is_identity(line, values | {dot(V1): rate}) for line in lines]
+    return judged(all(balances))
+
+
+def energy_can_grow(printed: Printed) -> Finding:
+    """(28): at e1 = 0.01, e2 = -1, w = 1 the energy grows, and the faster the larger alpha and lambda are."""
+    values, rate = energy_rate(SMALL, ENERGY.rhs)
+    numbers, refuted = {}, []
+    for gain in (5, 50, 500):
+        at = dict(zip((*values[e1], *values[e2], *SMALL.w), (sp.Rational(1, 100), -1, 1), strict=True))
+        at |= {alpha: gain, lam: gain}
+        growth = rate.subs(at)
+        here = {dot(V1): growth} | {letter: values[letter].subs(at) for letter in (e1, e2, w)}
+        refuted.append(explicit(sp.And(*printed), here) == sp.false)
+        numbers[f"dV1/dt, alpha = lambda = {gain}"] = float(growth)
+    return judged(not all(refuted), Verdict.FALSE, numbers)
+
+
+def energy_over_a_window(printed: Printed) -> Finding:
+    """(29): the chain along the sliding motion e1 = 0 of (26), with w = alpha = 1, over 2 s."""
+    values, _ = energy_rate(SMALL, ENERGY.rhs)
+    # On e1 = 0 the switching term equals w^T e2; this combination is free of it.
+    left = (values[dot(e2)] - alpha * SMALL.w * values[dot(e1)])[0].expand()
+    decay = left.subs(alpha, 1).subs(SMALL.w[0], 1) / values[e2][0]
+    hidden = sp.exp(decay * tau)
+    path = {e1_: sp.S.Zero, e2_: hidden, w_: sp.S.One, V1dot_: sp.diff(hidden**2 / 2, tau)}
+    excited = sp.integrate(path[w_] ** 2, (tau, 0, 2))
+    constants = {t: 0, window: 2, beta: excited, lambdabar: 1, alphabar: 1}
+
+    def worth(side: sp.Expr) -> float:
+        for function, value in path.items():
+            side = side.replace(function, sp.Lambda(tau, value))
+        return float(side.subs(constants).doit())
+
+    names = ("integral of dV1/dt", "first line", "second line", "its right side")
+    members = [worth(printed[0].lhs), *(worth(line.rhs) for line in printed[:3])]
+    left_side, first, second, right = members
+    chain = left_side <= first + 1e-9 and first <= second + 1e-9 and abs(second - right) < 1e-9
+    return judged(chain, Verdict.FALSE, dict(zip(names, members, strict=True)))
+
+
+def perturbed_energy(printed: Printed) -> Finding:
+    """(31) for n1 = n2 = 1: the first line against the chain rule, the others against (30) and (13)."""
+    first, second, third = printed
+    v1, v2, change = sp.symbols("v1 v2 c", real=True)
+    # (24) less (26) is the change of g, in the hidden part only.
+    full, reduced = sliding(SMALL), sliding(with_g_left_out(SMALL))
+    increment = (full[dot(e2)] - reduced[dot(e2)])[0] - (full[g] - full[ghat])[0]
+    by_chain_rule = vanishes(increment) and full[dot(e1)] == reduced[dot(e1)]
+    here = {slope: column(v1, v2), V2_at_24: V2_at_26 + v2 * change, g_of_x - g_of_xhat: change}
+    left, right = explicit(first.lhs, here), explicit(first.rhs, here)
+    if isinstance(first, sp.Eq):
+        holds = vanishes(right - left)
+    else:
+        # s |c| is at least v2 c if the difference of the squares is not negative.
+        enough = right - V2_at_26
+        holds = bool(sp.expand(enough**2 - (v2 * change) ** 2).is_nonnegative)
+    bounds = {
+        V2_at_26: -c3 * Norm(e) ** 2,
+        Norm(slope): c4 * Norm(e),
+        sp.Abs(g_of_x - g_of_xhat): alpha0 * Norm(x2 - xhat2),
+        g_of_x - g_of_xhat: alpha0 * Norm(x2 - xhat2),
+    }
+    holds = holds and vanishes(second.rhs - first.rhs.xreplace(bounds))
+    # The hidden error is at most the whole one.
+    holds = holds and vanishes(third.rhs - second.rhs.xreplace({Norm(x2 - xhat2): Norm(e)}))
+    at = {v1: 3, v2: 4, change: 1, V2_at_26: 0}
+    return judged(by_chain_rule and holds, numbers={"left": float(left.subs(at)), "right": float(right.subs(at))})
+
+
+def reduced_dynamics_are_stable(printed: Printed) -> Finding:
+    """(38) for n1 = n2 = 1 and w = 1, which (14) admits: with Hurwitz A and P > 0, and as section 4 lists A, P."""
+    state = column(*sp.symbols("p q", real=True))
+    numbers = {}
+    for a, p in ((-1, sp.Rational(1, 2)), (1, -sp.Rational(1, 2))):
+        values = {A_: column(a), P_: column(p), wbar: column(1), xi1: state[:1, :], xi2: state[1:, :]}
+        rate = column(*(explicit(line.rhs, values)[0] for line in printed))
+        largest = max(sp.re(value) for value in rate.jacobian(state).eigenvals(multiple=True))
+        numbers[f"largest real part for A = {a}, P = {p}"] = float(largest)
+    return judged(min(numbers.values()) < 0, Verdict.FALSE, numbers)
+
+
+def lyapunov_function(printed: Printed) -> Finding:
+    """(30) and (39): strict inequalities contradict each other where all norms are zero; the rest is cited."""
+    zero = {Norm(vector): sp.S.Zero for vector in (e, xi, slope)} | {dot(V2): sp.S.Zero}
+    return Finding(Verdict.MISPRINT if strict_at_zero(printed, zero) else Verdict.NOT_CHECKABLE)
+
+
+def choice_of_gain(printed: Printed) -> Finding:
+    """The rate of V2 along (40) with the bounds (39) and (13), and the gain at which it changes sign."""
+    bound, choice = printed
+    size = sp.Symbol("r", positive=True)
+    # g enters (40) times scale2 / G; (13) bounds its change by alpha0 |e2|, and e2 = xi2 / scale2.
+    change = (SCALES[1] / G) * alpha0 * (size / SCALES[1])
+    derived = -c3 * size**2 + c4 * size * change
+    same = isinstance(bound, sp.LessThan) and vanishes(bound.rhs.xreplace({Norm(xi): size}) - derived)
+    turns = isinstance(choice, sp.StrictGreaterThan) and vanishes(derived.subs(G, choice.rhs))
+    return judged(same and turns and (bound.lhs, choice.lhs) == (dot(V2), G))
+
+
+TRANSFORMATION = (equal(xi1, e1 / G), equal(xi2, e2 / G**2))
+SCALES = tuple(explicit(line.rhs, {e1: column(1), e2: column(1)})[0] for line in TRANSFORMATION)
+ENERGY = equal(V1, (Inner(e1, e1) + Inner(e2, e2)) / 2)
+LYAPUNOV_30 = (
+    less(c1 * Norm(e) ** 2, V2),
+    less(V2, c2 * Norm(e) ** 2),
+    less(dot(V2), -c3 * Norm(e) ** 2),
+    less(Norm(slope), c4 * Norm(e)),
+)
+LYAPUNOV_39 = (
+    less(c1 * Norm(xi) ** 2, V2),
+    less(V2, c2 * Norm(xi) ** 2),
+    less(dot(V2), -c3 * Norm(xi) ** 2),
+    less(Norm(slope), c4 * Norm(xi)),
+)
+INTEGRAL = (tau, t, t + window)
+E1_SQUARED, SEEN_SQUARED, E2_SQUARED = (
+    sp.Integral(square, INTEGRAL) for square in (e1_(tau) ** 2, (w_(tau) * e2_(tau)) ** 2, e2_(tau) ** 2)
+)
+AT_THE_END = -(lambdabar * e1_(t) ** 2 + alphabar * beta * e2_(t) ** 2)
+REDUCED = (equal(dxi1, A_ * xi1 + wbar.T * xi2), equal(dxi2, wbar * P_ * xi1))
+PERTURBED = equal(V2_at_24, V2_at_26 + Norm(slope) * (g_of_x - g_of_xhat))
+SIGN_OF_A = "from (10) and (11) A has a minus sign; with A = 1, P = -1/2 in place of Hurwitz A, P > 0"
+
+ENTRIES = (
+    Entry(
+        "(24)",
+        "68",
+        "3.3",
+        "error dynamics of the SMO with sgn",
+        (
+            equal(dot(e1), -lam * sgn_e1 + w.T * e2),
+            equal(dot(e2), -alpha * lam * w * sgn_e1 + g - ghat),
+        ),
+        identities(*in_all_forms(sliding, without_g=False)),
+        Verdict.HOLDS,
+        "limit of the package's boundary layer",
+    ),
+    Entry(
+        "(25)",
+        "68",
+        "3.3",
+        "g does not depend on x2",
+        (equal(g - ghat, sp.ZeroMatrix(n2, 1)),),
+        not_checkable,
+        Verdict.NOT_CHECKABLE,
+        "an assumption on the way, dropped again in (31)",
+    ),
+    Entry(
+        "(26)",
+        "68",
+        "3.3",
+        "(24) with (25)",
+        (equal(dot(e1), -lam * sgn_e1 + w.T * e2), equal(dot(e2), -alpha * lam * w * sgn_e1)),
+        identities(*in_all_forms(sliding, without_g=True)),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(27)",
+        "68",
+        "3.3",
+        "rate of V1 = (e1^2 + e2^2)/2",
+        (
+            ENERGY,
+            equal(dot(V1), Inner(e1, dot(e1)) + Inner(e2, dot(e2))),
+            equal(dot(V1), -lam * Inner(e1, sgn_e1) + Inner(e1, w.T * e2) - alpha * lam * Inner(e2, w * sgn_e1)),
+            equal(dot(V1), -lam * SumNorm(e1) + Inner(e2, w * (e1 + alpha * (dot(e1) - w.T * e2)))),
+            equal(
+                dot(V1),
+                -lam * SumNorm(e1) - alpha * Norm(w.T * e2) ** 2 + Inner(e2, w * (e1 + alpha * dot(e1))),
+            ),
+        ),
+        energy_balance,
+        Verdict.HOLDS,
+        "with the sum of absolute values as the norm of e1",
+    ),
+    Entry(
+        "(28)",
+        "68",
+        "3.3",
+        "V1 decreases for large alpha, lambda",
+        (
+            at_most(dot(V1), -lambdabar * Norm(e1) ** 2 - alphabar * Norm(w.T * e2) ** 2),
+            at_most(-lambdabar * Norm(e1) ** 2 - alphabar * Norm(w.T * e2) ** 2, 0),
+        ),
+        energy_can_grow,
+        Verdict.FALSE,
+        "near e1 = 0 with e1 w^T e2 < 0 the rate of V1 is about alpha lambda |w^T e2| > 0",
+    ),
+    Entry(
+        "(29)",
+        "68",
+        "3.3",
+        "V1 decreases over a window",
+        (
+            at_most(sp.Integral(V1dot_(tau), INTEGRAL), -(lambdabar * E1_SQUARED + alphabar * SEEN_SQUARED)),
+            at_most(
+                -(lambdabar * E1_SQUARED + alphabar * SEEN_SQUARED),
+                -(lambdabar * E1_SQUARED + alphabar * beta * E2_SQUARED),
+            ),
+            equal(-(lambdabar * E1_SQUARED + alphabar * beta * E2_SQUARED), AT_THE_END),
+            at_most(AT_THE_END, -lambdatilde * (e1_(t) ** 2 + e2_(t) ** 2) / 2),
+        ),
+        energy_over_a_window,
+        Verdict.FALSE,
+        "beta times the integral of |e2|^2 is no bound for that of |w^T e2|^2, nor is an integral an end value",
+    ),
+    Entry(
+        "(30)",
+        "68",
+        "3.3",
+        "a Lyapunov function of (26)",
+        LYAPUNOV_30,
+        lyapunov_function,
+        Verdict.MISPRINT,
+        "at most, not less: at e = 0 they contradict each other (as scanned); existence is cited",
+        weakened(LYAPUNOV_30),
+    ),
+    Entry(
+        "(31)",
+        "68",
+        "3.3",
+        "its rate along (24)",
+        (
+            PERTURBED,
+            at_most(V2_at_24, -c3 * Norm(e) ** 2 + c4 * Norm(e) * alpha0 * Norm(x2 - xhat2)),
+            at_most(V2_at_24, -(c3 - c4 * alpha0) * Norm(e) ** 2),
+        ),
+        perturbed_energy,
+        Verdict.MISPRINT,
+        "first line: at most, with the norm of the difference of g (read for n1 = n2 = 1)",
+        {PERTURBED: at_most(V2_at_24, V2_at_26 + Norm(slope) * sp.Abs(g_of_x - g_of_xhat))},
+    ),
+    Entry(
+        "error dynamics of the IBO",
+        "73",
+        "Appendix",
+        "error dynamics from (10), (11)",
+        (
+            equal(dot(e1), G * A_ * e1 + w.T * e2),
+            equal(dot(e2), -(G**2) * w * P_ * e1 + g - ghat),
+        ),
+        identities(*in_all_forms(identifying, without_g=False)),
+        Verdict.MISPRINT,
+        "(10) and (11) give the opposite signs of A and P; these would follow from x1hat - x1 in (11)",
+        {A_: -A_, P_: -P_},
+    ),
+    Entry(
+        "xi = T e",
+        "73",
+        "Appendix",
+        "new coordinates",
+        TRANSFORMATION,
+        not_checkable,
+        Verdict.NOT_CHECKABLE,
+        "a definition; (37), (38) and (40) are derived with it",
+    ),
+    Entry(
+        "(37)",
+        "73",
+        "Appendix",
+        "error dynamics in xi",
+        (
+            equal(dot(xi1), G * (A_ * xi1 + w.T * xi2)),
+            equal(dot(xi2), G * w * P_ * xi1 + (g - ghat) / G**2),
+        ),
+        identities(*in_all_forms(scaled, without_g=False)),
+        Verdict.MISPRINT,
+        SIGN_OF_A,
+        {A_: -A_},
+    ),
+    Entry(
+        "(38)",
+        "73",
+        "Appendix",
+        "the same with (25), in s = G t",
+        REDUCED,
+        identities(*in_all_forms(scaled, without_g=True)),
+        Verdict.MISPRINT,
+        "sign of A, see (37)",
+        {A_: -A_},
+    ),
+    Entry(
+        "(38) is stable",
+        "73",
+        "Appendix",
+        "(38) is exponentially stable",
+        REDUCED,
+        reduced_dynamics_are_stable,
+        Verdict.FALSE,
+        "as printed for neither; with the corrected sign for A = 1, P = -1/2",
+    ),
+    Entry(
+        "V1 of the IBO",
+        "73",
+        "Appendix",
+        "V1 decreases over a window",
+        (),
+        not_checkable,
+        Verdict.NOT_CHECKABLE,
+        "cites Morgan and Narendra (1977), theorem 2",
+    ),
+    Entry(
+        "(39)",
+        "74",
+        "Appendix",
+        "a Lyapunov function of (38)",
+        LYAPUNOV_39,
+        lyapunov_function,
+        Verdict.MISPRINT,
+        "at most, not less: see (30); existence is cited, and needs a stable (38)",
+        weakened(LYAPUNOV_39),
+    ),
+    Entry(
+        "(40)",
+        "74",
+        "Appendix",
+        "error dynamics in xi and s",
+        (equal(dxi1, A_ * xi1 + wbar.T * xi2), equal(dxi2, wbar * P_ * xi1 + (g - ghat) / G**3)),
+        identities(*in_all_forms(scaled, without_g=False)),
+        Verdict.MISPRINT,
+        "sign of A, see (37)",
+        {A_: -A_},
+    ),
+    Entry(
+        "choice of G",
+        "74",
+        "Appendix",
+        "rate of V2 along (40)",
+        (
+            at_most(dot(V2), (-c3 + c4 * alpha0 / G) * Norm(xi) ** 2),
+            sp.StrictGreaterThan(G, c4 * alpha0 / c3, evaluate=False),
+        ),
+        choice_of_gain,
+        Verdict.HOLDS,
+        "given (39) and (13)",
+    ),
+)

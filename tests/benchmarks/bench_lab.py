@@ -1,0 +1,112 @@
+"""How fast the observer lab draws while the hand drags, in JupyterLab: python tests/benchmarks/bench_lab.py.
+
+Pointer events are made in the page, one a frame, since a driver's own moves wait for the page.  A picture counts when
+the frame that holds it has been handed to the screen; its latency runs from the event to that moment.
+"""
+
+import shutil
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from jupyter_harness import jupyterlab, lab_page, open_notebook
+from lab_browser import OPEN, rested, write_notebook
+
+SECONDS = 5
+BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monotonic() < end:\n    pass"
+
+DRAG = """(seconds) => new Promise((resolve) => {
+    const [lab] = window.perceptObsLabs;
+    const { handle } = lab.plane;
+    const box = handle.getBoundingClientRect();
+    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
+    const tell = (type, k) => handle.dispatchEvent(new PointerEvent(type, {
+        pointerId: 7, clientX: x + 20 * Math.sin(k / 9), clientY: y + 16 * Math.cos(k / 9), bubbles: true,
+    }));
+    const latencies = [];
+    let pictures = 0;
+    let before = "";
+    const waiting = [];
+    const draw = lab.draw.bind(lab);
+    lab.draw = () => {
+        draw();
+        const estimate = lab.shown.runs[0].estimate;
+        const key = [0.1, 0.3, 0.5, 0.9].map((part) => estimate[Math.floor(part * estimate.length)]).join();
+        if (key !== before) pictures += 1;
+        before = key;
+        const answered = waiting.splice(0);
+        const channel = new MessageChannel();
+        // Runs after the frame in which it was posted.
+        channel.port1.onmessage = () => latencies.push(...answered.map((event) => performance.now() - event));
+        channel.port2.postMessage(0);
+    };
+    let k = 0;
+    tell("pointerdown", 0);
+    const began = performance.now();
+    const finish = () => {
+        tell("pointerup", k);
+        delete lab.draw;
+        const lines = Object.values(lab.drawn).map((chart) => chart.lines.map((line) => line.values.length));
+        resolve({ rate: pictures / seconds, latencies, lines });
+    };
+    // One event a frame, once the frame has been handed over: as a mouse's, which a browser aligns with its frames.
+    const after = new MessageChannel();
+    after.port1.onmessage = () => {
+        if (performance.now() - began > 1000 * seconds) return finish();
+        waiting.push(performance.now());
+        tell("pointermove", ++k);
+        requestAnimationFrame(() => after.port2.postMessage(0));
+    };
+    after.port2.postMessage(0);
+})"""
+
+THREE = "pictures=['inverse', 'distance', 'error']"
+TWO = "['identifier_based', 'sliding_mode']"
+ALL = "['identifier_based', 'sliding_mode', 'extended_kalman']"
+CASES = {
+    "three charts of two and three lines": f"{THREE}, kept=observer_lab().settings",
+    "three charts of five and six lines": f"{THREE}, observers={ALL}, kept=observer_lab(observers={TWO}).settings",
+}
+
+
+def report(title, found):
+    """One line of figures."""
+    latencies = sorted(found["latencies"])
+    worst = latencies[int(0.95 * len(latencies))]
+    lines = "+".join(str(len(chart)) for chart in found["lines"])
+    print(
+        f"{title:52} {found['rate']:5.1f} pictures/s, event to picture {statistics.median(latencies):5.1f} ms, "
+        f"95 % {worst:5.1f} ms; lines {lines}"
+    )
+
+
+def main():
+    """Measure every case with the kernel idle and with the kernel busy."""
+    places = [Path(tempfile.mkdtemp()) for _ in range(3)]
+    try:
+        with jupyterlab(*places[:2]) as server, lab_page(shutil.which("chromium"), server, places[2]) as page:
+            for title, arguments in CASES.items():
+                write_notebook(places[0], "bench.ipynb", OPEN.format(arguments=arguments), "ready = True", BUSY)
+                open_notebook(page, "bench.ipynb")
+                page.locator(".jp-Cell").first.click()
+                page.keyboard.press("Shift+Enter")
+                page.wait_for_function("window.perceptObsLabs?.size")
+                rested(page, 60)
+                page.locator("[data-control=foe]").scroll_into_view_if_needed()
+                page.evaluate(DRAG, 1)
+                report(f"{title}, kernel idle", page.evaluate(DRAG, SECONDS))
+                rested(page)
+                page.locator(".jp-Cell").nth(2).locator(".cm-content").click()
+                page.keyboard.press("Shift+Enter")
+                page.locator("[data-control=foe]").scroll_into_view_if_needed()
+                report(f"{title}, kernel busy", page.evaluate(DRAG, SECONDS))
+    finally:
+        for place in places:
+            shutil.rmtree(place, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,90 @@
+"""What every lab shares: one bundle, errors that show, one lab a cell, formulas whose letters carry names."""
+
+import hashlib
+import shutil
+import subprocess
+
+import pytest
+import sympy as sp
+from lab_settings import FRONT
+
+from percept_obs.labs import base
+from percept_obs.labs.observer_lab import observer_lab
+
+BUILT_FROM = ("package.json", "package-lock.json", "eslint.config.js")
+
+
+@pytest.fixture(scope="session")
+def modules(node, tmp_path_factory):
+    """A copy of the front end with the packages that its lock file names."""
+    npm = shutil.which("npm")
+    if npm is None:
+        pytest.skip("npm is missing; it comes with Node.js")
+    folder = tmp_path_factory.mktemp("front")
+    for part in ("src", "tests"):
+        shutil.copytree(FRONT / part, folder / part)
+    for name in BUILT_FROM:
+        shutil.copy(FRONT / name, folder)
+    installed = subprocess.run([npm, "ci", "--no-audit", "--no-fund"], cwd=folder, capture_output=True, text=True)
+    if installed.returncode:
+        pytest.skip(f"the front end's packages cannot be had: {installed.stderr[-300:]}")
+    return folder
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_the_bundle_is_the_build_of_the_sources(modules):
+    subprocess.run([shutil.which("npm"), "run", "build"], cwd=modules, check=True, capture_output=True)
+    built, committed = (hashlib.sha256((folder / "lab.js").read_bytes()).hexdigest() for folder in (modules, FRONT))
+    assert built == committed, "run npm ci && npm run build in percept_obs/labs/front"
+
+
+@pytest.mark.node
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["lint", "test"])
+def test_the_sources_pass_their_linter_and_their_own_tests(modules, task):
+    answer = subprocess.run([shutil.which("npm"), "run", task], cwd=modules, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+
+
+def test_the_bundle_loads_nothing_from_a_network():
+    assert "http" not in base.BUNDLE.read_text().replace("http://www.w3.org/1998/Math/MathML", "")
+
+
+def test_an_error_from_the_page_s_settings_shows_and_goes_with_the_next_good_ones():
+    lab = observer_lab()
+    with pytest.raises(ValueError, match="whole number"):
+        lab.set_state({"settings": {**lab.settings, "seed": -1}, "summary": {"serial": 1}})
+    assert lab.error.startswith("BadSettings: seed is -1")
+    lab.set_state({"settings": {**lab.settings, "seed": 1}, "summary": {"serial": 2}})
+    assert lab.error == ""
+    assert lab.analysis["of"] == 2
+
+
+def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(monkeypatch):
+    now = ["first cell", "run 1"]
+    monkeypatch.setattr(base, "_running_cell", lambda: tuple(now))
+    one, two = observer_lab(), observer_lab()
+    now[:] = ["second cell", "run 2"]
+    other = observer_lab()
+    assert all(lab.comm is not None for lab in (one, two, other))
+    now[:] = ["first cell", "run 3"]
+    again = observer_lab()
+    assert one.comm is None
+    assert two.comm is None
+    assert other.comm is not None
+    assert again.comm is not None
+
+
+def test_letters_carry_the_names_of_their_gains_and_longer_ones_come_first():
+    alpha, alpha1 = sp.symbols("alpha alpha1", real=True)
+    text = base.markup(alpha * alpha1, {"weight": alpha, "growth": alpha1})
+    assert text.count('data-letter="weight"') == text.count('data-letter="growth"') == 1
+    assert '<mrow data-letter="growth"><msub>' in text
+
+
+def test_hats_matrices_and_cases_become_markup_that_browsers_know():
+    x = sp.Symbol("xhat1", real=True)
+    assert '<mover accent="true"><mi>x</mi><mo>^</mo></mover>' in base.markup(x)
+    assert base.markup(sp.Matrix([[x]])).count('<mtable class="matrix">') == 1
+    assert "otherwise" in base.markup(sp.Piecewise((x, x > 1), (0, True)))

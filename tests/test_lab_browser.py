@@ -1,0 +1,295 @@
+"""The observer lab does in JupyterLab what it promises: it follows the hand, tells Python, and outlives it."""
+
+import pytest
+from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from lab_browser import (
+    OPEN,
+    assert_equals_python,
+    centre,
+    control,
+    open_lab,
+    python_state,
+    rested,
+    state,
+    write_notebook,
+)
+
+from percept_obs.labs.observer_lab import observer_lab
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+FOE = control("foe")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("notebooks")
+
+
+@pytest.fixture(scope="module")
+def server(folder, tmp_path_factory):
+    with jupyterlab(folder, tmp_path_factory.mktemp("server")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def browser_page(chromium, server, tmp_path_factory):
+    with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
+        page.set_default_timeout(15_000)
+        yield page
+
+
+@pytest.fixture(scope="module")
+def lab(browser_page, folder):
+    """A page with one lab that the tests of this module share."""
+    open_lab(browser_page, folder)
+    return browser_page
+
+
+@pytest.fixture
+def fresh(lab):
+    """The shared lab in its opening state."""
+    lab.click(control("reset"))
+    rested(lab)
+    lab.locator(FOE).scroll_into_view_if_needed()
+    return lab
+
+
+def drag_by_mouse(page):
+    x, y = centre(page, FOE)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 9, y - 6, steps=4)
+    page.mouse.up()
+
+
+def drag_by_touch(page):
+    x, y = centre(page, FOE)
+    session = page.context.new_cdp_session(page)
+    for kind, step in (("touchStart", 0), ("touchMove", 4), ("touchMove", 9), ("touchEnd", None)):
+        points = [] if step is None else [{"x": x + step, "y": y - step}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.detach()
+
+
+def drag_by_keys(page):
+    page.focus(FOE)
+    for key in ("ArrowRight", "ArrowUp", "Shift+ArrowUp", "ArrowDown", "ArrowLeft", "ArrowLeft"):
+        page.keyboard.press(key)
+
+
+@pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
+def test_the_focus_of_expansion_follows_the_hand(fresh, folder, drag):
+    before = state(fresh)
+    drag(fresh)
+    rested(fresh)
+    after = state(fresh)
+    assert after["settings"]["b"] != before["settings"]["b"]
+    assert after["settings"]["b"][2] == pytest.approx(before["settings"]["b"][2])
+    assert after["runs"] != before["runs"]
+    assert after["labels"] != before["labels"]
+    assert_equals_python(after)
+    assert python_state(folder) == after["settings"]
+
+
+def test_an_output_is_dropped_and_taken_back(fresh):
+    before = state(fresh)
+    fresh.check(control("outputs y1"))
+    rested(fresh)
+    dropped = state(fresh)
+    assert dropped["settings"]["outputs"] == ["y1"]
+    assert dropped["verdicts"] != before["verdicts"]
+    assert_equals_python(dropped)
+    fresh.check(control("outputs y1+y2"))
+    rested(fresh)
+    assert state(fresh) == before
+
+
+@pytest.mark.parametrize("name", ["extended_kalman", "sliding_mode"])
+def test_another_observer_is_chosen(fresh, name):
+    fresh.check(control(f"observer {name}"))
+    fresh.uncheck(control("observer identifier_based"))
+    rested(fresh)
+    shown = state(fresh)
+    assert list(shown["runs"]) == [name]
+    if name == "sliding_mode":
+        run = observer_lab(**shown["settings"]).run()[name]
+        assert shown["verdicts"] == [f"{run.observer.name}: {run.verdict()}"]
+        first_second = 3 * int((run.time <= 1).sum())
+        assert shown["runs"][name][:first_second] == pytest.approx(run.estimate.ravel()[:first_second], abs=1e-6)
+    else:
+        assert_equals_python(shown)
+
+
+def test_a_gain_is_changed(fresh):
+    before = state(fresh)
+    fresh.focus(control("identifier_based gain"))
+    for _ in range(3):
+        fresh.keyboard.press("PageUp")
+    rested(fresh)
+    after = state(fresh)
+    assert after["settings"]["gains"]["identifier_based"]["gain"] > 15
+    assert after["verdicts"] != before["verdicts"]
+    assert_equals_python(after)
+
+
+def test_a_number_that_is_not_allowed_is_refused_where_it_was_typed(fresh):
+    field = fresh.locator(control("identifier_based gain number"))
+    field.fill("-3")
+    assert field.get_attribute("aria-invalid") == "true"
+    assert state(fresh)["settings"]["gains"]["identifier_based"]["gain"] == 10
+    field.fill("12.5")
+    rested(fresh)
+    assert state(fresh)["settings"]["gains"]["identifier_based"]["gain"] == 12.5
+
+
+def test_the_lab_ends_on_the_last_of_many_events(fresh, folder):
+    slider = control("identifier_based gain")
+    fresh.evaluate(
+        """async (selector) => {
+            const slider = document.querySelector(selector);
+            for (let k = 0; k < 40; k++) {
+                slider.value = String(5 + k / 2);
+                slider.dispatchEvent(new Event("input", { bubbles: true }));
+                await new Promise((resolve) => setTimeout(resolve, 25));
+            }
+        }""",
+        slider,
+    )
+    rested(fresh)
+    last = fresh.evaluate("(selector) => Number(document.querySelector(selector).value)", slider)
+    shown = state(fresh)
+    assert shown["settings"]["gains"]["identifier_based"]["gain"] == last
+    assert_equals_python(shown)
+    assert python_state(folder) == shown["settings"]
+
+
+def test_a_preset_asks_shows_and_leads_back(fresh):
+    fresh.fill(control("seed number"), "7")
+    rested(fresh)
+    before = state(fresh)
+    fresh.click(control("preset bias"))
+    assert "Does it?" in fresh.inner_text(".question")
+    assert state(fresh)["settings"] == before["settings"]
+    fresh.click(control("act bias 0"))
+    rested(fresh)
+    assert "driven to the bound" in state(fresh)["verdicts"][0]
+    fresh.click(control("act bias 1"))
+    rested(fresh)
+    assert state(fresh)["verdicts"][0].startswith("identifier-based: converged")
+    fresh.click(control("way back"))
+    rested(fresh)
+    assert state(fresh)["settings"] == before["settings"]
+
+
+def test_a_kept_run_stays_to_compare_with(fresh):
+    fresh.click(control("keep"))
+    fresh.fill(control("identifier_based gain number"), "3")
+    rested(fresh)
+    shown = state(fresh)
+    kept = next(line for line in shown["drawn"]["error"] if line["name"].startswith("kept"))
+    fresh.click(control("keep"))
+    fresh.fill(control("identifier_based gain number"), "10")
+    rested(fresh)
+    assert kept["values"] == state(fresh)["drawn"]["error"][0]["values"]
+
+
+def test_a_slider_lights_up_its_letter(fresh):
+    fresh.evaluate("document.querySelector('.equations').open = true")
+    fresh.focus(control("identifier_based gain"))
+    lit = fresh.locator(".formulas .lit")
+    assert set(lit.all_text_contents()) == {"G", "10"}
+
+
+def test_keys_stay_in_the_lab(fresh):
+    fresh.focus(FOE)
+    cells = fresh.locator(".jp-Cell").count()
+    for key in ("a", "b", "d", "d", "x", "m", "Enter", "Escape"):
+        fresh.keyboard.press(key)
+    assert fresh.locator(".jp-Cell").count() == cells
+    assert fresh.locator(".jp-MarkdownCell").count() == 0
+
+
+def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder, server):
+    page = browser_page
+    cells = [
+        OPEN.format(arguments=""),
+        "lab.settings = {**lab.settings, 'outputs': ['y2'], 'observers': ['extended_kalman']}",
+        "type(lab).analyse = lambda self, summary: 1 / 0",
+    ]
+    write_notebook(folder, "set.ipynb", *cells)
+    open_notebook(page, "set.ipynb")
+    run_all(page)
+    page.wait_for_function("[...window.perceptObsLabs][0].settings.outputs[0] === 'y2'")
+    page.fill(control("seed number"), "3")
+    page.wait_for_selector(".percept-obs-error:not([hidden])")
+    assert "ZeroDivisionError" in page.inner_text(".percept-obs-error:not([hidden])")
+    shown = state(page)
+    assert shown["settings"]["seed"] == 3
+    assert_equals_python(shown)
+
+
+def test_two_labs_live_side_by_side_and_a_cell_replaces_its_own(browser_page, folder):
+    page = browser_page
+    second = "other = observer_lab(outputs=['y1'])\nother"
+    write_notebook(folder, "two.ipynb", OPEN.format(arguments=""), second, "print('open:', other.comm is not None)")
+    open_notebook(page, "two.ipynb")
+    run_all(page)
+    rested(page)
+    first, other = state(page, 0), state(page, 1)
+    page.locator(control("seed number")).nth(1).fill("9")
+    rested(page)
+    assert state(page, 0) == first
+    assert state(page, 1)["settings"] == {**other["settings"], "seed": 9}
+    run_all(page)
+    page.wait_for_function("document.querySelectorAll('.percept-lab').length === 2")
+    page.wait_for_function("window.perceptObsLabs.size === 2")
+    rested(page)
+    assert state(page, 1)["settings"] == other["settings"]
+
+
+def test_the_lab_outlives_its_kernel_and_says_so(browser_page, folder, server):
+    page = browser_page
+    open_lab(page, folder, "dead.ipynb")
+    for session in page.request.get("/api/sessions").json():
+        if session["path"] == "dead.ipynb":
+            cookie = {c["name"]: c["value"] for c in page.context.cookies()}
+            headers = {"X-XSRFToken": cookie.get("_xsrf", ""), "Referer": server.url}
+            page.request.delete(f"/api/kernels/{session['kernel']['id']}", headers=headers)
+    page.fill(control("identifier_based gain number"), "4")
+    page.wait_for_selector(".silence:not([hidden])")
+    assert "Python does not answer" in page.inner_text(".silence")
+    page.check(control("outputs y1"))
+    page.wait_for_function("() => { const [l] = window.perceptObsLabs; return l.shown.settings.outputs.length === 1; }")
+    assert_equals_python(state(page))
+
+
+def test_a_restarted_kernel_leaves_the_lab_alive_and_opens_a_new_one(browser_page, folder):
+    page = browser_page
+    open_lab(page, folder, "again.ipynb")
+    page.click(".lm-MenuBar-item:has-text('Kernel')")
+    page.click(".lm-Menu-item[data-command='kernelmenu:restart']")
+    page.click(".jp-Dialog-button.jp-mod-accept")
+    page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]")
+    page.fill(control("identifier_based gain number"), "4")
+    page.wait_for_function("[...window.perceptObsLabs][0].shown.settings.gains.identifier_based.gain === 4")
+    assert_equals_python(state(page))
+    run_all(page)
+    page.wait_for_function("window.perceptObsLabs.size === 1")
+    rested(page)
+    assert state(page)["settings"]["gains"]["identifier_based"]["gain"] == 10
+
+
+def test_the_kernel_may_be_busy_while_the_lab_is_moved(browser_page, folder):
+    page = browser_page
+    write_notebook(folder, "busy.ipynb", OPEN.format(arguments=""), "import time; time.sleep(2)")
+    open_notebook(page, "busy.ipynb")
+    page.click(".lm-MenuBar-item:has-text('Run')")
+    page.click(".lm-Menu-item[data-command='runmenu:run-all']")
+    page.wait_for_function("window.perceptObsLabs?.size && [...window.perceptObsLabs][0].shown")
+    for seed in range(1, 6):
+        page.fill(control("seed number"), str(seed))
+        page.wait_for_function(f"[...window.perceptObsLabs][0].shown.settings.seed === {seed}")
+    rested(page)
+    assert python_state(folder)["seed"] == 5
+    assert not log_entries(page)

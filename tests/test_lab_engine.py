@@ -1,0 +1,118 @@
+"""The page and Python compute the same run from the same settings."""
+
+import numpy as np
+import pytest
+from lab_settings import ALL, NOISY, SMOOTH_CASES, as_array, run_in_node
+from utias_folder import utias_folder
+
+from percept_obs.datasets import load_utias
+from percept_obs.labs.observer_lab import observer_lab
+from percept_obs.observability import windowed
+
+pytestmark = pytest.mark.node
+
+
+@pytest.fixture(scope="module")
+def lab():
+    return observer_lab()
+
+
+@pytest.fixture(scope="module")
+def answers(lab, node):
+    """What the page's engine says of each smooth case, with the settings as Python completed them."""
+    settings = {name: observer_lab(**case).settings for name, case in SMOOTH_CASES.items()}
+    found = run_in_node(node, lab.model, list(settings.values()))
+    return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
+
+
+@pytest.mark.parametrize("case", SMOOTH_CASES)
+def test_smooth_observers_agree_to_1e_9(lab, answers, case):
+    settings, answer = answers[case]
+    lab.settings = settings
+    assert answer["problem"] is None
+    for name, run in lab.run().items():
+        assert_same_recording(answer, run.recording)
+        assert_same_run(answer["runs"][name], run, 1e-9)
+        assert answer["summary"]["verdicts"][name] == run.verdict()
+
+
+def test_the_sliding_mode_observer_agrees_over_the_first_second_and_in_its_verdict(lab, node):
+    for outputs in (["y1", "y2"], ["y1"]):
+        lab.settings = observer_lab(observers=["sliding_mode"], noise=NOISY, seed=2, outputs=outputs).settings
+        (answer,) = run_in_node(node, lab.model, [lab.settings])
+        run = lab.run()["sliding_mode"]
+        early = run.time <= 1
+        estimate = as_array(answer["runs"]["sliding_mode"]["estimate"], 3)
+        np.testing.assert_allclose(estimate[early], run.estimate[early], rtol=0, atol=1e-6)
+        assert answer["summary"]["verdicts"]["sliding_mode"].split(":")[0] == run.verdict().split(":")[0]
+
+
+def test_the_bound_and_divergence_are_told_alike(lab, node):
+    biased = {"outputs": ["y1"], "noise": NOISY, "start": {"mode": "zero", "values": [0.0] * 3}}
+    wild = {"gains": {"identifier_based": {"lyapunov": 5, "bound": 1e200}}}
+    tasks = [observer_lab(**biased).settings, observer_lab(**wild).settings]
+    for settings, answer in zip(tasks, run_in_node(node, lab.model, tasks), strict=True):
+        lab.settings = settings
+        run = lab.run()["identifier_based"]
+        assert answer["summary"]["verdicts"]["identifier_based"] == run.verdict()
+        np.testing.assert_allclose(answer["runs"]["identifier_based"]["resets"], run.resets, rtol=0, atol=1e-9)
+        assert answer["runs"]["identifier_based"]["divergedAt"] == run.diverged_at
+        assert run.diverged_at is not None or len(run.resets)
+
+
+@pytest.mark.parametrize("outputs", [["y1", "y2"], ["y1"], ["y2"]])
+def test_a_real_track_is_followed_alike(node, outputs):
+    recording = load_utias(utias_folder())[5]
+    lab = observer_lab(recording, outputs=outputs, observers=["identifier_based", "extended_kalman"])
+    (answer,) = run_in_node(node, lab.model, [lab.settings])
+    for name, run in lab.run().items():
+        assert_same_recording(answer, recording)
+        assert_same_run(answer["runs"][name], run, 1e-9)
+        assert answer["summary"]["verdicts"][name] == run.verdict()
+    excitation = windowed(run.observer.form, run.recording, lab.settings["window"])
+    np.testing.assert_allclose(answer["excitation"], excitation.smallest, rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize("case", ["opening", "y1 alone", "y2 alone", "plane", "few samples", "the point leaves"])
+def test_excitation_agrees(lab, answers, case):
+    settings, answer = answers[case]
+    lab.settings = settings
+    run = next(iter(lab.run().values()))
+    window = min(settings["window"], float(np.ptp(run.time)))
+    expected = windowed(run.observer.form, run.recording, window).smallest
+    np.testing.assert_allclose(answer["excitation"], expected, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("case", ["opening", "noise and losses", "chosen start", "gains", "plane", "the point leaves"])
+def test_the_copied_code_makes_the_same_run(lab, answers, case):
+    settings, answer = answers[case]
+    lab.settings = settings
+    namespace = {}
+    exec(answer["code"], namespace)
+    for name, run in lab.run().items():
+        copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+        np.testing.assert_allclose(copied.estimate, run.estimate, rtol=0, atol=1e-12)
+
+
+def test_a_point_behind_the_camera_is_told(lab, node):
+    (answer,) = run_in_node(node, lab.model, [{**lab.settings, "X0": [0.0, 0.0, -1.0]}])
+    assert "behind the camera" in answer["problem"]
+
+
+def test_all_observers_at_once_leave_no_number_out(lab, node):
+    (answer,) = run_in_node(node, lab.model, [observer_lab(observers=ALL, noise=NOISY).settings])
+    assert all(None not in run["estimate"] for run in answer["runs"].values())
+    assert None not in answer["runs"]["extended_kalman"]["deviation"]
+
+
+def assert_same_recording(answer, recording):
+    np.testing.assert_allclose(answer["time"], recording.time, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(as_array(answer["truth"], 3), recording.truth, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(as_array(answer["outputs"], 2), recording.outputs, rtol=0, atol=1e-10)
+
+
+def assert_same_run(told, run, tolerance):
+    np.testing.assert_allclose(as_array(told["estimate"], 3), run.estimate, rtol=0, atol=tolerance)
+    if run.observer.covariance is not None:
+        variances = np.diagonal(run.covariance, axis1=1, axis2=2)
+        np.testing.assert_allclose(as_array(told["deviation"], 3) ** 2, variances, rtol=0, atol=tolerance)

@@ -1,0 +1,210 @@
+"""The observer lab survives any order of events, keeps its memory, and is open to keyboards and screen readers."""
+
+from pathlib import Path
+
+import pytest
+from jupyter_harness import jupyterlab, lab_page, log_entries
+from lab_browser import assert_equals_python, control, open_lab, python_state, rested, state
+from lab_settings import FRONT
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
+EVENTS = 5000
+WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
+COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.observers]; }"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("notebooks")
+
+
+@pytest.fixture(scope="module")
+def lab(chromium, folder, tmp_path_factory):
+    """A page with one lab that the tests of this module share."""
+    homes = [tmp_path_factory.mktemp(name) for name in ("server", "browser")]
+    with jupyterlab(folder, homes[0]) as server, lab_page(chromium, server, homes[1]) as page:
+        page.set_default_timeout(15_000)
+        open_lab(page, folder)
+        yield page
+
+
+@pytest.fixture
+def fresh(lab):
+    lab.click(control("reset"))
+    rested(lab)
+    return lab
+
+
+def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
+    opening = state(fresh)
+    for seed in range(5):
+        found = fresh.evaluate(FUZZ, [seed, EVENTS // 5])
+        assert found["wrong"] == []
+    rested(fresh, 60)
+    shown = state(fresh)
+    assert python_state(folder) == shown["settings"]
+    assert all(len(estimate) % 3 == 0 for estimate in shown["runs"].values())
+    fresh.click(control("reset"))
+    rested(fresh, 60)
+    assert state(fresh) == opening
+    assert_equals_python(state(fresh))
+    assert not log_entries(fresh)
+
+
+def test_a_thousand_moves_do_not_fill_the_memory(fresh):
+    session = fresh.context.new_cdp_session(fresh)
+
+    def used():
+        session.send("HeapProfiler.collectGarbage")
+        usage = session.send("Runtime.getHeapUsage")
+        return (usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6
+
+    move = """async (count) => {
+        const [lab] = window.perceptObsLabs;
+        for (let k = 0; k < count; k++) {
+            lab.moveFoe([1.6 + 0.1 * Math.sin(k / 9), 0.8]);
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+        }
+    }"""
+    fresh.evaluate(move, 100)
+    rested(fresh)
+    before = used()
+    fresh.evaluate(move, 1000)
+    rested(fresh)
+    assert used() - before < 10
+
+
+def test_axe_finds_nothing_serious(fresh, folder):
+    axe = FRONT / "node_modules/axe-core/axe.min.js"
+    if not axe.exists():
+        pytest.skip(f"axe-core is missing: run npm ci in {FRONT}")
+    fresh.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
+    fresh.click(control("preset drop"))
+    fresh.evaluate(axe.read_text())
+    for width in ("", "400px"):
+        fresh.evaluate(WIDTH, width)
+        found = fresh.evaluate("axe.run('.percept-lab')")
+        serious = [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
+        assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious] == []
+        assert len(found["passes"]) > 10
+    fresh.evaluate(WIDTH, "")
+
+
+def test_every_control_is_reached_and_moved_by_keyboard(fresh):
+    fresh.check(control("believed"))
+    fresh.select_option(control("start"), "chosen")
+    fresh.check(control("observer sliding_mode"))
+    fresh.check(control("observer extended_kalman"))
+    rested(fresh)
+    wanted = set(
+        fresh.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
+            .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
+            .map((c) => c.dataset.control)""")
+    )
+    reached = []
+    fresh.focus(control("preset foe"))
+    for _ in range(2 * len(wanted)):
+        name = fresh.evaluate("document.activeElement.dataset.control ?? ''")
+        if not name and reached:
+            inside = fresh.evaluate("Boolean(document.activeElement.closest('.percept-lab'))")
+            if not inside:
+                break
+        reached.append(name)
+        fresh.keyboard.press("Tab")
+    assert wanted - set(reached) == set()
+    there_and_back = {
+        "range": ("ArrowRight", "ArrowLeft"),
+        "number": ("ArrowUp", "ArrowDown"),
+        "checkbox": ("Space", "Space"),
+        "select-one": ("ArrowDown", "ArrowUp"),
+        "radio": ("ArrowDown", "ArrowUp"),
+    }
+    for name in reached:
+        kind = fresh.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
+        if kind not in there_and_back:
+            continue
+        before = value_of(fresh, name)
+        fresh.focus(control(name))
+        moved = False
+        for key in (*there_and_back[kind], *reversed(there_and_back[kind])):
+            fresh.keyboard.press(key)
+            moved = moved or value_of(fresh, name) != before
+        if kind == "select-one":
+            fresh.select_option(control(name), before[0])
+        assert moved, name
+    rested(fresh)
+
+
+def value_of(page, name):
+    """What a control says."""
+    return page.evaluate("(s) => { const c = document.querySelector(s); return [c.value, c.checked]; }", control(name))
+
+
+def test_each_picture_says_in_words_what_it_shows(fresh):
+    for name in ("outputs", "inverse"):
+        fresh.check(control(f"picture {name}"))
+    rested(fresh)
+    labels = state(fresh)["labels"]
+    expected = {
+        "Image plane": ("the point goes from y1 0.4, y2 0.6", "estimate ends at", "focus of expansion at y1 1.67"),
+        "Image coordinates": ("true y1: from 0.4",),
+        "Inverse distance": ("true y3: from 0.4",),
+        "Distance": ("true distance: from 2.5",),
+        "Error": ("identifier-based error",),
+        "Excitation": ("smallest eigenvalue", "excitation: from"),
+    }
+    assert len(labels) == len(expected)
+    for start, parts in expected.items():
+        (label,) = [text for text in labels if text.startswith(start)]
+        assert all(part in label for part in parts), label
+
+
+def test_lines_are_told_apart_without_colour(fresh):
+    for name in ("sliding_mode", "extended_kalman"):
+        fresh.check(control(f"observer {name}"))
+    fresh.click(control("keep"))
+    rested(fresh)
+    dashes = fresh.evaluate("""() => [...window.perceptObsLabs][0].drawn.distance.lines
+        .filter((line) => !line.name.startsWith("kept")).map((line) => line.dash.join(" "))""")
+    assert len(dashes) == len(set(dashes)) == 4
+
+
+@pytest.mark.parametrize("width", [400, 640, 1000])
+def test_the_lab_fits_its_cell(fresh, width):
+    fresh.evaluate(WIDTH, f"{width}px")
+    fresh.wait_for_timeout(200)
+    assert (
+        fresh.evaluate("""() => {
+        const lab = document.querySelector('.percept-lab');
+        return [...lab.querySelectorAll('canvas, fieldset, .bar, .control')].filter(
+            (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
+    }""")
+        == 0
+    )
+    fresh.evaluate(WIDTH, "")
+
+
+def test_a_kernel_text_that_fails_to_load_is_told(fresh):
+    fresh.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        const observer = lab.model.surfaces.pinhole.structures.y2.observers.sliding_mode;
+        observer.run = "function run( {";
+        for (const kept of [lab.kernels.groups, lab.kernels.waiting]) kept.delete("pinhole y2 sliding_mode");
+        lab.change({ outputs: ["y2"], observers: ["sliding_mode"] }, true);
+    }""")
+    fresh.wait_for_selector(".problem:not([hidden])")
+    assert "could not be loaded" in fresh.inner_text(".problem:not([hidden])")
+    fresh.click(control("reset"))
+    rested(fresh)
+    assert state(fresh)["problems"] == []
+
+
+def test_dark_and_light_have_their_own_colours(fresh):
+    light = fresh.evaluate(COLOURS)
+    fresh.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    fresh.wait_for_timeout(200)
+    dark = fresh.evaluate(COLOURS)
+    fresh.evaluate("document.body.dataset.jpThemeLight = 'true'")
+    assert light[1] != dark[1]

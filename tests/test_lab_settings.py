@@ -1,0 +1,160 @@
+"""The observer lab's settings define its runs, are completed, and are refused with a reason when they make no sense."""
+
+import json
+
+import numpy as np
+import pytest
+from utias_folder import utias_folder
+
+from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
+from percept_obs.datasets import load_utias
+from percept_obs.labs.base import BY_NAME, OUTPUTS, SURFACES
+from percept_obs.labs.observer_lab import PICTURES, observer_lab
+from percept_obs.perspective import PerspectiveSystem
+from percept_obs.surfaces import BehindCamera, pinhole
+
+NOISY = {"kind": "uniform", "size": 0.01}
+
+
+@pytest.fixture(scope="module")
+def lab():
+    return observer_lab()
+
+
+def test_a_run_is_what_record_and_track_give(lab):
+    lab.settings = {**lab.settings, "noise": NOISY, "seed": 3, "outputs": ["y1"], "period": 0.02}
+    recording = record(scenarios.ma2005_eq35(), camera=Camera(0.02, Uniform(0.01)), seed=3)
+    expected = track(recording, ibo(PerspectiveSystem(affine(), pinhole()).measure("y1")))
+    np.testing.assert_allclose(lab.run()["identifier_based"].estimate, expected.estimate, rtol=0, atol=1e-12)
+
+
+def test_settings_survive_json_and_come_back_complete(lab):
+    there = json.loads(json.dumps(lab.settings, allow_nan=False))
+    lab.settings = {key: there[key] for key in ("seed", "outputs")}
+    assert set(lab.settings) == set(there)
+    lab.settings = there
+    assert lab.settings == there
+
+
+def test_the_model_is_complete_and_is_json(lab):
+    model = json.loads(json.dumps(lab.model, allow_nan=False))
+    assert set(model["surfaces"]) == set(SURFACES)
+    for surface in model["surfaces"].values():
+        assert set(surface["structures"]) == {"+".join(outputs) for outputs in OUTPUTS}
+        for structure in surface["structures"].values():
+            assert set(structure["observers"]) == set(BY_NAME)
+    assert model["opening"] == observer_lab().settings
+    assert model["pictures"] == list(PICTURES)
+
+
+def test_every_gain_is_linked_to_a_letter_of_the_equations(lab):
+    for name, observer in lab.model["observers"].items():
+        text = "".join(observer["formulas"])
+        for gain in observer["gains"]:
+            only_at_the_start = gain["name"] in ("switching_gain", "measured_variance", "hidden_variance")
+            assert (f'data-letter="{gain["name"]}"' in text) != only_at_the_start, (name, gain["name"])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"colour": "red"}, "there is no setting colour"),
+        ({"scenario": "nowhere"}, "scenario is 'nowhere'; it must be one of ma2005_eq35"),
+        ({"surface": "sphere"}, "it must be one of pinhole, chained, plane"),
+        ({"outputs": ["y3"]}, "it must be one of"),
+        ({"outputs": []}, "it must be one of"),
+        ({"observers": []}, "name at least one of identifier_based"),
+        ({"observers": ["identifier_based"] * 2}, "each once"),
+        ({"pictures": ["film"]}, "name at least one of outputs"),
+        ({"gains": {"luck": {}}}, "there is no observer luck"),
+        ({"gains": {"identifier_based": {"gain": -1.0}}}, "G > 0 is needed"),
+        ({"gains": {"identifier_based": {"strength": 1.0}}}, "has no gain strength"),
+        ({"A": [1, 2, 3]}, "numbers between"),
+        ({"b": ["one", 2, 3]}, "numbers between"),
+        ({"X0": [0.0, float("nan"), 1.0]}, "numbers between"),
+        ({"normal": [0.0, 1.0, 0.0]}, "third entry is 0"),
+        ({"noise": {"kind": "pink", "size": 0.1}}, "it must be one of uniform, gaussian"),
+        ({"noise": {"kind": "uniform", "size": -1}}, "it must be a number from 0 to 1"),
+        ({"hold": "second"}, "it must be one of zero, first, exact"),
+        ({"start": {"mode": "guess", "values": [0, 0, 0]}}, "it must be one of own, zero, chosen"),
+        ({"period": 0}, "it must be a number from 0.001 to 1"),
+        ({"seed": 1.5}, "whole number"),
+        ({"seed": True}, "whole number"),
+        ({"kept": {"seed": -1}}, "whole number"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
+    before = lab.settings
+    with pytest.raises(ValueError, match=reason):
+        lab.settings = {**before, **wrong}
+    assert lab.settings == before
+
+
+def test_a_point_that_leaves_is_followed_until_then(lab):
+    lab.settings = {**observer_lab().settings, "b": [0.5, 0.25, -0.9]}
+    run = lab.run()["identifier_based"]
+    assert 0.1 < run.time[-1] < 80
+    assert (run.truth[:, 2] > 0).all()
+    beyond = Scenario("beyond", affine(lab.settings["A"], lab.settings["b"]), (1, 1.5, 2.5), 80, pinhole())
+    with pytest.raises(BehindCamera):
+        record(beyond, duration=run.time[-1] + 0.01)
+
+
+def test_an_own_scenario_and_a_recording_open_the_lab():
+    motion = affine(np.zeros((3, 3)), [0.1, 0.0, 0.2])
+    own = Scenario("straight on", motion, (1, 1, 5), 10, pinhole())
+    lab = observer_lab(own)
+    assert lab.settings["b"] == [0.1, 0.0, 0.2]
+    assert lab.settings["duration"] == 10
+    recording = record(own, camera=Camera(0.05), seed=1)
+    alone = Recording(recording.time, recording.outputs[:, :1], ("y1",), pinhole(), motion, source="one row")
+    lab = observer_lab(alone)
+    assert lab.settings["outputs"] == ["y1"]
+    assert "no truth" in lab.run()["identifier_based"].verdict()
+    with pytest.raises(ValueError, match="it must be one of"):
+        observer_lab(alone, outputs=["y2"])
+    with pytest.raises(ValueError, match="first"):
+        observer_lab(alone, hold="exact")
+
+
+def test_a_motion_that_varies_needs_a_recording():
+    varying = affine(lambda t: np.zeros((3, 3)), lambda t: [np.sin(t), 0, 0])
+    with pytest.raises(ValueError, match="varies over time"):
+        observer_lab(Scenario("swing", varying, (0, 0, 5), 10, pinhole()))
+
+
+def test_a_real_track_gives_the_run_of_its_rigid_motion():
+    recording = load_utias(utias_folder())[2]
+    run = observer_lab(recording).run()["identifier_based"]
+    system = PerspectiveSystem(recording.motion, recording.surface)
+    bare = PerspectiveSystem(type(recording.motion)("rigid", *_rigid(recording.motion)), recording.surface)
+    assert system.coordinates == bare.coordinates
+    expected = track(recording, ibo(bare.measure("y1", "y2")))
+    np.testing.assert_allclose(run.estimate, expected.estimate, rtol=0, atol=1e-9)
+
+
+def _rigid(motion):
+    return motion.A, motion.b, motion.parameters
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({}, "persistently excited"),
+        ({"scenario": "ma2005_eq36", "outputs": ["y1"]}, "not excited"),
+        ({"observers": ["extended_kalman"]}, "claims to know the inverse distance"),
+        ({"outputs": ["y1"], "noise": NOISY}, "noise pushes the estimate of y2"),
+        ({}, "a small error shrinks to"),
+    ],
+)
+def test_the_analysis_says_what_python_found(settings, words):
+    opening = {"A": scenario_motion(settings), **settings} if "scenario" in settings else settings
+    lab = observer_lab(settings.get("scenario", "ma2005_eq35"), **{k: v for k, v in opening.items() if k != "scenario"})
+    lab.summary = {"serial": 7}
+    assert lab.analysis["of"] == 7
+    assert any(words in sentence for sentence in lab.analysis["sentences"])
+    assert lab.analysis["verdicts"] == {name: run.verdict() for name, run in lab.run().items()}
+
+
+def scenario_motion(settings):
+    return np.array(scenarios.ma2005_eq36().motion.signal.samples[0][:9]).reshape(3, 3).tolist()
