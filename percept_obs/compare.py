@@ -131,6 +131,20 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
+def described(found: pd.DataFrame) -> str:
+    """Print a summary as text: counts, and medians with their quantiles."""
+    lines = {}
+    for label, row in found.iterrows():
+        line = {name: f"{row[name]:.0f}" for name in ("runs", "failed", "reset", "diverged")}
+        for name in ("settling_time", "final", "rms", "worst"):
+            line[name] = f"{row[name]:.2g} ({row[name + '_low']:.2g} to {row[name + '_high']:.2g})"
+        line["cost"] = f"{1e6 * row['cost']:.0f} us/s"
+        lines[label] = line
+    import pandas as pd
+
+    return str(pd.DataFrame.from_dict(lines, orient="index").to_string())
+
+
 def _known(value: float) -> float:
     """An error, infinite where a diverged run has none."""
     return float(value) if math.isfinite(value) else math.inf
