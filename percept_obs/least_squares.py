@@ -46,7 +46,8 @@ class WindowEstimate:
     @property
     def determined(self) -> NDArray[np.bool_]:
         """Where the window determines a point in front of the camera, shape (K,)."""
-        return np.isfinite(self.points).all(axis=1)
+        found: NDArray[np.bool_] = np.all(np.isfinite(self.points), axis=1)
+        return found
 
     @cached_property
     def estimate(self) -> Array:
