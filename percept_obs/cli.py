@@ -1,10 +1,10 @@
-"""The command line: `percept-obs lab` opens the notebooks, `percept-obs check` judges the equations."""
+"""The command line: `lab` opens the notebooks, `check` judges the equations, `compare` runs all observers."""
 
 import argparse
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources, util
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -71,6 +71,33 @@ def check(options: argparse.Namespace) -> int:
     return 0 if all_hold() else 1
 
 
+def compare(options: argparse.Namespace) -> int:
+    """Run every observer on the same noisy recordings of Ma's examples, from a start of zero, and print a table."""
+    from percept_obs import Camera, PerspectiveSystem, Uniform, affine, pinhole, record, scenarios
+    from percept_obs.compare import compare, described, summary
+    from percept_obs.observers import OBSERVERS, NeedsMoreOutputs
+
+    scenario = {"35": scenarios.ma2005_eq35, "36": scenarios.ma2005_eq36}[options.example]()
+    form = PerspectiveSystem(affine(), pinhole()).measure(*options.outputs.split("+"))
+    observers, refused = [], []
+    for make in OBSERVERS:
+        try:
+            observers.append(make(form))
+        except NeedsMoreOutputs as error:
+            refused.append(str(error))
+    camera = Camera(noise=Uniform(options.noise))
+    recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
+    table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
+    print(
+        f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
+        f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
+        "medians with the 16 % and 84 % quantiles"
+    )
+    print(described(table))
+    print("\n".join(refused))
+    return 0
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code: 0 well, 1 failed, 2 asked for wrongly."""
     parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
@@ -92,8 +119,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     check_parser = commands.add_parser("check", help="judge the papers' equations", description=check.__doc__)
     check_parser.set_defaults(run=check)
 
+    compare_parser = commands.add_parser("compare", help="run all observers", description=compare.__doc__)
+    compare_parser.add_argument("--example", choices=("35", "36"), default="35", help="(35) or (36)")
+    compare_parser.add_argument("--outputs", choices=("y1", "y2", "y1+y2"), default="y1", help="what is measured")
+    compare_parser.add_argument("--seeds", type=_positive(int), default=50, help="number of recordings")
+    compare_parser.add_argument("--noise", type=_positive(float), default=0.01, help="bound of the noise")
+    compare_parser.add_argument("--duration", type=_positive(float), default=80.0, help="seconds")
+    compare_parser.set_defaults(run=compare)
+
     options = parser.parse_args(arguments)
     return options.run(options)
+
+
+def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:
+    def read(text: str) -> int | float:
+        value = number(text)
+        if not 0 < value < float("inf"):
+            raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+        return value
+
+    return read
 
 
 def _complain(message: str, code: int) -> int:

@@ -24,3 +24,12 @@ def ma2005_eq36(surface: ImagingSurface | None = None) -> Scenario:
 def _ma2005(number: str, third_row: list[float], surface: ImagingSurface | None) -> Scenario:
     motion = affine([*_FIRST_ROWS, third_row], _TRANSLATION)
     return Scenario(f"Ma 2005 ({number})", motion, _START, 80.0, surface or pinhole(), f"Ma et al. 2005, ({number})")
+
+
+def planar() -> Scenario:
+    """A point that circles on a plane through the camera, seen on the line y2 = 0.5 (Ma 2005, Fig. 2, p. 65).
+
+    The paper gives no numbers: here the point keeps Y = Z / 2 and circles around (1, 2, 4) in 15.7 s.
+    """
+    motion = affine([[0.0, 0.4, -0.6], [0.2, -0.2, 0.1], [0.4, -0.4, 0.2]], [1.6, -0.2, -0.4])
+    return Scenario("planar motion", motion, (1.0, 1.25, 2.5), 40.0, pinhole(), "after Ma et al. 2005, Fig. 2")

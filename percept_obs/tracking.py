@@ -242,23 +242,26 @@ def track(
     _refuse_misfits(recording, observer, believed, hold, step)
     columns = [recording.names.index(name) for name in form.measured]
     samples = recording.outputs[:, columns]
-    initial = observer.initial_state(
-        dict(zip(form.measured, samples[0].tolist(), strict=True)), _named(start, form.coordinates)
-    )
     grid, index = step_grid(recording.time, step)
+    known = _known(recording, believed, grid)
+    initial = observer.initial_state(
+        dict(zip(form.measured, samples[0].tolist(), strict=True)),
+        _named(start, form.coordinates),
+        dict(zip(form.parameters, known[0].tolist(), strict=True)),
+    )
     table = Table(
-        np.diff(grid),
-        _held(recording, columns, grid, index, hold),
-        _known(recording, believed, grid),
-        _arriving(samples, index, len(grid)),
+        np.diff(grid), _held(recording, columns, grid, index, hold), known, _arriving(samples, index, len(grid))
     )
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
-    estimate = vectorised((*observer.equations.state, *form.x1), observer.estimate)
+    at_samples = known if len(known) == 1 else known[2 * index]
+    estimate = vectorised(
+        (*observer.equations.state, *form.x1, *form.parameters), observer.estimate, observer.gain_values
+    )
     return Run(
         recording,
         observer,
-        np.stack(estimate(*states.T, *(_last_sample(column) for column in samples.T)), axis=-1),
+        np.stack(estimate(*states.T, *(_last_sample(column) for column in samples.T), *at_samples.T), axis=-1),
         states,
         grid[trace.resets],
         None if trace.diverged is None else float(grid[trace.diverged]),

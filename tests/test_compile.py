@@ -2,6 +2,7 @@
 
 import builtins
 import time
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,14 +13,23 @@ from scipy.integrate import solve_ivp
 
 import percept_obs.compile as compiling
 import percept_obs.tracking as tracking
-from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
+from percept_obs import Camera, Uniform, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, solve, source
 from percept_obs.equations import Equations
+from percept_obs.observers import OBSERVERS, linear_approximation, range_identification
 
 x, y, u, k, c = sp.symbols("x y u k c", real=True)
-SMOOTH = {"identifier-based": ibo, "extended Kalman": ekf}
-EVERY = {**SMOOTH, "sliding mode": smo}
 FORMS = {"y1": ONE, "y1+y2": BOTH}
+# a short cascade has all that a long one has, and compiles sooner
+EVERY = {make.__name__: make for make in OBSERVERS} | {
+    "linear_approximation": partial(linear_approximation, iterates=2)
+}
+PAIRS = [
+    pytest.param(make, form, id=f"{name}-{outputs}")
+    for name, make in EVERY.items()
+    for outputs, form in FORMS.items()
+    if make is not range_identification or form is BOTH
+]
 
 
 def table_of(monkeypatch, recording, observer, **settings):
@@ -48,8 +58,7 @@ def both_languages(equations, start, table, gains=()):
     return [solve(equations, start, table, gains, language) for language in ("python", "numba")]
 
 
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
-@pytest.mark.parametrize("observer", EVERY.values(), ids=EVERY)
+@pytest.mark.parametrize(("observer", "form"), PAIRS)
 def test_python_and_numba_agree(observer, form):
     recording = record(scenarios.ma2005_eq35(), 20, NOISY, seed=3)
     python, compiled = (track(recording, observer(form), ZERO, language=lang) for lang in ("python", "numba"))
@@ -58,8 +67,7 @@ def test_python_and_numba_agree(observer, form):
 
 
 @pytest.mark.node
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
-@pytest.mark.parametrize("observer", SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.parametrize(("observer", "form"), [p for p in PAIRS if p.values[0] is not smo])
 def test_javascript_agrees(monkeypatch, node, observer, form):
     handed = table_of(monkeypatch, record(scenarios.ma2005_eq35(), 30, NOISY, seed=3), observer(form), start=ZERO)
     here, there = solve(**handed, language="python"), solve_in_node(node, **handed)

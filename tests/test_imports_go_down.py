@@ -18,7 +18,7 @@ LAYERS = (
     ("figures", "exercises"),
     ("papers",),
     ("compare",),
-    ("observability", "tracking"),
+    ("least_squares", "observability", "tracking"),
     ("scenarios", "datasets"),
     ("recording",),
     ("observers", "perspective"),

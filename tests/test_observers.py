@@ -1,19 +1,41 @@
 """Laws that every observer keeps, on every form: a truthful start stays true, and derivatives are right."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import sympy as sp
-from examples import AFFINE, BOTH, MOTIONS, ONE, OTHER, SURFACES, ZERO
+from examples import AFFINE, BOTH, MOTIONS, NOISY, ONE, OTHER, SURFACES, ZERO
 from scipy.integrate import solve_ivp
 
 from percept_obs import Camera, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
 from percept_obs.compile import vectorised
-from percept_obs.observers import OBSERVERS, noise_bias
+from percept_obs.observers import (
+    OBSERVERS,
+    NeedsMoreOutputs,
+    NotIntegrable,
+    de_luca,
+    immersion_and_invariance,
+    linear_approximation,
+    noise_bias,
+    range_identification,
+    spica,
+)
 from percept_obs.observers.base import Gain, hats, sigma2
 
+COPIES = [make for make in OBSERVERS if make not in (range_identification, linear_approximation)]
+"""Observers that copy the system; Dixon's learns w x2 instead, and the first filter of the cascade errs."""
+
 FORMS = {"y1": ONE, "y2": OTHER, "y1+y2": BOTH}
-NAMES = [make.__name__ for make in OBSERVERS]
-SMOOTH = {"identifier-based": ibo, "extended Kalman": ekf}
+PAIRS = [
+    pytest.param(make, form, id=f"{make.__name__}-{name}")
+    for make in OBSERVERS
+    for name, form in FORMS.items()
+    if make is not range_identification or form is BOTH
+]
+each = pytest.mark.parametrize(("make", "form"), PAIRS)
+each_smooth = pytest.mark.parametrize(("make", "form"), [p for p in PAIRS if p.values[0] is not smo])
 
 
 def outputs_of(name):
@@ -26,38 +48,55 @@ def draw(symbols, seed):
     return {s: sp.Float(generator.uniform(0.2, 1.0), 17) for s in symbols}
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=NAMES)
+@pytest.mark.parametrize("make", COPIES, ids=lambda make: make.__name__)
 @pytest.mark.parametrize("surface", SURFACES)
 def test_a_truthful_start_stays_true(make, surface):
     system = PerspectiveSystem(MOTIONS["affine"], SURFACES[surface])
+    if make is immersion_and_invariance and surface == "sphere":
+        with pytest.raises(NotIntegrable):
+            make(system.measure("y1", "y2"))
+        return
+    form = system.measure(*outputs_of(surface))
     recording = record(scenarios.ma2005_eq35(SURFACES[surface]), 5)
     start = dict(zip(map(str, system.coordinates), recording.truth[0], strict=True))
-    run = track(recording, make(system.measure(*outputs_of(surface))), start, hold="exact", language="python")
+    run = track(recording, make(form), start, hold="exact", language="python")
     assert np.abs(run.error).max() < 1e-7
     assert len(run.resets) == 0
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=NAMES)
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+@pytest.mark.parametrize(("make", "form"), [p for p in PAIRS if p.values[0] in COPIES])
 def test_a_truthful_start_stays_true_with_less_measured(make, form):
     recording = record(scenarios.ma2005_eq36(), 10)
     run = track(recording, make(form), recording.truth[0], hold="exact", language="python")
     assert np.abs(run.error).max() < 1e-7
 
 
-@pytest.mark.parametrize("make", SMOOTH.values(), ids=SMOOTH)
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+def test_every_iterate_of_the_cascade_brings_the_estimate_nearer():
+    recording = record(scenarios.ma2005_eq35(), 5)
+    worst = [
+        np.abs(
+            track(
+                recording, linear_approximation(BOTH, iterates=n), recording.truth[0], "exact", language="python"
+            ).error
+        ).max()
+        for n in (1, 2, 3, 4)
+    ]
+    assert all(later < earlier / 3 for earlier, later in pairwise(worst))
+
+
+@each_smooth
 def test_halving_the_step_divides_the_error_by_sixteen(make, form):
     recording = record(scenarios.ma2005_eq35(), 2, Camera(period=0.2))
+    # a wide boundary layer, so that steps of these lengths resolve it
+    observer = make(form, boundary_layer=2.0) if make is range_identification else make(form)
     coarse, fine, reference = (
-        track(recording, make(form), ZERO, step=0.2 / n, language="python").estimate[-1] for n in (8, 16, 256)
+        track(recording, observer, ZERO, step=0.2 / n, language="python").state[-1] for n in (16, 32, 512)
     )
     ratio = np.linalg.norm(coarse - reference) / np.linalg.norm(fine - reference)
-    assert 12 < ratio < 20
+    assert 12 < ratio < 21
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=NAMES)
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+@each
 def test_the_jacobian_against_a_finite_difference(make, form):
     eq = make(form).equations
     values = draw([*eq.state, *eq.measured, *eq.parameters, *eq.gains], 5)
@@ -69,23 +108,25 @@ def test_the_jacobian_against_a_finite_difference(make, form):
         (np.array(flow(*(at + step * d))) - np.array(flow(*(at - step * d)))) / (2 * step) for d in np.eye(len(at))
     ]
     jacobian = np.array(make(form).jacobian().subs(values), dtype=float)
-    np.testing.assert_allclose(np.stack(columns, axis=1), jacobian, rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(np.stack(columns, axis=1), jacobian, rtol=1e-6, atol=1e-6)
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=NAMES)
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
-def test_error_dynamics_are_the_difference_of_the_rates(make, form):
+@each
+def test_error_dynamics_against_a_finite_difference(make, form):
+    """Point and observer move a little along their rates; the error changes as its dynamics say."""
     observer = make(form)
-    eq = observer.equations
-    x = form.coordinates
-    errors = draw(observer.error, 7)
+    eq, x = observer.equations, form.coordinates
     values = draw([*x, *eq.state, *eq.parameters, *eq.gains], 8)
-    values |= {h: values[s] - e for h, s, e in zip(hats(x), x, errors.values(), strict=True)}
-    rates = dict(zip((*form.x1, *form.x2), form.rate, strict=True))
-    flows = dict(zip(eq.state, eq.flow, strict=True))
-    expected = [(rates[s] - flows[h]).subs(values) for s, h in zip(x, hats(x), strict=True)]
-    derived = observer.error_dynamics().subs({**values, **errors})
-    np.testing.assert_allclose(np.array(derived, dtype=float).ravel(), np.array(expected, dtype=float), rtol=1e-12)
+    moving = (*x, *eq.state)
+    rates = dict(zip((*form.x1, *form.x2, *eq.state), (*form.rate, *eq.flow), strict=True))
+    velocity = np.array([float(rates[s].subs(values)) for s in moving])
+    fixed = {s: v for s, v in values.items() if s not in moving}
+    errors = vectorised(moving, [(s - e).subs(fixed) for s, e in zip(x, observer.estimate, strict=True)])
+    at, step = np.array([float(values[s]) for s in moving]), 1e-6
+    expected = (np.array(errors(*(at + step * velocity))) - np.array(errors(*(at - step * velocity)))) / (2 * step)
+    known = values | {e: sp.Float(float(v), 17) for e, v in zip(observer.error, errors(*at), strict=True)}
+    derived = np.array(observer.error_dynamics().subs(known), dtype=float).ravel()
+    np.testing.assert_allclose(derived, expected, rtol=1e-6, atol=1e-7)
 
 
 def test_the_error_dynamics_of_the_identifier_based_observer():
@@ -104,7 +145,7 @@ def test_the_error_dynamics_of_the_identifier_based_observer():
     assert ibo(BOTH).error == e
 
 
-@pytest.mark.parametrize("make", SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.parametrize("make", [ibo, ekf, de_luca, spica], ids=lambda make: make.__name__)
 def test_lambdify_gives_the_flow_to_scipy(make):
     form = ONE
     observer = make(form)
@@ -201,9 +242,11 @@ def test_other_gains_make_another_observer():
     assert Gain(sp.Symbol("k"), "k", 1, 0, 2, "nothing").value == 1.0
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=NAMES)
+@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
 def test_every_gain_lies_in_its_range_and_says_what_it_does(make):
-    for gain in make(ONE).gains:
+    about = make(BOTH).about
+    assert all((about.title, about.source, about.needs, about.claim))
+    for gain in make(BOTH).gains:
         assert gain.low <= gain.value <= gain.high
         assert gain.meaning
         assert gain.name in make.__doc__
@@ -224,3 +267,81 @@ def test_observers_show_their_equations():
     assert r"\dot{\hat{y}_{1}}" in ibo(ONE)._repr_latex_()
     assert "sample" in ekf(BOTH)._repr_latex_()
     assert AFFINE.coordinates == BOTH.coordinates
+
+
+def test_the_identifier_based_observer_with_both_outputs_is_de_lucas():
+    gain, lyapunov = 7.0, -0.3
+    recording = record(scenarios.ma2005_eq35(), 20)
+    runs = [
+        track(recording, observer, ZERO)
+        for observer in (
+            ibo(BOTH, gain=gain, lyapunov=lyapunov),
+            de_luca(BOTH, measured_gain=gain, hidden_gain=-(gain**2) * lyapunov),
+        )
+    ]
+    np.testing.assert_allclose(runs[0].estimate, runs[1].estimate, atol=1e-12)
+
+
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+def test_the_identifier_based_flow_is_de_lucas_for_any_outputs(form):
+    G, A, P, H, Lam = sp.symbols("G A P H Lambda", real=True)
+    mine = sp.Matrix(de_luca(form).equations.flow).subs({H: G * A, Lam: -(G**2) * P})
+    assert (mine - sp.Matrix(ibo(form).equations.flow).subs(sigma2, 0)).expand() == sp.zeros(3, 1)
+
+
+def test_spica_is_de_lucas_with_critical_damping():
+    H, Lam = sp.symbols("H Lambda", real=True)
+    damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in BOTH.w))
+    difference = sp.Matrix(spica(BOTH).equations.flow) - sp.Matrix(de_luca(BOTH).equations.flow).subs(H, damping)
+    assert difference.expand() == sp.zeros(3, 1)
+
+
+def test_the_error_dynamics_of_immersion_and_invariance():
+    """e' = -(lambda |w|^2 + c + b3 (y3 + y3hat)) e, with c = a31 y1 + a32 y2 + a33."""
+    y1, y2, y3 = BOTH.coordinates
+    a31, a32, a33, b3, lam = sp.symbols("a31 a32 a33 b3 lambda", real=True)
+    e = immersion_and_invariance(BOTH).error[2]
+    squared = sum(entry**2 for entry in BOTH.w)
+    printed = -(lam * squared + a31 * y1 + a32 * y2 + a33 + b3 * (y3 + (y3 - e))) * e
+    derived = immersion_and_invariance(BOTH).error_dynamics()
+    assert list(derived[:2]) == [0, 0]
+    assert sp.expand(derived[2] - printed) == 0
+
+
+def test_what_an_observer_cannot_do_is_refused():
+    with pytest.raises(NeedsMoreOutputs, match="y2, y3 are hidden; measure every image coordinate"):
+        range_identification(ONE)
+    with pytest.raises(ValueError, match="is none of 'sign', 'hyperbolic tangent', 'fraction'"):
+        range_identification(BOTH, switch="relay")
+    with pytest.raises(ValueError, match="at least one"):
+        linear_approximation(BOTH, iterates=0)
+    curled = replace(BOTH, w=sp.ImmutableMatrix([[BOTH.x1[1], -BOTH.x1[0]]]))
+    with pytest.raises(NotIntegrable, match="no potential"):
+        immersion_and_invariance(curled)
+    cubic = replace(BOTH, g=sp.ImmutableMatrix([BOTH.x2[0] ** 3]))
+    with pytest.raises(ValueError, match="not quadratic"):
+        linear_approximation(cubic)
+
+
+SETTLES = {
+    ibo: 2.0,
+    smo: 2.5,
+    immersion_and_invariance: 2.5,
+    de_luca: 4.5,
+    spica: 3.0,
+    range_identification: 2.0,
+    linear_approximation: 3.0,
+}
+
+
+@pytest.mark.parametrize(("make", "bound"), SETTLES.items(), ids=lambda v: getattr(v, "__name__", str(v)))
+def test_settling_on_eq35_with_both_outputs(make, bound):
+    run = track(record(scenarios.ma2005_eq35(), 40), make(BOTH), ZERO, hold="exact")
+    assert run.settling_time(0.05, "y3") <= bound
+
+
+@pytest.mark.parametrize("make", [ibo, smo, de_luca, ekf], ids=lambda make: make.__name__)
+def test_noise_leaves_little_error_with_both_outputs(make):
+    for seed in range(5):
+        run = track(record(scenarios.ma2005_eq35(), camera=NOISY, seed=seed), make(BOTH), ZERO)
+        assert run.rms(20, 80, "y3") <= 0.005

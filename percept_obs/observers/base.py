@@ -62,6 +62,28 @@ class Gain:
 
 
 @dataclass(frozen=True)
+class About:
+    """What is known about an observer.
+
+    Parameters
+    ----------
+    title : str
+        Its name in full.
+    source : str
+        Where it comes from.
+    needs : str
+        What must be measured.
+    claim : str
+        What is claimed of its convergence, and under which condition.
+    """
+
+    title: str
+    source: str
+    needs: str
+    claim: str
+
+
+@dataclass(frozen=True)
 class Observer:
     """An observer of a canonical form, as equations.
 
@@ -73,12 +95,14 @@ class Observer:
     equations : Equations
         Flow, measurement update, reset condition and reset of the observer's state.
     estimate : tuple of expressions
-        Estimates of ``form.coordinates``.
+        Estimates of ``form.coordinates``, from the state, the measured outputs, the parameters and the gains.
     gains : tuple of Gain
     start : tuple of expressions
-        The state at the first sample, from the measured outputs and the gains.
+        The state at the first sample, from that sample, the estimates asked for (`hats`), parameters and gains.
     covariance : matrix of expressions, optional
         Covariance of the estimate, from the state, if the observer claims one.
+    about : About, optional
+        What is known about the observer.
     """
 
     name: str
@@ -88,6 +112,7 @@ class Observer:
     gains: tuple[Gain, ...]
     start: tuple[sp.Expr, ...]
     covariance: sp.ImmutableMatrix | None = None
+    about: About | None = None
 
     def with_gains(self, **values: float) -> Observer:
         """The same observer with other gains; nothing is compiled again.
@@ -128,20 +153,27 @@ class Observer:
         estimate_rate = estimate.jacobian(state) * sp.ImmutableMatrix(self.equations.flow)
         estimate_rate += estimate.jacobian(form.x1) * sp.ImmutableMatrix([rates[x] for x in form.x1])
         error_rate = sp.ImmutableMatrix([rates[x] for x in form.coordinates]) - estimate_rate
-        at_error = sp.solve(list(estimate - truth + sp.ImmutableMatrix(self.error)), state, dict=True)[0]
+        misses = [m for m in estimate - truth + sp.ImmutableMatrix(self.error) if m.free_symbols & set(state)]
+        at_error = sp.solve(misses, state, dict=True)[0]
         return error_rate.subs(at_error, simultaneous=True).expand()
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of the flow with respect to the observer's state."""
         return sp.ImmutableMatrix(self.equations.flow).jacobian(self.equations.state)
 
-    def initial_state(self, outputs: Mapping[str, float], given: Mapping[str, float]) -> NDArray[np.float64]:
+    def initial_state(
+        self,
+        outputs: Mapping[str, float],
+        given: Mapping[str, float],
+        parameters: Mapping[sp.Symbol, float] | None = None,
+    ) -> NDArray[np.float64]:
         """The state at the first sample.
 
         Parameters
         ----------
         outputs : mapping of names of measured outputs to their first samples
-        given : mapping of coordinate names to estimates that replace the observer's own start
+        given : mapping of coordinate names to estimates; left out, the first samples and 0 for hidden coordinates
+        parameters : mapping of the form's parameters to their values at the first sample, where the start needs them
 
         Raises
         ------
@@ -154,13 +186,10 @@ class Observer:
             raise ValueError(
                 f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}"
             )
-        known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values
-        state = {s: float(e.subs(known)) for s, e in zip(self.equations.state, self.start, strict=True)}
-        for symbol, expression in zip(self.form.coordinates, self.estimate, strict=True):
-            if symbol.name in given:
-                (changed,) = expression.free_symbols & set(state)
-                state[changed] = float(sp.solve(expression.subs(known) - given[symbol.name], changed)[0])
-        return np.array(list(state.values()))
+        asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
+        known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
+        known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
+        return np.array([float(e.subs(known)) for e in self.start])
 
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
@@ -259,8 +288,9 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     -------
     matrix of shape (n2, 1)
     """
-    terms = (form.w.diff(x) * correction.diff(x) for x in form.x1)
-    return sigma2 * sum(terms, sp.zeros(len(form.x2), 1))
+    # a sign's derivative is taken as 0: the noise moves it at single instants only
+    smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}
+    return sigma2 * sum((form.w.diff(x) * smooth[x] for x in form.x1), sp.zeros(len(form.x2), 1))
 
 
 def with_point(observer: Observer) -> Observer:

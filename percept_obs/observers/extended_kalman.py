@@ -6,7 +6,7 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import Gain, Observer, hats
+from percept_obs.observers.base import About, Gain, Observer, hats
 
 R, Q, P1, P2 = sp.symbols("R Q P01 P02", real=True)
 
@@ -51,6 +51,14 @@ GAINS = (
         P2 > 0,
         "it is a variance, and a start known exactly is never corrected",
     ),
+)
+
+
+ABOUT = About(
+    "Extended Kalman filter (EKF)",
+    "Jazwinski 1970",
+    "any outputs with a canonical form",
+    "local: the covariance must stay bounded, as it does where the linearised system is observable",
 )
 
 
@@ -114,12 +122,13 @@ def extended_kalman(form: CanonicalForm, **gains: float) -> Observer:
         tuple(updates),
     )
     spread = sp.diag(*(P1 for _ in form.x1), *(P2 for _ in form.x2))
-    start = state(sp.Matrix([*form.x1, *(0 for _ in form.x2)]), spread)
+    start = state(sp.Matrix(x_hat), spread)
     order = [x.index(symbol) for symbol in form.coordinates]
     covariance = P.extract(order, order)
-    return Observer("extended Kalman", form, equations, hats(form.coordinates), GAINS, start, covariance).with_gains(
-        **gains
+    observer = Observer(
+        "extended Kalman", form, equations, hats(form.coordinates), GAINS, start, covariance, about=ABOUT
     )
+    return observer.with_gains(**gains)
 
 
 ekf = extended_kalman

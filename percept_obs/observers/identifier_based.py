@@ -6,7 +6,7 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, Gain, Observer, hats, kept_within, noise_bias
+from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, About, Gain, Observer, hats, kept_within, noise_bias
 
 G, A, P = sp.symbols("G A P", real=True)
 
@@ -16,6 +16,14 @@ GAINS = (
     Gain(P, "lyapunov", -0.5, -5, -0.05, "weight of the innovation in the hidden part"),
     *BOUND_GAINS,
     NOISE_GAIN,
+)
+
+
+ABOUT = About(
+    "Identifier-based observer (IBO)",
+    "Jankovic and Ghosh 1995; Ma, Chen and Moore 2005, (11)",
+    "any outputs with a canonical form",
+    "exponential between resets, if w is persistently exciting and G is large enough; biased by noise that enters w",
 )
 
 
@@ -73,8 +81,8 @@ def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
         (),
         *kept_within(state, state),
     )
-    start = (*form.x1, *(sp.S.Zero for _ in form.x2))
-    return Observer("identifier-based", form, equations, hats(form.coordinates), GAINS, start).with_gains(**gains)
+    observer = Observer("identifier-based", form, equations, hats(form.coordinates), GAINS, state, about=ABOUT)
+    return observer.with_gains(**gains)
 
 
 ibo = identifier_based

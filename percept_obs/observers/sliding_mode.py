@@ -6,7 +6,8 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, Gain, Observer, hats, kept_within, noise_bias
+from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, About, Gain, Observer, hats, kept_within, noise_bias
+from percept_obs.observers.switching import switch_named
 
 alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
 
@@ -56,7 +57,15 @@ GAINS = (
 )
 
 
-def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
+ABOUT = About(
+    "Sliding mode observer (SMO)",
+    "Chen and Kano 2002; Ma, Chen and Moore 2005, (23)",
+    "any outputs with a canonical form",
+    "exponential, if w is persistently exciting and the gains are large enough",
+)
+
+
+def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) -> Observer:
     """Sliding mode observer with adaptive switching gains (SMO).
 
     With e = x1 - x1hat and, for each measured output, s = lambda e / (|e| + delta)::
@@ -69,6 +78,8 @@ def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
     Parameters
     ----------
     form : CanonicalForm
+    switch : "fraction", "sign" or "hyperbolic tangent"
+        What s is: lambda times the fraction above, the sign of e, or tanh(e / delta).
     hidden_gain : float
         alpha, weight of s in the hidden part; positive.  Default 5.
     adaptation : float
@@ -91,7 +102,7 @@ def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
     Raises
     ------
     ValueError
-        If a gain is unknown or out of its range.
+        If a gain is unknown or out of its range, or the switch has no such name.
 
     Notes
     -----
@@ -100,7 +111,8 @@ def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
     x1_hat, x2_hat = hats(form.x1), hats(form.x2)
     lambdas = sp.symbols(f"lambda1:{len(form.x1) + 1}", real=True)
     e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
-    s = sp.ImmutableMatrix([lam * ei / (sp.Abs(ei) + delta) for lam, ei in zip(lambdas, e, strict=True)])
+    smoothed = switch_named(switch)
+    s = sp.ImmutableMatrix([lam * smoothed(ei, delta) for lam, ei in zip(lambdas, e, strict=True)])
     g_hat = form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
     measured_rate = s + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
     hidden_rate = alpha * (form.w * s - noise_bias(form, s)) + g_hat
@@ -115,8 +127,9 @@ def sliding_mode(form: CanonicalForm, **gains: float) -> Observer:
         (),
         *kept_within(state, (*x1_hat, *x2_hat)),
     )
-    start = (*form.x1, *(sp.S.Zero for _ in form.x2), *(lambda0 for _ in lambdas))
-    return Observer("sliding mode", form, equations, hats(form.coordinates), GAINS, start).with_gains(**gains)
+    start = (*x1_hat, *x2_hat, *(lambda0 for _ in lambdas))
+    observer = Observer("sliding mode", form, equations, hats(form.coordinates), GAINS, start, about=ABOUT)
+    return observer.with_gains(**gains)
 
 
 smo = sliding_mode

@@ -1,0 +1,118 @@
+"""Depth observers that copy the system and feed the innovation back linearly: De Luca's, and Spica's tuning of it."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.equations import Equations
+from percept_obs.forms import CanonicalForm
+from percept_obs.observers.base import About, Gain, Observer, hats
+
+H, Lam = sp.symbols("H Lambda", real=True)
+
+LAMBDA_GAIN = Gain(
+    Lam,
+    "hidden_gain",
+    10,
+    1,
+    400,
+    "weight of the innovation in the hidden part",
+    Lam > 0,
+    "it must correct, not push away",
+)
+GAINS = (
+    Gain(H, "measured_gain", 5, 0.5, 50, "weight of the innovation in the measured part", H > 0, "it must damp"),
+    LAMBDA_GAIN,
+)
+
+
+ABOUT_DE_LUCA = About(
+    "Depth observer of De Luca",
+    "De Luca, Oriolo and Robuffo Giordano 2008",
+    "any outputs with a canonical form",
+    "local and exponential, if w is persistently exciting",
+)
+ABOUT_SPICA = About(
+    "Critically damped depth observer of Spica",
+    "Spica and Robuffo Giordano 2013",
+    "any outputs with a canonical form",
+    "that of a critically damped oscillator with the frequency sqrt(Lambda) |w|, for slowly varying w",
+)
+
+
+def de_luca(form: CanonicalForm, **gains: float) -> Observer:
+    """Depth observer of De Luca, Oriolo and Robuffo Giordano.
+
+    With e = x1 - x1hat::
+
+        x1hat' = H e + w^T x2hat + phi
+        x2hat' = Lambda w e + g(x1, x2hat)
+
+    It is the identifier-based observer with H = G A and Lambda = -G^2 P, without its reset.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    measured_gain : float
+        H, positive.  Default 5.
+    hidden_gain : float
+        Lambda, positive.  Default 10.
+
+    Returns
+    -------
+    Observer
+
+    Raises
+    ------
+    ValueError
+        If a gain is unknown or out of its range.
+
+    Notes
+    -----
+    A. De Luca, G. Oriolo, P. Robuffo Giordano, Feature depth observation for image-based visual servoing,
+    Int. J. Robotics Research 27(10), 2008.
+    """
+    return _depth_observer("De Luca", form, H, GAINS, ABOUT_DE_LUCA).with_gains(**gains)
+
+
+def spica(form: CanonicalForm, **gains: float) -> Observer:
+    """Depth observer with the measured gain that damps critically: H = 2 sqrt(Lambda) |w|.
+
+    The error then shrinks like a critically damped oscillator with the natural frequency sqrt(Lambda) |w|, if |w| were
+    constant: fast where the point is well observable, and at rest where it is not.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    hidden_gain : float
+        Lambda, positive.  Default 10.
+
+    Returns
+    -------
+    Observer
+
+    Raises
+    ------
+    ValueError
+        If a gain is unknown or out of its range.
+
+    Notes
+    -----
+    R. Spica, P. Robuffo Giordano, A framework for active estimation, IEEE CDC 2013.  |w| is the Frobenius norm.
+    """
+    damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in form.w))
+    return _depth_observer("Spica", form, damping, (LAMBDA_GAIN,), ABOUT_SPICA).with_gains(**gains)
+
+
+def _depth_observer(
+    name: str, form: CanonicalForm, damping: sp.Expr, gains: tuple[Gain, ...], about: About
+) -> Observer:
+    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
+    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
+    measured_rate = damping * e + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
+    hidden_rate = Lam * form.w * e + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
+    state = (*x1_hat, *x2_hat)
+    equations = Equations(
+        state, (*measured_rate, *hidden_rate), form.x1, form.parameters, tuple(gain.symbol for gain in gains)
+    )
+    return Observer(name, form, equations, hats(form.coordinates), gains, state, about=about)

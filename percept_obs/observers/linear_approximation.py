@@ -1,0 +1,109 @@
+"""The linear approximation observer: a cascade of linear time-varying filters."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.equations import Equations
+from percept_obs.forms import CanonicalForm
+from percept_obs.observers.base import About, Gain, Observer, hats
+
+Q, R, P0 = sp.symbols("Q R P0", real=True)
+
+GAINS = (
+    Gain(Q, "process_weight", 0.1, 1e-3, 10, "how much the frozen model is doubted", Q >= 0, "it is a weight"),
+    Gain(
+        R, "measurement_weight", 0.1, 1e-4, 10, "how much the measurement is doubted", R > 0, "the gain divides by it"
+    ),
+    Gain(P0, "start_weight", 1, 1e-2, 10, "how much the start is doubted", P0 > 0, "it is a weight"),
+)
+
+
+ABOUT = About(
+    "Linear approximation observer (LAO)",
+    "Ma 2004",
+    "any outputs with a hidden rate that is at most quadratic",
+    "iterates converge on a finite time; none is claimed for one output",
+)
+
+
+def linear_approximation(form: CanonicalForm, iterates: int = 6, **gains: float) -> Observer:
+    """Linear approximation observer (LAO).
+
+    The hidden rate g is quadratic in x2, so that g(x2) = g(0) + (J(0) + J(x2)) x2 / 2 with its Jacobian J.  With J
+    taken at the previous iterate the system is linear and time-varying; each iterate is a filter with a Riccati gain::
+
+        xhat_i' = F_i xhat_i + (phi, g(0)) + P_i C^T R^-1 (x1 - C xhat_i)
+        P_i' = F_i P_i + P_i F_i^T + Q I - P_i C^T R^-1 C P_i
+        F_i = [[0, w^T], [0, (J(0) + J(x2hat_(i-1))) / 2]],   J(x2hat_0) = J(0)
+
+    The iterates run side by side, as one cascade; the last one is the estimate.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+        With a hidden rate that is at most quadratic in the hidden coordinates.
+    iterates : int
+        Number of filters in the cascade.  Default 6.
+    process_weight : float
+        Q, not negative; with 0 the estimate never settles.  Default 0.1.
+    measurement_weight : float
+        R, positive.  Default 0.1.
+    start_weight : float
+        P(0), the factor of the identity, positive.  Default 1.
+
+    Returns
+    -------
+    Observer
+
+    Raises
+    ------
+    ValueError
+        If the hidden rate is not quadratic, the number of iterates is not positive, or a gain is out of its range.
+
+    Notes
+    -----
+    L. Ma, Vision-based measurements for dynamic systems and control, PhD thesis, Utah State University, 2004, after
+    C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
+    """
+    if not isinstance(iterates, int) or iterates < 1:
+        raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
+    x, n1 = (*form.x1, *form.x2), len(form.x1)
+    size = len(x)
+    jacobian = form.g.jacobian(form.x2).expand()
+    at_zero = dict.fromkeys(form.x2, sp.S.Zero)
+    curvature = [entry.diff(a, b) for entry in jacobian for a in form.x2 for b in form.x2]
+    if any(sp.expand(entry) != 0 for entry in curvature):
+        raise ValueError("the hidden rate is not quadratic in the hidden coordinates; use the extended Kalman filter")
+    offset = sp.Matrix([*form.phi, *form.g.subs(at_zero)])
+    C = sp.eye(size)[:n1, :]
+
+    state: list[sp.Symbol] = []
+    flow: list[sp.Expr] = []
+    start: list[sp.Expr] = []
+    previous: dict[sp.Symbol, sp.Expr] = at_zero
+    for number in range(1, iterates + 1):
+        estimate = tuple(sp.Symbol(f"{hat.name}_{number}", real=True) for hat in hats(x))
+        P = _symmetric(size, number)
+        hidden_block = (jacobian.subs(at_zero) + jacobian.subs(previous, simultaneous=True)) / 2
+        F = sp.Matrix(sp.BlockMatrix([[sp.zeros(n1), form.w.T], [sp.zeros(size - n1, n1), hidden_block]]))
+        gain = P * C.T / R
+        rate = F * sp.Matrix(estimate) + offset + gain * (sp.Matrix(form.x1) - C * sp.Matrix(estimate))
+        P_rate = F * P + P * F.T + Q * sp.eye(size) - gain * C * P
+        upper = [(i, j) for i in range(size) for j in range(i, size)]
+        state += [*estimate, *(P[i, j] for i, j in upper)]
+        flow += [*rate, *(P_rate[i, j] for i, j in upper)]
+        start += [*hats(x), *(P0 if i == j else sp.S.Zero for i, j in upper)]
+        previous = dict(zip(form.x2, estimate[n1:], strict=True))
+    equations = Equations(tuple(state), tuple(flow), form.x1, form.parameters, tuple(symbol.symbol for symbol in GAINS))
+    last = dict(zip(x, estimate, strict=True))
+    result = tuple(last[c] for c in form.coordinates)
+    observer = Observer("linear approximation", form, equations, result, GAINS, tuple(start), about=ABOUT)
+    return observer.with_gains(**gains)
+
+
+def _symmetric(size: int, number: int) -> sp.Matrix:
+    return sp.Matrix(size, size, lambda i, j: sp.Symbol(f"P{min(i, j) + 1}{max(i, j) + 1}_{number}", real=True))
+
+
+lao = linear_approximation

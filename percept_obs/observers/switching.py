@@ -1,0 +1,32 @@
+"""What stands for the sign of an innovation where an observer switches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import MappingProxyType
+
+import sympy as sp
+
+Switch = Callable[[sp.Expr, sp.Expr], sp.Expr]
+
+SWITCHES: MappingProxyType[str, Switch] = MappingProxyType(
+    {
+        "sign": lambda e, width: sp.sign(e),
+        "hyperbolic tangent": lambda e, width: sp.tanh(e / width),
+        "fraction": lambda e, width: e / (sp.Abs(e) + width),
+    }
+)
+"""Ways to switch, by name: the sign itself, and two boundary layers of a given width that smooth it."""
+
+
+def switch_named(name: str) -> Switch:
+    """The way to switch with this name.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    if name not in SWITCHES:
+        raise ValueError(f"the switch {name!r} is none of {', '.join(map(repr, SWITCHES))}")
+    return SWITCHES[name]

@@ -1,0 +1,87 @@
+"""A window of samples of a known affine motion determines the point, exactly without noise."""
+
+import numpy as np
+import pytest
+from examples import NOISY, SURFACES
+from utias_folder import utias_folder
+
+from percept_obs import Camera, Recording, Scenario, affine, pinhole, record, rigid, scenarios
+from percept_obs.datasets import load_utias
+from percept_obs.least_squares import moving_window_least_squares
+
+
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+def test_without_noise_the_point_is_found(surface):
+    recording = record(scenarios.ma2005_eq35(surface), 3, Camera(period=0.05))
+    found = moving_window_least_squares(recording, 1.0)
+    assert found.determined[10:].all()
+    np.testing.assert_allclose(found.points[10:], recording.points[10:], rtol=1e-6)
+    np.testing.assert_allclose(found.estimate[10:], recording.truth[10:], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(found.distance[10:], 1 / recording.truth[10:, -1], rtol=1e-6)
+
+
+def test_a_varying_motion_is_followed_by_its_middles():
+    motion = rigid(lambda t: [0.1, 0.2 * np.sin(t), 0], lambda t: [np.cos(t), 0.3, 0], [0, 0, 0])
+    scenario = Scenario("varying", motion, (0.5, 0, 4), 3, pinhole())
+    worst = []
+    for period in (0.1, 0.05):
+        recording = record(scenario, camera=Camera(period=period))
+        found = moving_window_least_squares(recording, 1.0)
+        worst.append(np.abs(found.points - recording.points)[found.time >= 1].max())
+    assert worst[0] < 0.01
+    assert worst[1] < worst[0] / 3
+
+
+def test_one_sample_determines_nothing():
+    found = moving_window_least_squares(record(scenarios.ma2005_eq35(), 1), 0.5)
+    assert not found.determined[0]
+    assert np.isinf(found.points[0]).all()
+    assert np.isinf(found.distance[0])
+
+
+def test_on_the_focus_of_expansion_nothing_is_determined():
+    towards = Scenario("towards", affine(np.zeros((3, 3)), [0.1, 0.05, 0.5]), (0.4, 0.2, 2.0), 3, pinhole())
+    found = moving_window_least_squares(record(towards, camera=Camera(period=0.1)), 2.0)
+    assert not found.determined.any()
+
+
+def test_lost_samples_are_left_out():
+    recording = record(scenarios.ma2005_eq35(), 3, Camera(period=0.05, dropout=0.4), seed=3)
+    found = moving_window_least_squares(recording, 1.0)
+    np.testing.assert_allclose(found.points[found.time > 1], recording.points[found.time > 1], rtol=1e-6)
+
+
+def test_a_longer_window_averages_noise():
+    recording = record(scenarios.ma2005_eq35(), 10, NOISY, seed=1)
+    errors = [
+        np.median(np.abs(moving_window_least_squares(recording, w).distance * recording.truth[:, 2] - 1)[300:])
+        for w in (0.5, 3.0)
+    ]
+    assert errors[1] < errors[0] / 3
+
+
+@pytest.mark.parametrize("window", [0, -1, np.nan, np.inf])
+def test_windows_that_are_none_are_refused(window):
+    with pytest.raises(ValueError, match="must be positive"):
+        moving_window_least_squares(record(scenarios.ma2005_eq35(), 1), window)
+
+
+def test_one_output_is_refused():
+    whole = record(scenarios.ma2005_eq35(), 1)
+    one = Recording(whole.time, whole.outputs[:, :1], ("y1",), pinhole(), whole.motion)
+    with pytest.raises(ValueError, match="need the outputs y1, y2; there are y1"):
+        moving_window_least_squares(one)
+    with pytest.raises(ValueError, match="no truth"):
+        moving_window_least_squares(Recording(whole.time, whole.outputs, ("y1", "y2"), pinhole(), whole.motion)).truth  # noqa: B018
+
+
+@pytest.mark.parametrize(("reference", "bound"), [("truth", 0.05), ("stereo", 0.06)])
+def test_two_seconds_of_the_real_tracks(reference, bound):
+    """All windows of all tracks."""
+    errors = []
+    for recording in load_utias(utias_folder()):
+        found = moving_window_least_squares(recording, 2.0)
+        true = 1 / recording.truth[:, 2] if reference == "truth" else recording.distances["stereo"]
+        whole = found.time - found.time[0] >= 1.95
+        errors.append(np.abs(found.distance / true - 1)[whole])
+    assert np.median(np.concatenate(errors)) <= bound
