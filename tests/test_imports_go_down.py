@@ -25,7 +25,7 @@ LAYERS = (
     ("forms",),
     ("motion", "surfaces"),
     ("compile",),
-    ("equations", "derivation"),
+    ("equations", "derivation", "switching"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 

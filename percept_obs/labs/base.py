@@ -20,7 +20,8 @@ from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm, NotAffine
 from percept_obs.motion import affine
 from percept_obs.observability import instantaneous
-from percept_obs.observers import OBSERVERS, Gain, Observer
+from percept_obs.observers import Gain, Observer, extended_kalman, identifier_based, sliding_mode
+from percept_obs.observers.base import hats
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Recording
 from percept_obs.surfaces import POINT, chained, pinhole, plane
@@ -34,7 +35,7 @@ Structure = tuple[str, tuple[str, ...], str]
 
 SURFACES = {"pinhole": pinhole, "chained": chained, "plane": plane}
 OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
-BY_NAME = {make.__name__: make for make in OBSERVERS}
+BY_NAME = {make.__name__: make for make in (identifier_based, sliding_mode, extended_kalman)}
 MOTION = affine()
 
 
@@ -241,10 +242,12 @@ def _kernel_for_the_page(surface: str, outputs: tuple[str, ...], name: str) -> S
     observer = observer_of(surface, outputs, name)
     form, equations = observer.form, observer.equations
     claimed = observer.covariance
+    own = dict.fromkeys(hats(form.x2), sp.S.Zero) | dict(zip(hats(form.x1), form.x1, strict=True))
+    own_start = tuple(entry.xreplace(own) for entry in observer.start)
     return {
         "run": source(equations, "javascript"),
         "states": len(equations.state),
-        "start": function_source((*form.x1, *equations.gains), observer.start),
+        "start": function_source((*form.x1, *equations.gains), own_start),
         "estimate": function_source((*equations.state, *form.x1), observer.estimate),
         "stateOf": [equations.state.index(hat) for hat in observer.estimate],
         "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),

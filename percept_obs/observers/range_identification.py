@@ -7,7 +7,7 @@ import sympy as sp
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
 from percept_obs.observers.base import About, Gain, Observer, hats
-from percept_obs.observers.switching import switch_named
+from percept_obs.switching import switch_named
 
 alpha, k, gamma, delta = sp.symbols("alpha k gamma delta", real=True)
 

@@ -7,7 +7,7 @@ import sympy as sp
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
 from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, About, Gain, Observer, hats, kept_within, noise_bias
-from percept_obs.observers.switching import switch_named
+from percept_obs.switching import switch_named
 
 alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
 

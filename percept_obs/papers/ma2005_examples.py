@@ -11,7 +11,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.motion import affine
-from percept_obs.observers import identifier_based, sliding_mode
+from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.base import M, gamma
 from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta, lambda0
@@ -43,7 +43,7 @@ from percept_obs.tracking import Run, track
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 FORMS = {"y1 alone": SYSTEM.measure("y1"), "y1, y2": SYSTEM.measure("y1", "y2")}
 FIRST = FORMS["y1 alone"]
-OBSERVERS = {"IBO": identifier_based, "SMO": sliding_mode}
+OBSERVERS: dict[str, Callable[..., Observer]] = {"IBO": identifier_based, "SMO": sliding_mode}
 EXAMPLES = {35: ma2005_eq35(), 36: ma2005_eq36()}
 SEEDS = (0, 1, 2)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, partial
 
 import sympy as sp
 
 from percept_obs.forms import CanonicalForm
 from percept_obs.motion import affine
-from percept_obs.observers import identifier_based, sliding_mode
+from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.base import M, gamma, hats, sigma2
 from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta
@@ -34,7 +35,7 @@ from percept_obs.surfaces import pinhole
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 BOTH, FIRST, SECOND = SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1"), SYSTEM.measure("y2")
-OBSERVERS = {"IBO": identifier_based, "SMO": sliding_mode}
+OBSERVERS: dict[str, Callable[..., Observer]] = {"IBO": identifier_based, "SMO": sliding_mode}
 
 # Numbers
 a11, a12, a13, a21, a22, a23, a31, a32, a33, b1, b2, b3 = SYSTEM.motion.parameters
