@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 import sympy as sp
+from conftest import missing
 from lab_settings import FRONT
 
 from percept_obs.labs import base
@@ -19,7 +20,7 @@ def modules(node, tmp_path_factory):
     """A copy of the front end with the packages that its lock file names."""
     npm = shutil.which("npm")
     if npm is None:
-        pytest.skip("npm is missing; it comes with Node.js")
+        missing("npm is missing. Debian: sudo apt-get install npm. macOS and Windows: it comes with Node.js.")
     folder = tmp_path_factory.mktemp("front")
     for part in ("src", "tests"):
         shutil.copytree(FRONT / part, folder / part)
@@ -27,7 +28,7 @@ def modules(node, tmp_path_factory):
         shutil.copy(FRONT / name, folder)
     installed = subprocess.run([npm, "ci", "--no-audit", "--no-fund"], cwd=folder, capture_output=True, text=True)
     if installed.returncode:
-        pytest.skip(f"the front end's packages cannot be had: {installed.stderr[-300:]}")
+        missing(f"the front end's packages cannot be had: {installed.stderr[-300:]}")
     return folder
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from conftest import missing
 from jupyter_harness import jupyterlab, lab_page, log_entries
 from lab_browser import assert_equals_python, control, open_lab, python_state, rested, state
 from lab_settings import FRONT
@@ -79,7 +80,7 @@ def test_a_thousand_moves_do_not_fill_the_memory(fresh):
 def test_axe_finds_nothing_serious(fresh, folder):
     axe = FRONT / "node_modules/axe-core/axe.min.js"
     if not axe.exists():
-        pytest.skip(f"axe-core is missing: run npm ci in {FRONT}")
+        missing(f"axe-core is missing: run npm ci in {FRONT}.")
     fresh.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
     fresh.click(control("preset drop"))
     fresh.evaluate(axe.read_text())

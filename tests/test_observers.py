@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -345,3 +346,10 @@ def test_noise_leaves_little_error_with_both_outputs(make):
     for seed in range(5):
         run = track(record(scenarios.ma2005_eq35(), camera=NOISY, seed=seed), make(BOTH), ZERO)
         assert run.rms(20, 80, "y3") <= 0.005
+
+
+def test_the_readme_says_what_is_known_of_each():
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8").replace("\\|", "|")
+    for make in OBSERVERS:
+        about = make(BOTH).about
+        assert f"| {about.title} | `{make.__name__}` | {about.source} | {about.needs} | {about.claim} |" in readme
