@@ -1,6 +1,7 @@
 """The observer lab in a real JupyterLab: opening it, moving it, and reading what it draws."""
 
 import json
+import time
 
 import nbformat
 import numpy as np
@@ -14,7 +15,10 @@ OPEN = """
 import json, pathlib
 from percept_obs.labs.observer_lab import observer_lab
 lab = observer_lab({arguments})
-lab.observe(lambda change: pathlib.Path("state.json").write_text(json.dumps(lab.settings)), "analysis")
+def keep(change):
+    pathlib.Path("state.new").write_text(json.dumps(lab.settings))
+    pathlib.Path("state.new").replace("state.json")
+lab.observe(keep, "analysis")
 lab
 """
 
@@ -62,9 +66,14 @@ def state(page, which=0):
     return page.evaluate(STATE, which)
 
 
-def python_state(folder):
-    """The settings that the kernel's lab has."""
-    return json.loads((folder / "state.json").read_text())
+def assert_python_has(folder, settings, patience=10):
+    """The kernel's lab comes to have these settings; it writes them down a moment after the page has its answer."""
+    kept, deadline = {}, time.monotonic() + patience
+    while {key: kept.get(key) for key in settings} != settings and time.monotonic() < deadline:
+        time.sleep(0.05)
+        if (folder / "state.json").exists():
+            kept = json.loads((folder / "state.json").read_text())
+    assert {key: kept.get(key) for key in settings} == settings
 
 
 def assert_equals_python(shown, tolerance=1e-9):
