@@ -132,7 +132,9 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def described(found: pd.DataFrame) -> str:
-    """Print a summary as text: counts, and medians with their quantiles."""
+    """A summary as text: counts, and medians with their quantiles."""
+    import pandas as pd
+
     lines = {}
     for label, row in found.iterrows():
         line = {name: f"{row[name]:.0f}" for name in ("runs", "failed", "reset", "diverged")}
@@ -140,8 +142,6 @@ def described(found: pd.DataFrame) -> str:
             line[name] = f"{row[name]:.2g} ({row[name + '_low']:.2g} to {row[name + '_high']:.2g})"
         line["cost"] = f"{1e6 * row['cost']:.0f} us/s"
         lines[label] = line
-    import pandas as pd
-
     return str(pd.DataFrame.from_dict(lines, orient="index").to_string())
 
 

@@ -82,9 +82,9 @@ def test_the_filter_does_not_use_a_lost_sample():
     lost[10:] = np.nan
     recording = Recording(RECORDING.time, lost, ("y1", "y2"), pinhole(), RECORDING.motion)
     run = track(recording, ekf(BOTH), ZERO)
-    assert (np.diff(np.trace(run.covariance, axis1=1, axis2=2)[100:]) > -1e-12).all() or run.covariance[-1, 0, 0] > 1e-7
     full = track(RECORDING, ekf(BOTH), ZERO)
     np.testing.assert_array_equal(run.estimate[:10], full.estimate[:10])
+    assert run.covariance[-1, 0, 0] > 2 * full.covariance[-1, 0, 0]
     assert not np.allclose(run.estimate[-1], full.estimate[-1], atol=1e-12)
 
 
@@ -138,9 +138,7 @@ def test_chained_is_the_pinhole_with_axes_permuted():
 
 @pytest.mark.parametrize("language", ["python", "numba"])
 def test_a_run_that_diverges_says_when_and_why(language):
-    run = track(RECORDING, ekf(BOTH), {"y3": -40.0}, language=language)
     blown = track(RECORDING, smo(BOTH, switching_gain=1e150, bound=1e160), ZERO, language=language)
-    assert run.diverged_at is None or np.isnan(run.estimate[-1]).all()
     assert blown.diverged_at is not None
     assert f"diverged at {blown.diverged_at:.3g} s" in blown.verdict()
     first = int(np.searchsorted(blown.time, blown.diverged_at - 1e-9))
