@@ -1,6 +1,7 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
 from percept_obs import scenarios
+from percept_obs.consistency import check_consistency
 from percept_obs.forms import CanonicalForm, NotAffine
 from percept_obs.motion import Motion, affine, rigid
 from percept_obs.observability import instantaneous, windowed
@@ -29,6 +30,7 @@ __all__ = [
     "Uniform",
     "affine",
     "chained",
+    "check_consistency",
     "ekf",
     "extended_kalman",
     "ibo",

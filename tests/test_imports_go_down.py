@@ -17,7 +17,7 @@ LAYERS = (
     ("labs",),
     ("figures", "exercises"),
     ("papers",),
-    ("compare",),
+    ("compare", "consistency"),
     ("least_squares", "observability", "tracking"),
     ("scenarios", "datasets"),
     ("recording",),

@@ -1,0 +1,125 @@
+"""A well-tuned filter passes the test of its innovations as often as promised; a wrong noise variance is told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from examples import BOTH, ONE, ZERO
+from scipy.stats import chi2
+
+from percept_obs import Camera, Gaussian, check_consistency, ekf, ibo, record, scenarios, track
+from percept_obs.consistency import claimed_distance, claimed_interval
+
+SIGMA = 0.01
+CAMERA = Camera(period=0.05, noise=Gaussian(SIGMA))
+RECORDING = record(scenarios.ma2005_eq35(), 20, CAMERA, seed=1)
+
+
+def filtered(form, recording=RECORDING, variance=SIGMA**2, **start):
+    """A filter that begins near the truth, as far from it as it believes."""
+    known = dict(zip((s.name for s in form.coordinates), recording.truth[0], strict=True))
+    observer = ekf(form, noise_variance=variance, measured_variance=1e-4, hidden_variance=1e-4)
+    return track(recording, observer, {**known, **start}, language="python")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
+def test_a_right_claim_passes_in_about_95_of_100_recordings(form):
+    """Of 200 recordings 190 should pass, with a standard deviation of 3.1."""
+    recordings = [record(scenarios.ma2005_eq35(), 10, CAMERA, seed) for seed in range(200)]
+    found = [check_consistency(filtered(form, each)) for each in recordings]
+    passed = sum(one.judgement == "consistent" for one in found)
+    assert abs(passed - 190) <= 3 * np.sqrt(200 * 0.95 * 0.05)
+    low, high = found[0].interval(50)
+    inside = np.mean([np.mean((one.averages > low) & (one.averages < high)) for one in found])
+    assert inside == pytest.approx(0.95, abs=0.02)
+
+
+@pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
+@pytest.mark.parametrize(("factor", "judgement"), [(1 / 4, "overconfident"), (1, "consistent"), (4, "too modest")])
+def test_a_wrong_noise_variance_is_told(form, factor, judgement):
+    found = check_consistency(filtered(form, variance=factor * SIGMA**2))
+    assert found.judgement == judgement
+    assert found.mean == pytest.approx(len(form.x1) / factor, rel=0.15)
+    assert f"<Consistency: {judgement}: " in repr(found)
+    assert f"of 401 samples is {found.mean:.3g}; {len(form.x1)} is expected" in found.verdict()
+
+
+def test_the_interval_is_that_of_chi_squared():
+    found = check_consistency(filtered(BOTH))
+    for count in (1, 50, 401):
+        inside = np.diff(chi2.cdf(count * np.array(found.interval(count)), 2 * count))
+        assert inside == pytest.approx(0.95)
+    narrow = replace(found, confidence=0.5)
+    assert found.interval(50)[0] < narrow.interval(50)[0] < 2 < narrow.interval(50)[1] < found.interval(50)[1]
+
+
+def test_averages_move_over_the_samples_that_there_are():
+    lost = RECORDING.outputs.copy()
+    lost[100:110] = np.nan
+    run = filtered(BOTH, replace(RECORDING, outputs=lost))
+    found = check_consistency(run, samples=20, after=2.0)
+    assert len(found.normalised) == 401 - 40 - 10
+    assert found.time[0] == pytest.approx(2.0)
+    np.testing.assert_allclose(found.averages[7], found.normalised[7:27].mean())
+    assert found.average_time[7] == found.time[26]
+    assert len(found.averages) == len(found.average_time)
+
+
+def test_the_interval_of_the_distance_is_that_of_its_inverse():
+    run = filtered(ONE)
+    wide = replace(run, state=run.state.copy())
+    names = [symbol.name for symbol in run.observer.equations.state]
+    wide.state[:100, names.index("P33")] = 1.0  # two of these are more than any estimate here
+    low, high = claimed_interval(wide)
+    sigma = np.sqrt(wide.covariance[:, 2, 2])
+    np.testing.assert_allclose(high[:, 2] - low[:, 2], 4 * sigma)
+    np.testing.assert_allclose((high + low)[:, 2] / 2, wide.estimate[:, 2])
+    nearest, farthest = claimed_distance(wide)
+    assert np.isinf(farthest[:100]).all()
+    np.testing.assert_allclose(nearest, 1 / high[:, 2])
+    np.testing.assert_allclose(farthest[100:], 1 / low[100:, 2])
+    assert (nearest < wide.distance).all()
+    assert (wide.distance < farthest).all()
+
+
+def test_behind_the_camera_there_is_no_distance():
+    run = filtered(ONE)
+    behind = replace(run, estimate=np.full_like(run.estimate, -5.0))
+    assert np.isinf(claimed_distance(behind)).all()
+
+
+def test_where_a_run_diverged_nothing_is_claimed():
+    run = filtered(ONE)
+    estimate, state = run.estimate.copy(), run.state.copy()
+    estimate[200:], state[200:] = np.nan, np.nan
+    diverged = replace(run, estimate=estimate, state=state, diverged_at=10.0)
+    for low, high in (claimed_interval(diverged), claimed_distance(diverged)):
+        assert np.isnan(low[200:]).all()
+        assert np.isnan(high[200:]).all()
+        assert not np.isnan(low[:200]).any()
+    with pytest.raises(ValueError, match="diverged at 10 s"):
+        check_consistency(diverged)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"samples": 0}, "of 0 samples was asked for; there are 401"),
+        ({"samples": 402}, "there are 401"),
+        ({"after": 18.0}, "of 50 samples was asked for; there are 41"),
+        ({"after": -1.0}, "must not be negative"),
+        ({"after": np.nan}, "must not be negative"),
+        ({"confidence": 1.0}, "between 0 and 1"),
+        ({"confidence": np.nan}, "between 0 and 1"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        check_consistency(filtered(BOTH), **arguments)
+
+
+@pytest.mark.parametrize("ask", [check_consistency, claimed_interval, claimed_distance])
+def test_an_observer_without_a_claim_is_refused(ask):
+    with pytest.raises(ValueError, match="claims no covariance"):
+        ask(track(RECORDING, ibo(BOTH), ZERO))
