@@ -19,6 +19,8 @@ from percept_obs import (
     Uniform,
     affine,
     chained,
+    check_consistency,
+    ekf,
     figures,
     ibo,
     pinhole,
@@ -30,6 +32,7 @@ from percept_obs import (
     track,
     windowed,
 )
+from percept_obs.consistency import claimed_distance
 
 NOISY = Camera(noise=Uniform(0.01))
 COARSE = Camera(period=0.05, noise=Uniform(0.01))
@@ -76,6 +79,10 @@ MAKERS = {
     ),
     "chained": lambda: eq35("y1", "y2", surface=chained()),
     "plane": lambda: eq35("y1", "y2", surface=plane((0.1, 0.2, 1))),
+    "filter": lambda: eq35("y1", observer=ekf),
+    "filter, without truth": lambda: track(
+        replace(eq35("y1", "y2").recording, truth=None), ekf(form("y1", "y2"), noise_variance=1e-3)
+    ),
     "three outputs": lambda: eq35("y1", "y2", "y3", surface=plane((0.1, 0.2, 1), outputs=3)),
 }
 FLAT = [name for name in MAKERS if name != "three outputs"]
@@ -206,6 +213,86 @@ def test_labels_have_symbols_letters_and_units(runs):
     assert [ax.get_ylabel() for ax in figures.signals(runs("dropouts")).axes] == expected
     assert figures.signals(runs("chained")).axes[2].get_ylabel() == "$y_{3} = 1/Y$ (1/m)"
     assert figures.signals(runs("plane")).axes[2].get_ylabel() == "$y_{3} = 1/l$ (1/m)"
+
+
+# ---- what an observer claims
+
+
+def bands(ax):
+    """Times, lower and upper ends of the bands of two claimed standard deviations, clipped at the top of the axes."""
+    for collection in ax.collections:
+        if collection.get_label() in (figures.over_time.CLAIM, "_claim"):
+            ends = np.vstack([path.vertices for path in collection.get_paths()])
+            time = np.unique(ends[:, 0])
+            yield time, *(np.array([pick(ends[ends[:, 0] == t, 1]) for t in time]) for pick in (np.min, np.max))
+
+
+@pytest.mark.parametrize("name", ["filter", "filter, without truth"])
+def test_the_band_is_two_standard_deviations_of_the_covariance(runs, name):
+    run = runs(name)
+    figure = figures.signals(run)
+    for column, ax in enumerate(figure.axes[:3]):
+        ((time, low, high),) = bands(ax)
+        sigma = np.sqrt(run.covariance[:, column, column])
+        np.testing.assert_array_equal(time, run.time)
+        np.testing.assert_allclose(low, run.estimate[:, column] - 2 * sigma)
+        np.testing.assert_allclose(high, run.estimate[:, column] + 2 * sigma)
+        words = f"is from {low[-1]:.3g} to {high[-1]:.3g} at the end"
+        if run.recording.truth is not None:
+            held = np.abs(run.error[:, column]) <= 2 * sigma
+            words += f" and holds the truth in {100 * held.mean():.0f} % of the samples"
+        assert f"The band of two claimed standard deviations {words}." in figure.text
+    paint(figure)
+
+
+def test_compare_draws_the_band_of_those_that_claim_one(runs):
+    run = runs("filter")
+    figure = figures.compare([eq35("y1"), run, run])
+    (_, low, high), again = bands(figure.axes[0])
+    np.testing.assert_allclose((high - low) / 4, np.sqrt(run.covariance[:, 2, 2]))
+    np.testing.assert_array_equal(again[2], high)
+    assert sum(name == figures.over_time.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
+    assert figure.text.count("The band of two claimed standard deviations") == 2
+    assert figure.text.index("extended Kalman") < figure.text.index("The band of")
+
+
+def test_the_band_of_the_distance_is_open_where_the_inverse_reaches_zero(runs):
+    run = runs("filter")
+    figure = figures.distance(run)
+    ((time, low, high),) = bands(figure.axes[0])
+    nearest, farthest = claimed_distance(run)
+    is_open = np.isposinf(farthest)
+    assert 0 < is_open.sum() < len(is_open)
+    np.testing.assert_allclose(low[~is_open], nearest[~is_open])
+    np.testing.assert_allclose(high[~is_open], farthest[~is_open])
+    np.testing.assert_allclose(high[is_open], np.maximum(figure.axes[0].get_ylim()[1], nearest[is_open]))
+    assert f"In {is_open.sum()} of {len(time)} samples it has no upper end" in figure.text
+    held = (nearest <= 1 / run.truth[:, 2]) & (1 / run.truth[:, 2] <= farthest)
+    assert f"holds the truth in {100 * held.mean():.0f} % of the samples" in figure.text
+    paint(figure)
+
+
+def test_without_a_claim_there_is_no_band(runs):
+    for draw in (figures.signals, figures.distance, figures.compare):
+        figure = draw(runs("(35), both outputs"))
+        assert not list(bands(figure.axes[0]))
+        assert "claimed" not in figure.text
+
+
+def test_consistency_is_drawn_with_its_interval_and_verdict(runs):
+    found = check_consistency(runs("filter"), samples=40)
+    figure = figures.consistency(found)
+    (ax,) = figure.axes
+    np.testing.assert_array_equal(line(ax, "mean of 40 samples"), [found.average_time, found.averages])
+    np.testing.assert_array_equal(line(ax, "samples"), [found.time, found.normalised])
+    assert set(line(ax, "expected mean")[1]) == {1}
+    (interval,) = (patch for patch in ax.patches if patch.get_label() == "95 % interval")
+    low, high = found.interval(40)
+    np.testing.assert_allclose([interval.get_y(), interval.get_y() + interval.get_height()], [low, high])
+    assert found.verdict()[1:] in figure.text
+    outside = (found.normalised > ax.get_ylim()[1]).sum()
+    assert f"Outside the axis: {outside} of the normalised innovations" in figure.text
+    paint(figure)
 
 
 # ---- image plane
@@ -565,6 +652,7 @@ def test_figures_draw_on_the_axes_they_are_given(runs):
         (lambda run: figures.distance(run("plane"), reference="stereo"), "no reference 'stereo'; there are truth"),
         (lambda run: figures.excitation([]), "an Excitation"),
         (lambda run: figures.excitation(run("plane")), "an Excitation"),
+        (lambda run: figures.consistency(run("filter")), "a Consistency is needed"),
     ],
 )
 def test_bad_input_is_refused_in_words(runs, draw, complaint):

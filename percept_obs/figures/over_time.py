@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.lib.stride_tricks import sliding_window_view
 
+from percept_obs.consistency import claimed_distance, claimed_interval
 from percept_obs.figures.base import (
     BLUE,
     ESTIMATE,
@@ -45,6 +46,9 @@ from percept_obs.tracking import Run
 SMOOTHING = 160
 """Noisy errors are averaged over the duration divided by this."""
 
+CLAIM = r"$\pm 2\sigma$ claimed"
+"""Name of the band that an observer's covariance claims."""
+
 RESIDUALS: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "linestyle": "-"},
     {"color": GREEN, "linestyle": "-."},
@@ -57,8 +61,9 @@ RESIDUALS: tuple[dict[str, Any], ...] = (
 def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = 0.05) -> Figure:
     """Outputs, estimates and errors of a run over time.
 
-    One row a coordinate, with samples as dots, the truth solid and the estimate dashed; in the last row the absolute
-    errors or, if the recording has no truth, the absolute innovations.  Ticks along the top mark resets.
+    One row a coordinate, with samples as dots, the truth solid and the estimate dashed, in a band of two claimed
+    standard deviations to either side if the observer claims a covariance; in the last row the absolute errors or, if
+    the recording has no truth, the absolute innovations.  Ticks along the top mark resets.
 
     Parameters
     ----------
@@ -115,6 +120,9 @@ def compare(
 ) -> Figure:
     """One coordinate as several observers estimate it, and their errors.
 
+    Around the estimates of an observer that claims a covariance there is a band of two standard deviations to either
+    side.
+
     Parameters
     ----------
     runs : Run or sequence of Run
@@ -162,15 +170,20 @@ def compare(
     _errors(lower, recording.time, errors, labels, looks)
     upper.set_ylabel(label(coordinate, surface))
     lower.set_ylabel(f"|error of {letter(coordinate)}|")
-    legend_above(upper)
     said = words(coordinate, surface)
+    outside = linear_axis(upper, truth, estimates, f"the estimates of {said}")
+    claims = [_claim_of_coordinate(upper, run, column, look["color"]) for run, look in zip(runs, looks, strict=True)]
+    legend_above(upper)
     return drawn(
         (upper, lower),
         [
             f"{said} over {_duration(runs[0])}: the truth, {span(truth)}, the estimates of {_counted(runs)}, "
             "and below them the absolute errors on a logarithmic axis.",
-            *(f"{name}: {story(run, tolerance)}" for name, run in zip(labels, runs, strict=True)),
-            linear_axis(upper, truth, estimates, f"the estimates of {said}"),
+            *(
+                f"{name}: {story(run, tolerance)} {claim}".rstrip()
+                for name, run, claim in zip(labels, runs, claims, strict=True)
+            ),
+            outside,
             log_axis(lower, errors, "the errors"),
         ],
     )
@@ -184,7 +197,9 @@ def distance(
 ) -> Figure:
     """Depth or range in metres, and its relative error.
 
-    Whatever else measured the distance, the recording's `distances`, is drawn as dots.
+    Whatever else measured the distance, the recording's `distances`, is drawn as dots.  For an observer that claims a
+    covariance there is a band of all distances whose inverse lies within two standard deviations of the estimate;
+    where these reach zero, the band has no upper end.
 
     Parameters
     ----------
@@ -229,14 +244,16 @@ def distance(
     if np.isnan(estimates).all():
         upper.text(0.5, 0.5, "no estimate in front of the camera", ha="center", transform=upper.transAxes)
     upper.set_ylabel(f"{word} ${symbol}$ (m)")
-    legend_above(upper)
     firm = known[reference] if reference else _bulk(estimates)
+    outside = linear_axis(upper, firm, estimates, f"the estimated {word}", reach=0.5)
+    claims = [_claim_of_distance(upper, run, look["color"]) for run, look in zip(runs, looks, strict=True)]
+    legend_above(upper)
     errors = 100 * np.abs(estimates / firm - 1) if reference else np.full_like(estimates, np.nan)
     sentences = [
         f"Estimated {word} in metres over {_duration(runs[0])}, {_counted(runs)}.",
         *(f"By the {name} it is {span(values)} m." for name, values in known.items()),
-        *(f"{name}: {_distance_story(*each)}" for name, *each in zip(labels, runs, errors, strict=True)),
-        linear_axis(upper, firm, estimates, f"the estimated {word}", reach=0.5),
+        *(f"{name}: {_distance_story(*each)}" for name, *each in zip(labels, runs, errors, claims, strict=True)),
+        outside,
     ]
     for ax in lower:
         _errors(ax, recording.time, errors, labels, looks)
@@ -267,7 +284,48 @@ def _coordinate(ax: Axes, run: Run, column: int) -> str:
     ax.plot(run.time, estimate, **ESTIMATE)
     ax.set_ylabel(label(name, recording.surface))
     left_out = linear_axis(ax, firm, estimate, f"the estimates of {name}")
-    return f"The {kind} {said} is {span(firm)}. {left_out}".strip()
+    claim = _claim_of_coordinate(ax, run, column, ESTIMATE["color"])
+    return " ".join(filter(None, [f"The {kind} {said} is {span(firm)}.", left_out, claim]))
+
+
+def _claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
+    """Draw the interval that the observer claims for a coordinate, and say it; nothing if it claims none."""
+    if run.observer.covariance is None:
+        return ""
+    low, high = (end[:, column] for end in claimed_interval(run))
+    return _draw_claim(ax, run, low, high, None if run.recording.truth is None else run.truth[:, column], colour)
+
+
+def _claim_of_distance(ax: Axes, run: Run, colour: str) -> str:
+    """The same for the distance."""
+    if run.observer.covariance is None:
+        return ""
+    low, high = claimed_distance(run)
+    words = _draw_claim(ax, run, low, high, None if run.recording.truth is None else 1 / run.truth[:, -1], colour)
+    unbounded = int(np.isposinf(high).sum())
+    if not unbounded:
+        return words
+    return (
+        f"{words} In {unbounded} of {len(high)} samples it has no upper end, as the interval of the inverse distance "
+        "reaches zero."
+    )
+
+
+def _draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
+    """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
+    reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
+    named = CLAIM in ax.get_legend_handles_labels()[1]
+    name = "_claim" if named else CLAIM
+    ax.fill_between(run.time, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
+    claimed = ~np.isnan(low)
+    if not claimed.any():
+        return ""
+    last = np.flatnonzero(claimed)[-1]
+    words = f"The band of two claimed standard deviations is from {low[last]:.3g} to {high[last]:.3g} at the end"
+    if truth is None:
+        return f"{words}."
+    held = np.mean((low <= truth) & (truth <= high))
+    return f"{words} and holds the truth in {100 * held:.0f} % of the samples."
 
 
 def _curves(ax: Axes, time: Array, curves: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
@@ -368,12 +426,13 @@ def _with_divergence(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
     return [f"{name}{end}" for name, end in zip(labels, ends, strict=True)]
 
 
-def _distance_story(run: Run, error: Array) -> str:
+def _distance_story(run: Run, error: Array, claim: str) -> str:
     later = finite(error[len(error) // 2 :])
     behind = int((~np.isfinite(run.distance)).sum())
     sentences = [
         story(run),
         f"Over the last half its median relative error is {np.median(later):.2g} %." if later.size else "",
         f"{behind} of {len(run.time)} estimates are not in front of the camera: gaps." if behind else "",
+        claim,
     ]
     return " ".join(filter(None, sentences))

@@ -1,4 +1,4 @@
-"""The figure of excitation: how much a window of time tells."""
+"""Figures of what windows of time tell: of excitation, and of a filter's consistency."""
 
 from __future__ import annotations
 
@@ -8,7 +8,23 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.figures.base import ROUND_OFF, Figure, drawn, finite, labels_for, legend_above, new_axes, style, tidy
+from percept_obs.consistency import Consistency
+from percept_obs.figures.base import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ROUND_OFF,
+    Figure,
+    dots,
+    drawn,
+    finite,
+    labels_for,
+    legend_above,
+    linear_axis,
+    new_axes,
+    style,
+    tidy,
+)
 from percept_obs.observability import Excitation
 
 
@@ -58,6 +74,45 @@ def excitation(
     if labels is not None or len(given) > 1:
         legend_above(ax)
     return drawn((ax,), sentences)
+
+
+def consistency(found: Consistency, ax: Axes | None = None) -> Figure:
+    """Normalised innovations over time, with their moving average and the interval that it should keep to.
+
+    Parameters
+    ----------
+    found : Consistency
+    ax : axes, optional
+        New ones when left out.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    ValueError
+        If it is something else.
+    """
+    if not isinstance(found, Consistency):
+        raise ValueError(f"a Consistency is needed, not {found!r}; check_consistency(run) makes one")
+    ax = ax or new_axes(3.2)
+    tidy(ax)
+    low, high = found.interval(found.samples)
+    ax.axhspan(low, high, color=GREEN, alpha=0.2, linewidth=0, label=f"{100 * found.confidence:g} % interval")
+    ax.axhline(found.outputs, color=BLACK, linewidth=1, linestyle="--", label="expected mean")
+    ax.plot(found.time, found.normalised, **dots(found.normalised, label="samples"))
+    name = f"mean of {found.samples} samples"
+    ax.plot(found.average_time, found.averages, color=BLUE, linewidth=1.6, label=name)
+    firm = np.array([low, high, *found.averages, 0.0])
+    left_out = linear_axis(ax, firm, found.normalised, "the normalised innovations", reach=1.0)
+    ax.set_xlim(found.time[0], found.time[-1])
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel("normalised innovation")
+    legend_above(ax)
+    verdict = found.verdict()
+    words = f"Normalised innovations from {found.time[0]:.4g} to {found.time[-1]:.4g} s. "
+    return drawn((ax,), [f"{words}{verdict[0].upper()}{verdict[1:]}.", left_out])
 
 
 def _draw(ax: Axes, one: Excitation, name: str, look: dict[str, Any], first: bool) -> str:
