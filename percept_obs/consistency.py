@@ -124,8 +124,8 @@ class Consistency:
         return (
             f"{self.judgement}: {reason[self.judgement]}. The mean normalised innovation of {len(self.normalised)} "
             f"samples is {self.mean:.3g}; {self.outputs} is expected, and {low:.3g} to {high:.3g} with a probability "
-            f"of {100 * self.confidence:g} %. Of the moving averages of {self.samples} samples {100 * inside:.0f} % lie "
-            f"in their interval, {lowest:.3g} to {highest:.3g}"
+            f"of {100 * self.confidence:g} %. Of the moving averages of {self.samples} samples {100 * inside:.0f} % "
+            f"lie in their interval, {lowest:.3g} to {highest:.3g}"
         )
 
     def __repr__(self) -> str:
