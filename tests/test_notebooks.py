@@ -17,9 +17,12 @@ from jupyter_harness import (
     run_all,
     silent_pictures,
 )
+from lab_browser import assert_equals_python, centre, control, rested, state
 from nbclient.exceptions import CellExecutionError
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from utias_folder import utias_folder
+
+from percept_obs.labs.observer_lab import observer_lab
 
 NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
 
@@ -163,27 +166,59 @@ def page(chromium, tmp_path):
         yield page
 
 
-# What the lab shows: the address of its picture, and its words.
-SHOWN = """() => {
-    const lab = document.querySelector('.jp-OutputArea .widget-vbox');
-    return [lab.querySelector('img').src, lab.querySelector('[role=status]').textContent];
-}"""
+NOISE, STRONG = {"kind": "uniform", "size": 0.01}, {"identifier_based": {"gain": 30}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "seconds"),
+    [
+        ({}, 1.46),
+        ({"scenario": "ma2005_eq36"}, 2.19),
+        ({"scenario": "ma2005_eq36", "b": [0.1, 0.25, 0.3]}, 7.07),
+        ({"outputs": ["y1"]}, 13.2),
+        ({"gains": STRONG}, 0.65),
+        ({"gains": STRONG, "noise": NOISE}, 77.6),
+        ({"noise": NOISE}, 1.45),
+    ],
+)
+def test_what_the_first_notebook_answers_is_so(changes, seconds):
+    (run,) = observer_lab(**changes).run().values()
+    assert run.settling_time() == pytest.approx(seconds, abs=0.05)
 
 
 @pytest.mark.slow
 @pytest.mark.browser
-def test_the_first_notebook_moves_in_jupyterlab(page):
+def test_the_first_notebook_does_its_experiments_in_jupyterlab(page):
     open_notebook(page, "00_start.ipynb")
     run_all(page)
-    gain = page.locator(".widget-slider", has_text="Gain G").locator(".noUi-handle")
-    y2 = page.get_by_label("y2 is measured")
-    for control, key in ((gain, "ArrowRight"), (y2, "Space")):
-        before = page.evaluate(SHOWN)
-        control.focus()
-        control.press(key)
-        both_changed = f"before => ({SHOWN})().every((part, k) => part !== before[k])"
-        page.wait_for_function(both_changed, arg=before, timeout=2000)
-    assert "converged: the error of y2, y3" in page.evaluate(SHOWN)[1]
+    rested(page)
+    opening = state(page)
+    assert "after 1.46 s" in opening["verdicts"][0]
+
+    page.select_option(control("scenario"), "ma2005_eq36")
+    rested(page)
+    assert "after 2.19 s" in state(page)["verdicts"][0]
+    page.locator(control("foe")).scroll_into_view_if_needed()
+    x, y = centre(page, control("foe"))
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 60, y, steps=5)
+    page.mouse.up()
+    rested(page)
+    moved = state(page)
+    assert moved["settings"]["b"][0] < opening["settings"]["b"][0]
+    assert_equals_python(moved)
+
+    page.click(control("reset"))
+    page.check(control("outputs y1"))
+    rested(page)
+    assert "after 13.2 s" in state(page)["verdicts"][0]
+
+    page.click(control("reset"))
+    page.fill(control("identifier_based gain number"), "30")
+    page.fill(control("noise size number"), "0.01")
+    rested(page)
+    assert "after 77.6 s" in state(page)["verdicts"][0]
     assert log_entries(page) == ""
 
 
