@@ -369,6 +369,17 @@ def test_a_moving_focus_of_expansion_is_drawn_as_its_path_and_without_a_disk(run
     assert "focus of expansion moves" in figure.text
 
 
+def test_a_wide_picture_makes_a_low_figure(runs):
+    wide = record(
+        Scenario("wide", affine(np.zeros((3, 3)), (1, 0, 0)), (-2, 0.5, 5), 4, pinhole()), camera=Camera(period=0.05)
+    )
+    assert figures.image_plane(wide).figure.get_figheight() < 4.2
+    assert figures.image_plane(runs("(35), both outputs")).figure.get_figheight() == 5.2
+    given = MatplotlibFigure(figsize=(6, 6))
+    figures.image_plane(wide, ax=given.subplots())
+    assert given.get_figheight() == 6
+
+
 @pytest.mark.parametrize("translation", [(1, 0.2, 0), (0, 0, 0)])
 def test_without_a_focus_of_expansion_the_figure_says_so(translation):
     motion = affine(np.diag([0.1, 0, 0]), translation)

@@ -19,6 +19,7 @@ from percept_obs.figures.base import (
     GREY,
     SKY,
     TRUTH,
+    WIDTH,
     Array,
     Figure,
     dots,
@@ -91,9 +92,11 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
     measured = recording.names if run is None else run.observer.form.measured
     focus = _focus(system, recording.time)
     radius = _blind_radius(system, measured, threshold) if len(focus) == 1 else np.nan
-    ax = ax or new_axes(5.2)
+    own, ax = ax is None, ax or new_axes(5.2)
     tidy(ax)
     _set_limits(ax, path, estimate, focus, radius)
+    if own:
+        _fit_height(ax)
     _draw_path(ax, path, kind, estimate)
     ax.set(aspect="equal", xlabel=label("y1", recording.surface), ylabel=label("y2", recording.surface))
     seen = _complete(path)
@@ -224,6 +227,14 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, focus: Array, radius: fl
     ends = [limits(firm, loose, 0.5) for firm, loose in zip(shown.T, estimate.T, strict=True)]
     x, y = _not_a_strip(*ends)
     ax.set(xlim=x, ylim=y)
+
+
+def _fit_height(ax: Axes) -> None:
+    """Make a figure lower whose picture is wide; it would have empty margins above and below."""
+    width, height = np.ptp([ax.get_xlim(), ax.get_ylim()], axis=1)
+    figure: Any = ax.get_figure(root=True)
+    lettering = 1.2  # inches above and below the axes
+    figure.set_figheight(min(figure.get_figheight(), WIDTH * height / width + lettering))
 
 
 def _not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
