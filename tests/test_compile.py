@@ -11,10 +11,9 @@ from examples import BOTH, NOISY, ONE, ZERO
 from javascript import solve_in_node
 from scipy.integrate import solve_ivp
 
-import percept_obs.compile as compiling
 import percept_obs.tracking as tracking
 from percept_obs import Camera, Uniform, ibo, record, scenarios, smo, track
-from percept_obs.compile import NotCompilable, Table, solve, source
+from percept_obs.compile import NotCompilable, Table, kernels, solve, source
 from percept_obs.equations import Equations
 from percept_obs.observers import OBSERVERS, linear_approximation, range_identification
 
@@ -124,18 +123,18 @@ def test_numbers_compile_nothing(monkeypatch):
     recordings = [record(scenarios.ma2005_eq35(), 1, Camera(noise=Uniform(n)), seed=1) for n in (0.0, 0.02)]
     observer = ibo(ONE)
     track(recordings[0], observer, ZERO)
-    before = compiling._kernel.cache_info().misses, compiling.source.cache_info().misses
+    before = kernels._kernel.cache_info().misses, source.cache_info().misses
     monkeypatch.setattr(builtins, "exec", None)
     other = scenarios.ma2005_eq36()
     for recording in (*recordings, record(other, 1)):
         for gain in (3, 20):
             track(recording, observer.with_gains(gain=gain, noise_variance=1e-4), ZERO, believed=other.motion)
-    assert (compiling._kernel.cache_info().misses, compiling.source.cache_info().misses) == before
+    assert (kernels._kernel.cache_info().misses, source.cache_info().misses) == before
 
 
 def test_numba_takes_over_once_it_has_compiled():
     equations = Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,))
-    kernel = compiling._kernel(equations)
+    kernel = kernels._kernel(equations)
     assert kernel.choose(None) is kernel.python
     deadline = time.monotonic() + 60
     while kernel.choose(None) is kernel.python and time.monotonic() < deadline:
@@ -145,8 +144,8 @@ def test_numba_takes_over_once_it_has_compiled():
 
 
 def test_without_numba_python_runs(monkeypatch):
-    monkeypatch.setattr(compiling, "find_spec", lambda name: None)
-    kernel = compiling._kernel(Equations((x,), (-k * x + sp.Rational(1, 9),), (), (k,)))
+    monkeypatch.setattr(kernels, "find_spec", lambda name: None)
+    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 9),), (), (k,)))
     assert kernel.choose(None) is kernel.python
     assert kernel._beside is None
 

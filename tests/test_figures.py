@@ -92,7 +92,7 @@ FLAT = [name for name in MAKERS if name != "three outputs"]
 def in_python():
     """Short runs are over before numba has compiled anything beside them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("percept_obs.compile.find_spec", lambda name: None)
+        patch.setattr("percept_obs.compile.kernels.find_spec", lambda name: None)
         yield
 
 

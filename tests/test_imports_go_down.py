@@ -161,7 +161,7 @@ def test_a_breach_is_seen(tmp_path, path, text, complaint):
         ("tracking.py", "from .forms import CanonicalForm\nfrom percept_obs import compile\nimport sympy"),
         ("observers/ekf.py", "from .base import Observer\nfrom . import base\nfrom ..forms import x"),
         ("observers/__init__.py", "from .ekf import ekf\nfrom . import base"),
-        ("compile.py", "from sympy import lambdify\nfrom sympy.printing.pycode import PythonCodePrinter"),
+        ("compile/base.py", "from sympy import lambdify\nfrom sympy.printing.pycode import PythonCodePrinter"),
         ("labs/base.py", "import anywidget"),
         ("forms.py", "observer.lambdify()\nfrom sympy import latex"),
         ("__init__.py", "from .observers import ibo\nfrom .tracking import track"),
@@ -175,7 +175,7 @@ def complaints(folder, path, text):
     """What the rules say of a small package in which one file has this text."""
     package = folder / "percept_obs"
     observers = ("observers/__init__.py", "observers/base.py", "observers/family.py")
-    for name in ("__init__.py", "tracking.py", "compile.py", "forms.py", "surfaces.py", *observers, path):
+    for name in ("__init__.py", "tracking.py", "compile/__init__.py", "forms.py", "surfaces.py", *observers, path):
         file = package / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.touch()

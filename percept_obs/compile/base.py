@@ -1,4 +1,4 @@
-"""From sympy to code that runs: one classical Runge-Kutta loop, written once, in Python and in JavaScript.
+"""The loop's text: one classical Runge-Kutta loop, written once, printed in Python and in JavaScript.
 
 The loop is unrolled down to scalars, so that the Python text runs as it is and numba compiles the same text.
 Whatever a user may want to move (motion, gains, noise, start) is an argument; only a new structure compiles.
@@ -6,27 +6,18 @@ Whatever a user may want to move (motion, gains, noise, start) is an argument; o
 
 from __future__ import annotations
 
-import math
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import lru_cache
-from importlib.util import find_spec
 from typing import Any, Literal
 
-import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
 from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.logic.boolalg import Boolean, BooleanFunction
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
 from percept_obs.equations import Equations
-
-Array = NDArray[np.float64]
-Language = Literal["python", "numba", "javascript"]
 
 LARGEST_SQUARED_STATE = 1e300
 """A state whose squared norm exceeds this, or is not a number, has diverged."""
@@ -51,173 +42,6 @@ class NotCompilable(ValueError):
     """An expression that would not mean the same in every language."""
 
 
-@dataclass(frozen=True)
-class Table:
-    """What is known at the start, the middle and the end of every step.
-
-    Parameters
-    ----------
-    steps : array of shape (N,)
-        Lengths of the steps in seconds.
-    measured : array of shape (N, 3, m)
-        Measured outputs as they are held at the start, the middle and the end of each step.
-    parameters : array of shape (2 N + 1, p), or (1, p) when constant
-        Known motion and surface at the starts, middles and ends.
-    samples : array of shape (N + 1, m)
-        New samples at the steps' ends (and the first start); NaN where there is none.
-    """
-
-    steps: Array
-    measured: Array
-    parameters: Array
-    samples: Array
-
-
-@dataclass(frozen=True)
-class Trace:
-    """What a run of the loop leaves.
-
-    Parameters
-    ----------
-    states : array of shape (N + 1, n)
-        States at the first start and at the end of every step; NaN from `diverged` on.
-    resets : array of shape (N + 1,) of bool
-        Where the state was reset.
-    diverged : int or None
-        The first step's end at which the state was no longer finite.
-    """
-
-    states: Array
-    resets: NDArray[np.bool_]
-    diverged: int | None
-
-
-def solve(
-    equations: Equations,
-    start: ArrayLike,
-    table: Table,
-    gains: ArrayLike = (),
-    language: Literal["python", "numba"] | None = None,
-) -> Trace:
-    """Step the equations through the table.
-
-    Parameters
-    ----------
-    equations : Equations
-    start : array of shape (n,)
-    table : Table
-    gains : array of shape (number of gains,)
-    language : "python" or "numba", optional
-        Left out, numba as soon as it is installed and has compiled these equations beside, and Python until then.
-
-    Returns
-    -------
-    Trace
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If numba is asked for and is not installed.
-    """
-    kernel = _kernel(equations)
-    size, count = len(equations.state), len(table.steps) + 1
-    inputs = [
-        np.array(block, dtype=float).ravel()
-        for block in (start, table.steps, table.measured, table.parameters, table.samples, gains)
-    ]
-    varying = len(table.parameters) > 1
-    run = kernel.choose(language)
-    if run is kernel.python:
-        states: Any = [math.nan] * (size * count)
-        resets: Any = [0.0] * count
-        try:
-            diverged = run(*(block.tolist() for block in inputs), varying, states, resets)
-        except (ArithmeticError, ValueError):
-            diverged = next(k for k in range(count) if math.isnan(states[size * k]))
-    else:
-        states, resets = np.full(size * count, np.nan), np.zeros(count)
-        diverged = run(*inputs, varying, states, resets)
-    return Trace(
-        np.array(states).reshape(count, size),
-        np.array(resets) != 0,
-        None if diverged < 0 else int(diverged),
-    )
-
-
-def vectorised(
-    symbols: Sequence[sp.Symbol],
-    expressions: Sequence[sp.Expr],
-    values: Mapping[sp.Symbol, float] | None = None,
-) -> Callable[..., list[Array]]:
-    """A numpy function of arrays for several expressions; constants take the arrays' shape."""
-    extra = tuple(values or ())
-    function = _numpy_function((*symbols, *extra), tuple(expressions))
-    constants = tuple((values or {}).values())
-
-    def evaluate(*arrays: ArrayLike) -> list[Array]:
-        columns = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in arrays)) if arrays else []
-        shape = columns[0].shape if columns else ()
-        return [np.broadcast_to(np.asarray(r, dtype=float), shape) for r in function(*columns, *constants)]
-
-    return evaluate
-
-
-@lru_cache(maxsize=512)
-def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> Callable[..., tuple[Any, ...]]:
-    return sp.lambdify(symbols, expressions, "numpy", cse=True)
-
-
-def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
-    """The flow as a function of (state, measured, parameters) with the given numbers put in.
-
-    Parameters without a number stay arguments, in their order.
-    """
-    numbers = {symbol: sp.Float(value, 17) for symbol, value in values.items()}
-    left = [symbol for symbol in equations.parameters if symbol not in numbers]
-    flow = [entry.xreplace(numbers) for entry in equations.flow]
-    return sp.lambdify([equations.state, equations.measured, left], flow, "math", cse=True)
-
-
-class _Kernel:
-    """The same text for Python and, when it is there, numba."""
-
-    def __init__(self, equations: Equations) -> None:
-        self.text = source(equations, "python")
-        namespace: dict[str, Any] = {"math": math}
-        exec(compile(self.text, "<run>", "exec"), namespace)
-        self.python: Callable[..., int] = namespace["run"]
-        self._numba: Callable[..., int] | None = None
-        self._lock = threading.Lock()
-        self._beside: threading.Thread | None = None
-
-    def choose(self, language: str | None) -> Callable[..., int]:
-        if language == "python":
-            return self.python
-        if language == "numba":
-            return self._compiled()
-        if language is not None:
-            raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
-        if self._numba is None and self._beside is None and find_spec("numba"):
-            self._beside = threading.Thread(target=self._compiled)
-            self._beside.start()
-        return self._numba or self.python
-
-    def _compiled(self) -> Callable[..., int]:
-        with self._lock:
-            if self._numba is None:
-                import numba
-
-                block = numba.float64[::1]
-                signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
-                self._numba = numba.njit([signature], error_model="numpy")(self.python)
-            return self._numba
-
-
-@lru_cache(maxsize=512)
-def _kernel(equations: Equations) -> _Kernel:
-    return _Kernel(equations)
-
-
 @lru_cache(maxsize=512)
 def source(equations: Equations, language: Literal["python", "javascript"] = "python") -> str:
     """Text of the loop for these equations.
@@ -240,7 +64,7 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
         If an expression would not mean the same in both languages.
     """
     n, m, p = len(equations.state), len(equations.measured), len(equations.parameters)
-    text = _Text(language)
+    text = Text(language)
     names = {
         symbol: sp.Symbol(f"{letter}{k}", real=True)
         for letter, group in (
@@ -259,7 +83,7 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
     def prepared(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
         """The expressions in the loop's names, with what depends on gains only taken out."""
         renamed = [sp.sympify(e).xreplace(names) for e in expressions]
-        _refuse_what_differs(renamed)
+        refuse_what_differs(renamed)
         return [_take_out(_nested(e, variables), known_gains, fixed) for e in renamed]
 
     flow, reset = prepared(equations.flow), prepared(equations.reset)
@@ -349,39 +173,6 @@ def source(equations: Equations, language: Literal["python", "javascript"] = "py
     return str(text)
 
 
-@lru_cache(maxsize=512)
-def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> str:
-    """Text of a JavaScript function ``evaluate(x, out)`` that fills an array with the expressions' values.
-
-    Parameters
-    ----------
-    symbols : tuple of symbols
-        In the order of the argument array x.
-    expressions : tuple of expressions
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    NotCompilable
-        If an expression would not mean the same in Python and JavaScript.
-    """
-    text = _Text("javascript")
-    names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
-    with text.function("evaluate", ["x", "out"]):
-        for k, name in enumerate(names.values()):
-            text.assign(name.name, f"x[{k}]")
-        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
-        _refuse_what_differs(renamed)
-        text.formulas(renamed, "d")
-        for k in range(len(expressions)):
-            text.store(f"out[{k}]", f"d{k}")
-        text.leave("out")
-    return str(text)
-
-
 def _nested(expression: sp.Basic, variables: Sequence[sp.Symbol]) -> sp.Basic:
     """Nest sums as in Horner's scheme: the variable that most terms share is multiplied last."""
     if not isinstance(expression, sp.Add):
@@ -414,7 +205,7 @@ def _take_out(expression: sp.Basic, gains: set[sp.Symbol], fixed: dict[sp.Expr, 
     return expression.func(*(_take_out(e, gains, fixed) for e in expression.args))
 
 
-def _refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
+def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
     """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
     for expression in expressions:
         for node in sp.preorder_traversal(expression):
@@ -514,7 +305,7 @@ _WORDS = {
 }
 
 
-class _Text:
+class Text:
     """Lines of a program in one of two languages."""
 
     def __init__(self, language: str) -> None:
@@ -533,13 +324,16 @@ class _Text:
         return "\n".join(lines) + "\n"
 
     def line(self, text: str) -> None:
+        """Add a line, indented."""
         self.lines.append(("    " if self.python else "  ") * self.depth + text)
 
     def assign(self, name: str, expression: str) -> None:
+        """Give a local variable a value."""
         self.assigned[name] = None
         self.store(name, expression)
 
     def store(self, place: str, expression: str) -> None:
+        """Give a place in an array a value."""
         self.line(f"{place} = {expression}" + ("" if self.python else ";"))
 
     def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
@@ -551,6 +345,7 @@ class _Text:
             self.assign(f"{targets}{k}", self.print(expression))
 
     def leave(self, value: str) -> None:
+        """Return a value."""
         self.line(f"return {value}" + ("" if self.python else ";"))
 
     @contextmanager
@@ -563,15 +358,18 @@ class _Text:
             self.line("}")
 
     def function(self, name: str, arguments: Sequence[str]) -> Any:
+        """The function that the lines inside make up."""
         head = f"{name}({', '.join(arguments)})"
         return self._indented(f"def {head}", f"function {head}")
 
     def loop(self, index: str, over: str) -> Any:
+        """The loop over an array's indices."""
         return self._indented(
             f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
         )
 
     def block(self, word: Literal["if", "unless"], condition: str) -> Any:
+        """What is done only under a condition."""
         if word == "unless":
             return self._indented(f"if not {condition}", f"if (!({condition}))")
         return self._indented(f"if {condition}", f"if ({condition})")

@@ -1,0 +1,18 @@
+"""From sympy to code that runs, in Python, numba and JavaScript."""
+
+from percept_obs.compile.base import LARGEST_PRODUCT, LARGEST_SQUARED_STATE, NotCompilable, source
+from percept_obs.compile.functions import function_source, right_hand_side, vectorised
+from percept_obs.compile.kernels import Table, Trace, solve
+
+__all__ = [
+    "LARGEST_PRODUCT",
+    "LARGEST_SQUARED_STATE",
+    "NotCompilable",
+    "Table",
+    "Trace",
+    "function_source",
+    "right_hand_side",
+    "solve",
+    "source",
+    "vectorised",
+]

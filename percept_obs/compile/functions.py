@@ -1,0 +1,83 @@
+"""Expressions as functions: of arrays with numpy, of a state for scipy's solvers, of an array in JavaScript."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.compile.base import Text, refuse_what_differs
+from percept_obs.equations import Equations
+
+Array = NDArray[np.float64]
+
+
+def vectorised(
+    symbols: Sequence[sp.Symbol],
+    expressions: Sequence[sp.Expr],
+    values: Mapping[sp.Symbol, float] | None = None,
+) -> Callable[..., list[Array]]:
+    """A numpy function of arrays for several expressions; constants take the arrays' shape."""
+    extra = tuple(values or ())
+    function = _numpy_function((*symbols, *extra), tuple(expressions))
+    constants = tuple((values or {}).values())
+
+    def evaluate(*arrays: ArrayLike) -> list[Array]:
+        columns = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in arrays)) if arrays else []
+        shape = columns[0].shape if columns else ()
+        return [np.broadcast_to(np.asarray(r, dtype=float), shape) for r in function(*columns, *constants)]
+
+    return evaluate
+
+
+@lru_cache(maxsize=512)
+def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> Callable[..., tuple[Any, ...]]:
+    return sp.lambdify(symbols, expressions, "numpy", cse=True)
+
+
+def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
+    """The flow as a function of (state, measured, parameters) with the given numbers put in.
+
+    Parameters without a number stay arguments, in their order.
+    """
+    numbers = {symbol: sp.Float(value, 17) for symbol, value in values.items()}
+    left = [symbol for symbol in equations.parameters if symbol not in numbers]
+    flow = [entry.xreplace(numbers) for entry in equations.flow]
+    return sp.lambdify([equations.state, equations.measured, left], flow, "math", cse=True)
+
+
+@lru_cache(maxsize=512)
+def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> str:
+    """Text of a JavaScript function ``evaluate(x, out)`` that fills an array with the expressions' values.
+
+    Parameters
+    ----------
+    symbols : tuple of symbols
+        In the order of the argument array x.
+    expressions : tuple of expressions
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    NotCompilable
+        If an expression would not mean the same in Python and JavaScript.
+    """
+    text = Text("javascript")
+    names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
+    with text.function("evaluate", ["x", "out"]):
+        for k, name in enumerate(names.values()):
+            text.assign(name.name, f"x[{k}]")
+        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        refuse_what_differs(renamed)
+        text.formulas(renamed, "d")
+        for k in range(len(expressions)):
+            text.store(f"out[{k}]", f"d{k}")
+        text.leave("out")
+    return str(text)
