@@ -260,6 +260,45 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
 
 
+def output_injection(
+    form: CanonicalForm,
+    correction: sp.ImmutableMatrix,
+    measured_gain: sp.Expr,
+    hidden_gain: sp.Expr,
+    bias: sp.ImmutableMatrix | None = None,
+) -> Expressions:
+    """The flow of a copy of the system into which a correction of the outputs is fed back.
+
+    With the correction c, the gains L1, L2 and the bias b of w c::
+
+        x1hat' = L1 c + w^T x2hat + phi
+        x2hat' = L2 (w c - b) + g(x1, x2hat)
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    correction : matrix of shape (n1, 1)
+        The innovation `innovation`, or a function of it.
+    measured_gain, hidden_gain : expressions
+    bias : matrix of shape (n2, 1), optional
+        Such as `noise_bias`; none when left out.
+
+    Returns
+    -------
+    tuple of n1 + n2 expressions
+    """
+    x2_hat = hats(form.x2)
+    injected = form.w * correction - (sp.zeros(len(x2_hat), 1) if bias is None else bias)
+    measured_rate = measured_gain * correction + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
+    hidden_rate = hidden_gain * injected + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
+    return (*measured_rate, *hidden_rate)
+
+
+def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
+    """Measured outputs minus their estimates, x1 - x1hat."""
+    return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
+
+
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
     """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
 

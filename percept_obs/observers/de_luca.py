@@ -6,7 +6,7 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import About, Gain, Observer, hats
+from percept_obs.observers.base import About, Gain, Observer, hats, innovation, output_injection
 
 H, Lam = sp.symbols("H Lambda", real=True)
 
@@ -107,12 +107,7 @@ def spica(form: CanonicalForm, **gains: float) -> Observer:
 def _depth_observer(
     name: str, form: CanonicalForm, damping: sp.Expr, gains: tuple[Gain, ...], about: About
 ) -> Observer:
-    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
-    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
-    measured_rate = damping * e + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
-    hidden_rate = Lam * form.w * e + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
-    state = (*x1_hat, *x2_hat)
-    equations = Equations(
-        state, (*measured_rate, *hidden_rate), form.x1, form.parameters, tuple(gain.symbol for gain in gains)
-    )
+    state = hats((*form.x1, *form.x2))
+    flow = output_injection(form, innovation(form), damping, Lam)
+    equations = Equations(state, flow, form.x1, form.parameters, tuple(gain.symbol for gain in gains))
     return Observer(name, form, equations, hats(form.coordinates), gains, state, about=about)

@@ -6,7 +6,18 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, About, Gain, Observer, hats, kept_within, noise_bias
+from percept_obs.observers.base import (
+    BOUND_GAINS,
+    NOISE_GAIN,
+    About,
+    Gain,
+    Observer,
+    hats,
+    innovation,
+    kept_within,
+    noise_bias,
+    output_injection,
+)
 
 G, A, P = sp.symbols("G A P", real=True)
 
@@ -66,15 +77,12 @@ def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
     -----
     Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  The bias is `noise_bias` of the correction e.
     """
-    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
-    state = (*x1_hat, *x2_hat)
-    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
-    g_hat = form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
-    measured_rate = G * A * e + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
-    hidden_rate = -(G**2) * P * (form.w * e - noise_bias(form, e)) + g_hat
+    state = hats((*form.x1, *form.x2))
+    e = innovation(form)
+    flow = output_injection(form, e, G * A, -(G**2) * P, noise_bias(form, e))
     equations = Equations(
         state,
-        (*measured_rate, *hidden_rate),
+        flow,
         form.x1,
         form.parameters,
         tuple(gain.symbol for gain in GAINS),

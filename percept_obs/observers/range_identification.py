@@ -6,7 +6,7 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import About, Gain, Observer, hats
+from percept_obs.observers.base import About, Gain, Observer, hats, innovation
 from percept_obs.switching import switch_named
 
 alpha, k, gamma, delta = sp.symbols("alpha k gamma delta", real=True)
@@ -84,8 +84,7 @@ def range_identification(form: CanonicalForm, switch: str = "hyperbolic tangent"
     f = sp.symbols(f"f1:{len(form.x1) + 1}", real=True)
     rates = form.phi + sp.ImmutableMatrix(f)
     filters = [
-        -(k + alpha) * fi + gamma * sgn(x - hat, delta) + alpha * k * (x - hat)
-        for fi, x, hat in zip(f, form.x1, x1_hat, strict=True)
+        -(k + alpha) * fi + gamma * sgn(e, delta) + alpha * k * e for fi, e in zip(f, innovation(form), strict=True)
     ]
     equations = Equations(
         (*x1_hat, *f), (*rates, *filters), form.x1, form.parameters, tuple(gain.symbol for gain in GAINS)

@@ -6,7 +6,18 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
-from percept_obs.observers.base import BOUND_GAINS, NOISE_GAIN, About, Gain, Observer, hats, kept_within, noise_bias
+from percept_obs.observers.base import (
+    BOUND_GAINS,
+    NOISE_GAIN,
+    About,
+    Gain,
+    Observer,
+    hats,
+    innovation,
+    kept_within,
+    noise_bias,
+    output_injection,
+)
 from percept_obs.switching import switch_named
 
 alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
@@ -108,26 +119,24 @@ def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) 
     -----
     Ma, Chen and Moore 2005, (21)-(23), pp. 67-68.  The bias is `noise_bias` of the correction s.
     """
-    x1_hat, x2_hat = hats(form.x1), hats(form.x2)
+    estimate = hats((*form.x1, *form.x2))
     lambdas = sp.symbols(f"lambda1:{len(form.x1) + 1}", real=True)
-    e = sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(x1_hat)
+    e = innovation(form)
     smoothed = switch_named(switch)
     s = sp.ImmutableMatrix([lam * smoothed(ei, delta) for lam, ei in zip(lambdas, e, strict=True)])
-    g_hat = form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
-    measured_rate = s + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
-    hidden_rate = alpha * (form.w * s - noise_bias(form, s)) + g_hat
+    flow = output_injection(form, s, sp.S.One, alpha, noise_bias(form, s))
     growth = [sp.Piecewise((2 * alpha1 * sp.Abs(ei), sp.Abs(ei) > 2 * delta), (0, True)) for ei in e]
-    state = (*x1_hat, *x2_hat, *lambdas)
+    state = (*estimate, *lambdas)
     equations = Equations(
         state,
-        (*measured_rate, *hidden_rate, *growth),
+        (*flow, *growth),
         form.x1,
         form.parameters,
         tuple(gain.symbol for gain in GAINS),
         (),
-        *kept_within(state, (*x1_hat, *x2_hat)),
+        *kept_within(state, estimate),
     )
-    start = (*x1_hat, *x2_hat, *(lambda0 for _ in lambdas))
+    start = (*estimate, *(lambda0 for _ in lambdas))
     observer = Observer("sliding mode", form, equations, hats(form.coordinates), GAINS, start, about=ABOUT)
     return observer.with_gains(**gains)
 
