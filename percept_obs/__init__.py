@@ -2,7 +2,7 @@
 
 from percept_obs import scenarios
 from percept_obs.consistency import check_consistency
-from percept_obs.forms import CanonicalForm, NotAffine
+from percept_obs.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.motion import Motion, affine, rigid
 from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import Observer, ekf, extended_kalman, ibo, identifier_based, sliding_mode, smo, with_point
@@ -23,6 +23,7 @@ __all__ = [
     "Motion",
     "NotAffine",
     "Observer",
+    "PartitionedSystem",
     "PerspectiveSystem",
     "Recording",
     "Run",

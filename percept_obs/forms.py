@@ -1,10 +1,10 @@
-"""The canonical form: a measured part, and a hidden part that enters its rate linearly."""
+"""Systems with a measured and a hidden part, and their canonical form, where the hidden part enters linearly."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import sympy as sp
@@ -28,13 +28,81 @@ class NotAffine(ValueError):
         self.measured, self.culprits = tuple(measured), tuple(culprits)
         super().__init__(
             f"measuring {', '.join(measured)} gives no canonical form: its rate is not affine in "
-            f"{', '.join(culprits)}; measure {' or '.join(culprits[:-1]) or culprits[0]} as well, or use an "
-            "observer that needs no such form"
+            f"{', '.join(culprits)}; measure {' or '.join(culprits[:-1]) or culprits[0]} as well, or use the extended "
+            f"Kalman filter: extended_kalman(system.partition({', '.join(map(repr, measured))}))"
         )
 
 
 @dataclass(frozen=True)
-class CanonicalForm:
+class PartitionedSystem:
+    """A system whose coordinates are divided into measured and hidden ones: (x1, x2)' = f(x1, x2).
+
+    Parameters
+    ----------
+    x1, x2 : tuples of n1 and n2 symbols
+        Measured and hidden coordinates.
+    rate : matrix of shape (n1 + n2, 1)
+        Time derivative of (x1, x2).
+    parameters : tuple of symbols
+        Known motion and surface.
+    coordinates : tuple of symbols
+        All coordinates in the order of the surface.
+    surface : ImagingSurface or None
+        Where the outputs are seen.
+    """
+
+    x1: tuple[sp.Symbol, ...]
+    x2: tuple[sp.Symbol, ...]
+    rate: sp.ImmutableMatrix
+    parameters: tuple[sp.Symbol, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    surface: ImagingSurface | None = None
+
+    @property
+    def values(self) -> dict[sp.Symbol, float]:
+        """Numbers of the surface's symbols."""
+        return dict(self.surface.values) if self.surface else {}
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the measured coordinates."""
+        return tuple(symbol.name for symbol in self.x1)
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of the hidden coordinates."""
+        return tuple(symbol.name for symbol in self.x2)
+
+    def canonical_form(self) -> CanonicalForm:
+        """The same system in the form that most observers need.
+
+        Raises
+        ------
+        NotAffine
+            If the measured coordinates' rate is not affine in the hidden ones.
+        """
+        n1 = len(self.x1)
+        measured_rate, g = self.rate[:n1, :].expand(), self.rate[n1:, :]
+        w = measured_rate.jacobian(self.x2).T.expand()
+        culprits = _culprits(w, self.x2)
+        if culprits:
+            raise NotAffine(self.measured, culprits)
+        away = dict.fromkeys(self.x2, sp.S.Zero)
+        # What is affine but not written so still holds hidden coordinates; their value does not matter there.
+        w = w if not w.free_symbols & set(self.x2) else w.subs(away)
+        phi = measured_rate.subs(away)
+        return CanonicalForm(self.x1, self.x2, w, phi, g, self.parameters, self.coordinates, self.surface)
+
+    def _repr_latex_(self) -> str:
+        lines = [
+            rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {sp.latex(rate)}"
+            for part, rate in ((self.x1, self.rate[: len(self.x1), :]), (self.x2, self.rate[len(self.x1) :, :]))
+        ]
+        return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
+
+
+@dataclass(frozen=True, init=False)
+class CanonicalForm(PartitionedSystem):
     """The system x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
 
     Parameters
@@ -52,34 +120,30 @@ class CanonicalForm:
         Where the outputs are seen.
     """
 
-    x1: tuple[sp.Symbol, ...]
-    x2: tuple[sp.Symbol, ...]
-    w: sp.ImmutableMatrix
-    phi: sp.ImmutableMatrix
-    g: sp.ImmutableMatrix
-    parameters: tuple[sp.Symbol, ...]
-    coordinates: tuple[sp.Symbol, ...]
-    surface: ImagingSurface | None = None
+    rate: sp.ImmutableMatrix = field(init=False)
+    w: sp.ImmutableMatrix = field(kw_only=True)
+    phi: sp.ImmutableMatrix = field(kw_only=True)
+    g: sp.ImmutableMatrix = field(kw_only=True)
 
-    @property
-    def rate(self) -> sp.ImmutableMatrix:
-        """Time derivative of (x1, x2)."""
-        return sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
+    def __init__(
+        self,
+        x1: tuple[sp.Symbol, ...],
+        x2: tuple[sp.Symbol, ...],
+        w: sp.ImmutableMatrix,
+        phi: sp.ImmutableMatrix,
+        g: sp.ImmutableMatrix,
+        parameters: tuple[sp.Symbol, ...],
+        coordinates: tuple[sp.Symbol, ...],
+        surface: ImagingSurface | None = None,
+    ) -> None:
+        rate = sp.ImmutableMatrix([*(w.T * sp.ImmutableMatrix(x2) + phi), *g])
+        super().__init__(x1, x2, rate, parameters, coordinates, surface)
+        for name, part in (("w", w), ("phi", phi), ("g", g)):
+            object.__setattr__(self, name, part)
 
-    @property
-    def values(self) -> dict[sp.Symbol, float]:
-        """Numbers of the surface's symbols."""
-        return dict(self.surface.values) if self.surface else {}
-
-    @property
-    def measured(self) -> tuple[str, ...]:
-        """Names of the measured coordinates."""
-        return tuple(symbol.name for symbol in self.x1)
-
-    @property
-    def hidden(self) -> tuple[str, ...]:
-        """Names of the hidden coordinates."""
-        return tuple(symbol.name for symbol in self.x2)
+    def canonical_form(self) -> CanonicalForm:
+        """The form itself."""
+        return self
 
     def derivation(self) -> Derivation:
         """The form in formulas, one part after the other."""
@@ -104,33 +168,20 @@ class CanonicalForm:
         )
 
 
-def split(
+def partition(
     coordinates: tuple[sp.Symbol, ...],
     rate: sp.ImmutableMatrix,
     measured: Sequence[str],
     parameters: tuple[sp.Symbol, ...],
     surface: ImagingSurface | None = None,
-) -> CanonicalForm:
-    """Bring a system into canonical form, given the names of the measured coordinates.
-
-    Raises
-    ------
-    NotAffine
-        If the measured coordinates' rate is not affine in the hidden ones.
-    """
-    by_name = {symbol.name: (symbol, entry) for symbol, entry in zip(coordinates, rate, strict=True)}
-    x1 = tuple(by_name[name][0] for name in measured)
+) -> PartitionedSystem:
+    """Divide a system, given the names of the measured coordinates and the rate in the order of all coordinates."""
+    rates = dict(zip(coordinates, rate, strict=True))
+    by_name = {symbol.name: symbol for symbol in coordinates}
+    x1 = tuple(by_name[name] for name in measured)
     x2 = tuple(symbol for symbol in coordinates if symbol not in x1)
-    measured_rate = sp.ImmutableMatrix([by_name[name][1] for name in measured]).expand()
-    w = measured_rate.jacobian(x2).T.expand()
-    culprits = _culprits(w, x2)
-    if culprits:
-        raise NotAffine(measured, culprits)
-    away = dict.fromkeys(x2, sp.S.Zero)
-    # What is affine but not written so still holds hidden coordinates; their value does not matter there.
-    w = w if not w.free_symbols & set(x2) else w.subs(away)
-    g = sp.ImmutableMatrix([by_name[symbol.name][1] for symbol in x2])
-    return CanonicalForm(x1, x2, w, measured_rate.subs(away), g, parameters, coordinates, surface)
+    ordered = sp.ImmutableMatrix([rates[symbol] for symbol in (*x1, *x2)])
+    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, surface)
 
 
 def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> list[str]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from percept_obs.compile import vectorised
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.motion import Motion
 from percept_obs.recording import Recording
 
@@ -86,13 +86,18 @@ class InstantaneousObservability:
         return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict}$"
 
 
-def instantaneous(form: CanonicalForm) -> InstantaneousObservability:
+def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     """Observability at an instant, from w w^T (Ma 2005, (17)-(20), p. 67).
 
     Ma's test asks the smallest eigenvalue of w w^T to be positive.  With one output and two hidden coordinates its
     rank is 1, so that the smallest eigenvalue is 0 everywhere.
+
+    Raises
+    ------
+    NotAffine
+        If there is no canonical form, and so no w.
     """
-    return InstantaneousObservability(form)
+    return InstantaneousObservability(form.canonical_form())
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,13 +125,14 @@ class Excitation:
 
 
 def windowed(
-    form: CanonicalForm, recording: Recording, window: float = 10.0, motion: Motion | None = None
+    form: PartitionedSystem, recording: Recording, window: float = 10.0, motion: Motion | None = None
 ) -> Excitation:
     """Persistency of excitation along a recording.
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     recording : Recording
         Its truth is used where there is one, else its outputs, with lost samples interpolated.
     window : float
@@ -136,10 +142,12 @@ def windowed(
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form, and so no w.
     ValueError
         If the window is not positive or longer than the recording.
     """
-    time = recording.time
+    form, time = form.canonical_form(), recording.time
     if not 0 < window <= time[-1] - time[0] + 1e-9:
         raise ValueError(f"the window is {window} s; it must be positive and at most {time[-1] - time[0]:.4g} s")
     gathered = cumulative_trapezoid(_information(form, recording, motion or recording.motion), time, axis=0, initial=0)

@@ -8,7 +8,7 @@ from functools import cached_property
 import sympy as sp
 
 from percept_obs.derivation import Derivation, Step, equals
-from percept_obs.forms import CanonicalForm, split
+from percept_obs.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.motion import Motion
 from percept_obs.surfaces import POINT, ImagingSurface
 
@@ -67,8 +67,34 @@ class PerspectiveSystem:
         direction = dict(zip(POINT, self.motion.b, strict=True))
         return sp.ImmutableMatrix([entry.subs(direction, simultaneous=True) for entry in self.surface.image])
 
+    def partition(self, *names: str) -> PartitionedSystem:
+        """Divide the coordinates into measured and hidden ones.
+
+        Parameters
+        ----------
+        *names : str
+            Names of the measured coordinates, such as "y1", "y2".
+
+        Returns
+        -------
+        PartitionedSystem
+            Enough for the extended Kalman filter, for any outputs on any surface.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown, repeated, or the inverse distance, or none is given.
+        """
+        known = [symbol.name for symbol in self.surface.image_coordinates]
+        if not names or len(set(names)) != len(names) or not set(names) <= set(known):
+            raise ValueError(
+                f"cannot measure {', '.join(map(repr, names)) or 'nothing'}: the outputs of the {self.surface.name} "
+                f"are {', '.join(known)}; name at least one of them, each once"
+            )
+        return partition(self.coordinates, self.rate, names, self.parameters, self.surface)
+
     def measure(self, *names: str) -> CanonicalForm:
-        """Split the system into what is measured and what is hidden.
+        """The canonical form with the named coordinates measured.
 
         Parameters
         ----------
@@ -86,13 +112,7 @@ class PerspectiveSystem:
         ValueError
             If a name is unknown, repeated, or the inverse distance, or none is given.
         """
-        known = [symbol.name for symbol in self.surface.image_coordinates]
-        if not names or len(set(names)) != len(names) or not set(names) <= set(known):
-            raise ValueError(
-                f"cannot measure {', '.join(map(repr, names)) or 'nothing'}: the outputs of the {self.surface.name} "
-                f"are {', '.join(known)}; name at least one of them, each once"
-            )
-        return split(self.coordinates, self.rate, names, self.parameters, self.surface)
+        return self.partition(*names).canonical_form()
 
     def derivation(self) -> Derivation:
         """The way from X' = A X + b to the rate, step by step."""

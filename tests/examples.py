@@ -41,4 +41,5 @@ SURFACES = {
     "plane with three outputs": plane((0.1, -0.2, 0.9), outputs=3),
     "sphere": sphere(),
 }
+ON_SPHERE = PerspectiveSystem(affine(), SURFACES["sphere"])
 MOTIONS = {"affine": affine(), "rigid": rigid()}

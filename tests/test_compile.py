@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 import pytest
 import sympy as sp
-from examples import BOTH, NOISY, ONE, ZERO
+from examples import BOTH, NOISY, ON_SPHERE, ONE, ZERO
 from javascript import solve_in_node
 from scipy.integrate import solve_ivp
 
 import percept_obs.tracking as tracking
-from percept_obs import Camera, Uniform, ibo, record, scenarios, smo, track
+from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, kernels, solve, source
 from percept_obs.equations import Equations
 from percept_obs.observers import OBSERVERS, linear_approximation, range_identification
@@ -29,6 +29,11 @@ PAIRS = [
     for outputs, form in FORMS.items()
     if make is not range_identification or form is BOTH
 ]
+
+
+# what `record` is to see, and an observer that has no canonical form there
+SPHERE = scenarios.ma2005_eq35(ON_SPHERE.surface)
+WITHOUT_FORM = ekf(ON_SPHERE.partition("y1"))
 
 
 def table_of(monkeypatch, recording, observer, **settings):
@@ -63,6 +68,20 @@ def test_python_and_numba_agree(observer, form):
     python, compiled = (track(recording, observer(form), ZERO, language=lang) for lang in ("python", "numba"))
     np.testing.assert_allclose(compiled.state, python.state, rtol=1e-12, atol=1e-12)
     assert compiled.resets.tolist() == python.resets.tolist()
+
+
+@pytest.mark.slow
+def test_python_and_numba_agree_without_a_canonical_form():
+    recording = record(SPHERE, 5, NOISY, seed=3)
+    python, compiled = (track(recording, WITHOUT_FORM, ZERO, language=lang) for lang in ("python", "numba"))
+    np.testing.assert_allclose(compiled.state, python.state, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.node
+def test_javascript_agrees_without_a_canonical_form(monkeypatch, node):
+    handed = table_of(monkeypatch, record(SPHERE, 5, NOISY, seed=3), WITHOUT_FORM, start=ZERO)
+    here, there = solve(**handed, language="python"), solve_in_node(node, **handed)
+    np.testing.assert_allclose(there.states, here.states, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.node

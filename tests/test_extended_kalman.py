@@ -1,15 +1,15 @@
-"""The extended Kalman filter is a Kalman filter where the system is linear, converges on Ma's, and is honest."""
+"""The extended Kalman filter is a Kalman filter where the system is linear, converges on any surface, and is honest."""
 
 import numpy as np
 import pytest
 import sympy as sp
-from examples import AFFINE, BOTH, NOISY, ONE, ZERO
+from examples import AFFINE, BOTH, NOISY, ON_SPHERE, ONE, ZERO
 from pykalman import KalmanFilter
 from scipy.linalg import expm
 
 from percept_obs import Camera, Gaussian, ekf, record, scenarios, track
 from percept_obs.compile import Table, solve
-from percept_obs.forms import split
+from percept_obs.forms import partition
 
 EQ35 = scenarios.ma2005_eq35()
 
@@ -18,7 +18,7 @@ def test_on_a_linear_system_it_is_the_kalman_filter():
     """Against pykalman, given the exact discretisation of the same continuous system."""
     x, v = sp.symbols("x v", real=True)
     k, c = 0.7, 0.2
-    form = split((x, v), sp.ImmutableMatrix([v, -k * x - c * v]), ["x"], ())
+    form = partition((x, v), sp.ImmutableMatrix([v, -k * x - c * v]), ["x"], ())
     observer = ekf(form, noise_variance=0.01, measured_variance=2.0, hidden_variance=3.0)
     period, count = 0.1, 200
     samples = np.random.default_rng(1).normal(0, 1, count)
@@ -75,6 +75,25 @@ def test_the_claimed_covariance_is_honest(form):
         outside.append(np.mean(np.abs(run.error[100:, 2]) > 3 * sigma))
     assert np.mean(squared) == pytest.approx(outputs, rel=0.03)
     assert np.mean(outside) < 0.02
+
+
+@pytest.mark.parametrize("names", [("y1",), ("y2",), ("y1", "y2")], ids="+".join)
+def test_it_converges_on_a_sphere_with_any_outputs(names):
+    """Also with one output, which has no canonical form there."""
+    recording = record(scenarios.ma2005_eq35(ON_SPHERE.surface), 6)
+    run = track(recording, ekf(ON_SPHERE.partition(*names)), ZERO, language="python")
+    assert run.settling_time(0.05) < 5
+    assert np.abs(run.error[-1]).max() < 1e-3
+
+
+def test_a_canonical_form_makes_no_difference():
+    divided, canonical = ekf(AFFINE.partition("y1")), ekf(ONE)
+    flows = (sp.Matrix(observer.equations.flow).expand() for observer in (divided, canonical))
+    assert next(flows) == next(flows)
+    assert divided.equations.update == canonical.equations.update
+    recording = record(EQ35, 20, NOISY, seed=2)
+    runs = [track(recording, observer, ZERO, language="python") for observer in (divided, canonical)]
+    np.testing.assert_allclose(runs[0].estimate, runs[1].estimate, rtol=1e-10, atol=1e-12)
 
 
 def test_outputs_may_take_turns_in_any_order():

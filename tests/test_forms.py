@@ -1,11 +1,13 @@
 """The canonical form is the system again, and exists only where the measured rate is affine in the rest."""
 
+from dataclasses import replace
+
 import pytest
 import sympy as sp
-from examples import AFFINE, BOTH, MOTIONS, ONE, OTHER, SURFACES
+from examples import AFFINE, BOTH, MOTIONS, ON_SPHERE, ONE, OTHER, SURFACES
 
-from percept_obs import NotAffine, PerspectiveSystem, affine
-from percept_obs.forms import split
+from percept_obs import NotAffine, PerspectiveSystem
+from percept_obs.forms import partition
 
 OUTPUTS = [("y1",), ("y2",), ("y1", "y2"), ("y2", "y1")]
 FLAT = {name: surface for name, surface in SURFACES.items() if name != "sphere"}
@@ -33,10 +35,10 @@ def test_one_output_of_the_pinhole():
 
 
 def test_a_sphere_needs_both_outputs():
-    system = PerspectiveSystem(affine(), SURFACES["sphere"])
-    assert system.measure("y1", "y2").hidden == ("y3",)
-    with pytest.raises(NotAffine, match="not affine in y2, y3; measure y2 as well") as refusal:
-        system.measure("y1")
+    assert ON_SPHERE.measure("y1", "y2").hidden == ("y3",)
+    advice = r"not affine in y2, y3; measure y2 as well, or .* extended_kalman\(system.partition\('y1'\)\)"
+    with pytest.raises(NotAffine, match=advice) as refusal:
+        ON_SPHERE.measure("y1")
     assert refusal.value.measured == ("y1",)
     assert refusal.value.culprits == ("y2", "y3")
 
@@ -44,18 +46,45 @@ def test_a_sphere_needs_both_outputs():
 def test_only_the_guilty_coordinate_is_named():
     x, y, z = sp.symbols("x y z", real=True)
     with pytest.raises(NotAffine) as refusal:
-        split((x, y, z), sp.ImmutableMatrix([x * z + y**2, y, z]), ["x"], ())
+        partition((x, y, z), sp.ImmutableMatrix([x * z + y**2, y, z]), ["x"], ()).canonical_form()
     assert refusal.value.culprits == ("y",)
 
 
 def test_an_affine_rate_in_disguise_is_accepted():
     x, y = sp.symbols("x y", real=True)
-    form = split((x, y), sp.ImmutableMatrix([(y**2 - x**2) / (y - x), y]), ["x"], ())
+    form = partition((x, y), sp.ImmutableMatrix([(y**2 - x**2) / (y - x), y]), ["x"], ()).canonical_form()
     assert form.w == sp.Matrix([1])
     assert form.phi.subs(x, 3) == sp.Matrix([3])
+
+
+@pytest.mark.parametrize("names", OUTPUTS, ids="+".join)
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+def test_a_partition_is_the_system_in_another_order(surface, names):
+    system = PerspectiveSystem(MOTIONS["rigid"], surface)
+    divided = system.partition(*names)
+    assert divided.measured == names
+    assert {*divided.measured, *divided.hidden} == {s.name for s in system.coordinates}
+    rates = dict(zip((*divided.x1, *divided.x2), divided.rate, strict=True))
+    assert [rates[s] for s in system.coordinates] == list(system.rate)
+    assert (divided.parameters, divided.coordinates, divided.surface) == (
+        system.parameters,
+        system.coordinates,
+        surface,
+    )
+
+
+def test_another_part_makes_another_rate():
+    still = replace(BOTH, g=sp.ImmutableMatrix([0]))
+    assert still.rate[-1] == 0
+    assert still.rate[:2] == BOTH.rate[:2]
+    assert still.canonical_form() is still
+    assert still != BOTH
+    with pytest.raises(ValueError, match="rate"):
+        replace(BOTH, rate=still.rate)
 
 
 def test_the_form_shows_its_parts():
     assert sp.latex(ONE.w.T) in str(ONE.derivation())
     assert sp.latex(ONE.g) in ONE._repr_latex_()
+    assert all(sp.latex(entry) in AFFINE.partition("y2")._repr_latex_() for entry in AFFINE.rate)
     assert AFFINE.values == {}

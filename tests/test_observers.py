@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from examples import AFFINE, BOTH, MOTIONS, NOISY, ONE, OTHER, SURFACES, ZERO
+from examples import AFFINE, BOTH, MOTIONS, NOISY, ON_SPHERE, ONE, OTHER, SURFACES, ZERO
 from scipy.integrate import solve_ivp
 
-from percept_obs import Camera, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
+from percept_obs import Camera, NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
 from percept_obs.compile import vectorised
+from percept_obs.forms import partition
 from percept_obs.observers import (
     OBSERVERS,
     NeedsMoreOutputs,
@@ -35,7 +36,11 @@ PAIRS = [
     for name, form in FORMS.items()
     if make is not range_identification or form is BOTH
 ]
-each = pytest.mark.parametrize(("make", "form"), PAIRS)
+x, z = sp.symbols("x z", real=True)
+SQUARE = partition((x, z), sp.ImmutableMatrix([z**2 - x, x * z - z]), ["x"], ())
+"""A small system without a canonical form."""
+WITHOUT_FORM = pytest.param(ekf, SQUARE, id="extended_kalman-x")
+each = pytest.mark.parametrize(("make", "form"), [*PAIRS, WITHOUT_FORM])
 each_smooth = pytest.mark.parametrize(("make", "form"), [p for p in PAIRS if p.values[0] is not smo])
 
 
@@ -70,6 +75,20 @@ def test_a_truthful_start_stays_true_with_less_measured(make, form):
     recording = record(scenarios.ma2005_eq36(), 10)
     run = track(recording, make(form), recording.truth[0], hold="exact", language="python")
     assert np.abs(run.error).max() < 1e-7
+
+
+@pytest.mark.parametrize("names", [("y1",), ("y2",)], ids="+".join)
+def test_a_truthful_start_stays_true_without_a_canonical_form(names):
+    recording = record(scenarios.ma2005_eq35(ON_SPHERE.surface), 5)
+    run = track(recording, ekf(ON_SPHERE.partition(*names)), recording.truth[0], hold="exact", language="python")
+    assert np.abs(run.error).max() < 1e-7
+
+
+@pytest.mark.parametrize("make", [make for make in OBSERVERS if make is not ekf], ids=lambda make: make.__name__)
+def test_an_observer_that_needs_a_canonical_form_derives_it_or_says_what_to_do(make):
+    assert make(AFFINE.partition("y1", "y2")).equations == make(BOTH).equations
+    with pytest.raises(NotAffine, match="or use the extended Kalman filter"):
+        make(ON_SPHERE.partition("y1"))
 
 
 def test_every_iterate_of_the_cascade_brings_the_estimate_nearer():

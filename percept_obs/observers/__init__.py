@@ -1,4 +1,4 @@
-"""Observers of a canonical form, one family a file."""
+"""Observers, one family a file."""
 
 from percept_obs.observers.base import About, Gain, Observer, noise_bias, with_point
 from percept_obs.observers.de_luca import de_luca, spica

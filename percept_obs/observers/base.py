@@ -15,7 +15,7 @@ from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile import right_hand_side
 from percept_obs.equations import Equations, Expressions, Symbols
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.motion import Motion
 
 
@@ -85,13 +85,13 @@ class About:
 
 @dataclass(frozen=True)
 class Observer:
-    """An observer of a canonical form, as equations.
+    """An observer of a system with measured and hidden coordinates, as equations.
 
     Parameters
     ----------
     name : str
-    form : CanonicalForm
-        What is observed.
+    form : PartitionedSystem
+        What is observed; a canonical form where the observer needs one.
     equations : Equations
         Flow, measurement update, reset condition and reset of the observer's state.
     estimate : tuple of expressions
@@ -106,7 +106,7 @@ class Observer:
     """
 
     name: str
-    form: CanonicalForm
+    form: PartitionedSystem
     equations: Equations
     estimate: tuple[sp.Expr, ...]
     gains: tuple[Gain, ...]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats, innovation, output_injection
 
 H, Lam = sp.symbols("H Lambda", real=True)
@@ -40,7 +40,7 @@ ABOUT_SPICA = About(
 )
 
 
-def de_luca(form: CanonicalForm, **gains: float) -> Observer:
+def de_luca(form: PartitionedSystem, **gains: float) -> Observer:
     """Depth observer of De Luca, Oriolo and Robuffo Giordano.
 
     With e = x1 - x1hat::
@@ -52,7 +52,8 @@ def de_luca(form: CanonicalForm, **gains: float) -> Observer:
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     measured_gain : float
         H, positive.  Default 5.
     hidden_gain : float
@@ -64,6 +65,8 @@ def de_luca(form: CanonicalForm, **gains: float) -> Observer:
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     ValueError
         If a gain is unknown or out of its range.
 
@@ -72,10 +75,10 @@ def de_luca(form: CanonicalForm, **gains: float) -> Observer:
     A. De Luca, G. Oriolo, P. Robuffo Giordano, Feature depth observation for image-based visual servoing,
     Int. J. Robotics Research 27(10), 2008.
     """
-    return _depth_observer("De Luca", form, H, GAINS, ABOUT_DE_LUCA).with_gains(**gains)
+    return _depth_observer("De Luca", form.canonical_form(), H, GAINS, ABOUT_DE_LUCA).with_gains(**gains)
 
 
-def spica(form: CanonicalForm, **gains: float) -> Observer:
+def spica(form: PartitionedSystem, **gains: float) -> Observer:
     """Depth observer with the measured gain that damps critically: H = 2 sqrt(Lambda) |w|.
 
     The error then shrinks like a critically damped oscillator with the natural frequency sqrt(Lambda) |w|, if |w| were
@@ -83,7 +86,8 @@ def spica(form: CanonicalForm, **gains: float) -> Observer:
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     hidden_gain : float
         Lambda, positive.  Default 10.
 
@@ -93,6 +97,8 @@ def spica(form: CanonicalForm, **gains: float) -> Observer:
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     ValueError
         If a gain is unknown or out of its range.
 
@@ -100,6 +106,7 @@ def spica(form: CanonicalForm, **gains: float) -> Observer:
     -----
     R. Spica, P. Robuffo Giordano, A framework for active estimation, IEEE CDC 2013.  |w| is the Frobenius norm.
     """
+    form = form.canonical_form()
     damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in form.w))
     return _depth_observer("Spica", form, damping, (LAMBDA_GAIN,), ABOUT_SPICA).with_gains(**gains)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats
 
 R, Q, P1, P2 = sp.symbols("R Q P01 P02", real=True)
@@ -62,8 +62,8 @@ ABOUT = About(
 )
 
 
-def extended_kalman(form: CanonicalForm, **gains: float) -> Observer:
-    """Extended Kalman filter (EKF).
+def extended_kalman(form: PartitionedSystem, **gains: float) -> Observer:
+    """Extended Kalman filter (EKF), for any measured outputs; it needs no canonical form.
 
     Between samples, with the system's rate f and its Jacobian F at the estimate::
 
@@ -76,7 +76,7 @@ def extended_kalman(form: CanonicalForm, **gains: float) -> Observer:
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
     noise_variance : float
         R, variance of the noise in each output; positive.  Default 0.01^2 / 3, uniform noise of +-0.01.
     process_noise : float

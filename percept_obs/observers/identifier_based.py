@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import (
     BOUND_GAINS,
     NOISE_GAIN,
@@ -38,7 +38,7 @@ ABOUT = About(
 )
 
 
-def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
+def identifier_based(form: PartitionedSystem, **gains: float) -> Observer:
     """Identifier-based observer (IBO).
 
     With e = x1 - x1hat::
@@ -49,7 +49,8 @@ def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     gain : float
         G, how fast the observer is; positive.  Default 10.
     injection : float
@@ -70,6 +71,8 @@ def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     ValueError
         If a gain is unknown or out of its range.
 
@@ -77,6 +80,7 @@ def identifier_based(form: CanonicalForm, **gains: float) -> Observer:
     -----
     Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  The bias is `noise_bias` of the correction e.
     """
+    form = form.canonical_form()
     state = hats((*form.x1, *form.x2))
     e = innovation(form)
     flow = output_injection(form, e, G * A, -(G**2) * P, noise_bias(form, e))

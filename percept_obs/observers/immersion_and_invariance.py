@@ -7,7 +7,7 @@ from itertools import combinations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats
 
 lam = sp.Symbol("lambda", real=True)
@@ -27,7 +27,7 @@ ABOUT = About(
 )
 
 
-def immersion_and_invariance(form: CanonicalForm, **gains: float) -> Observer:
+def immersion_and_invariance(form: PartitionedSystem, **gains: float) -> Observer:
     """Immersion and invariance observer (I&I), of the hidden coordinates only.
 
     With a function beta of the outputs such that dbeta/dx1 = lambda w::
@@ -39,7 +39,8 @@ def immersion_and_invariance(form: CanonicalForm, **gains: float) -> Observer:
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     gain : float
         lambda, positive.  Default 5.
 
@@ -50,6 +51,8 @@ def immersion_and_invariance(form: CanonicalForm, **gains: float) -> Observer:
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     NotIntegrable
         If w has no such function, as can happen on curved surfaces with several outputs.
     ValueError
@@ -61,6 +64,7 @@ def immersion_and_invariance(form: CanonicalForm, **gains: float) -> Observer:
     IEEE Trans. Automatic Control 50(12), 2005.  beta holds the motion's coefficients: where they vary, the rate of
     beta that comes from their change is left out.
     """
+    form = form.canonical_form()
     beta = lam * _potential(form)
     xi = sp.symbols(f"xi1:{len(form.x2) + 1}", real=True)
     x2_hat = sp.ImmutableMatrix(xi) + beta

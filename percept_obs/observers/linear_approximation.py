@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats
 
 Q, R, P0 = sp.symbols("Q R P0", real=True)
@@ -27,7 +27,7 @@ ABOUT = About(
 )
 
 
-def linear_approximation(form: CanonicalForm, iterates: int = 6, **gains: float) -> Observer:
+def linear_approximation(form: PartitionedSystem, iterates: int = 6, **gains: float) -> Observer:
     """Linear approximation observer (LAO).
 
     The hidden rate g is quadratic in x2, so that g(x2) = g(0) + (J(0) + J(x2)) x2 / 2 with its Jacobian J.  With J
@@ -41,8 +41,8 @@ def linear_approximation(form: CanonicalForm, iterates: int = 6, **gains: float)
 
     Parameters
     ----------
-    form : CanonicalForm
-        With a hidden rate that is at most quadratic in the hidden coordinates.
+    form : PartitionedSystem
+        With a canonical form, and a hidden rate that is at most quadratic in the hidden coordinates.
     iterates : int
         Number of filters in the cascade.  Default 6.
     process_weight : float
@@ -58,6 +58,8 @@ def linear_approximation(form: CanonicalForm, iterates: int = 6, **gains: float)
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     ValueError
         If the hidden rate is not quadratic, the number of iterates is not positive, or a gain is out of its range.
 
@@ -68,6 +70,7 @@ def linear_approximation(form: CanonicalForm, iterates: int = 6, **gains: float)
     """
     if not isinstance(iterates, int) or iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
+    form = form.canonical_form()
     x, n1 = (*form.x1, *form.x2), len(form.x1)
     size = len(x)
     jacobian = form.g.jacobian(form.x2).expand()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats, innovation
 from percept_obs.switching import switch_named
 
@@ -33,7 +33,7 @@ ABOUT = About(
 )
 
 
-def range_identification(form: CanonicalForm, switch: str = "hyperbolic tangent", **gains: float) -> Observer:
+def range_identification(form: PartitionedSystem, switch: str = "hyperbolic tangent", **gains: float) -> Observer:
     """Range identification observer (RIO).
 
     With e = x1 - x1hat, for one hidden coordinate x2::
@@ -44,8 +44,8 @@ def range_identification(form: CanonicalForm, switch: str = "hyperbolic tangent"
 
     Parameters
     ----------
-    form : CanonicalForm
-        With one hidden coordinate.
+    form : PartitionedSystem
+        With a canonical form and one hidden coordinate.
     switch : "hyperbolic tangent", "sign" or "fraction"
         What stands for sgn; the sign itself chatters at a fixed step.
     filter_rate : float
@@ -64,6 +64,8 @@ def range_identification(form: CanonicalForm, switch: str = "hyperbolic tangent"
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     NeedsMoreOutputs
         If more than one coordinate is hidden.
     ValueError
@@ -74,6 +76,7 @@ def range_identification(form: CanonicalForm, switch: str = "hyperbolic tangent"
     W. E. Dixon, Y. Fang, D. M. Dawson, T. J. Flynn, Range identification for perspective vision systems, IEEE Trans.
     Automatic Control 48(12), 2003; Ma, Chen and Moore 2005, p. 65.
     """
+    form = form.canonical_form()
     if len(form.x2) != 1:
         raise NeedsMoreOutputs(
             f"the range identification observer recovers one hidden coordinate, but {', '.join(form.hidden)} are "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import (
     BOUND_GAINS,
     NOISE_GAIN,
@@ -76,7 +76,7 @@ ABOUT = About(
 )
 
 
-def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) -> Observer:
+def sliding_mode(form: PartitionedSystem, switch: str = "fraction", **gains: float) -> Observer:
     """Sliding mode observer with adaptive switching gains (SMO).
 
     With e = x1 - x1hat and, for each measured output, s = lambda e / (|e| + delta)::
@@ -88,7 +88,8 @@ def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) 
 
     Parameters
     ----------
-    form : CanonicalForm
+    form : PartitionedSystem
+        With a canonical form.
     switch : "fraction", "sign" or "hyperbolic tangent"
         What s is: lambda times the fraction above, the sign of e, or tanh(e / delta).
     hidden_gain : float
@@ -112,6 +113,8 @@ def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) 
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form.
     ValueError
         If a gain is unknown or out of its range, or the switch has no such name.
 
@@ -119,6 +122,7 @@ def sliding_mode(form: CanonicalForm, switch: str = "fraction", **gains: float) 
     -----
     Ma, Chen and Moore 2005, (21)-(23), pp. 67-68.  The bias is `noise_bias` of the correction s.
     """
+    form = form.canonical_form()
     estimate = hats((*form.x1, *form.x2))
     lambdas = sp.symbols(f"lambda1:{len(form.x1) + 1}", real=True)
     e = innovation(form)

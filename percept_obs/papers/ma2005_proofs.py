@@ -79,7 +79,7 @@ def with_g_left_out(form: CanonicalForm) -> CanonicalForm:
 
 def errors(observer: Observer, scales: tuple[sp.Expr, sp.Expr] = (sp.S.One, sp.S.One)) -> Values:
     """The error dynamics of an observer in vectors: of e, or with scales of xi = (scale1 e1, scale2 e2)."""
-    form = observer.form
+    form = observer.form.canonical_form()
     letters = dict(zip(form.coordinates, observer.error, strict=True))
     parts = [[letters[s] for s in part] for part in (form.x1, form.x2)]
     unscaled = {letter: letter / scale for part, scale in zip(parts, scales, strict=True) for letter in part}
