@@ -1,6 +1,8 @@
 """Python, numba and JavaScript run the same loop, and what would differ between them is refused."""
 
 import builtins
+import subprocess
+import sys
 import time
 from functools import partial
 
@@ -160,6 +162,38 @@ def test_numba_takes_over_once_it_has_compiled():
         time.sleep(0.05)
     assert kernel.choose(None) is not kernel.python
     assert kernel.choose("python") is kernel.python
+
+
+SEVERAL = """
+import atexit, threading
+import numba, numpy as np, sympy as sp
+from percept_obs.compile import Table, solve
+from percept_obs.equations import Equations
+
+begun = []
+def njit(*signature, **settings):
+    begun.append(signature)
+    {patience}
+    return lambda run: run
+{patch}
+x = sp.Symbol("x", real=True)
+table = Table(np.full(9, 0.1), np.zeros((9, 3, 0)), np.zeros((1, 0)), np.zeros((10, 0)))
+for k in range(1, 9):
+    assert solve(Equations((x,), (-k * x,)), [1.0], table).diverged is None
+atexit.register(lambda: print("begun:", len(begun)))
+"""
+
+
+def test_a_program_that_ends_finishes_the_compilation_that_has_begun_and_begins_no_other():
+    program = SEVERAL.format(patience="threading.main_thread().join()", patch="numba.njit = njit")
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "begun: 1\n", "")
+
+
+def test_a_program_that_ends_while_numba_compiles_ends_quietly():
+    program = SEVERAL.format(patience="", patch="")
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "begun: 0\n", "")
 
 
 def test_without_numba_python_runs(monkeypatch):

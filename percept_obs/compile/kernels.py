@@ -112,6 +112,10 @@ def solve(
     )
 
 
+_COMPILING = threading.Lock()
+"""Held by the thread that compiles beside; the others wait for their turn."""
+
+
 class _Kernel:
     """The same text for Python and, when it is there, numba."""
 
@@ -132,9 +136,15 @@ class _Kernel:
         if language is not None:
             raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
         if self._numba is None and self._beside is None and find_spec("numba"):
-            self._beside = threading.Thread(target=self._compiled)
+            self._beside = threading.Thread(target=self._compile_beside)
             self._beside.start()
         return self._numba or self.python
+
+    def _compile_beside(self) -> None:
+        with _COMPILING:
+            # a program that ends waits for the compilation that has begun, and for no other
+            if threading.main_thread().is_alive():
+                self._compiled()
 
     def _compiled(self) -> Callable[..., int]:
         with self._lock:
