@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -171,9 +171,10 @@ def at_most(left: Any, right: Any) -> sp.LessThan:
 
 
 class _Scalar(sp.Function):
-    """A number made of matrices; worked out by ``doit`` once the matrices are explicit."""
+    """A number made of matrices; ``doit`` works out its value once the matrices are explicit."""
 
-    shown = ""
+    shown: ClassVar[str]
+    value: ClassVar[Callable[..., sp.Expr]]
 
     def _eval_is_commutative(self) -> bool:
         return True
@@ -190,10 +191,6 @@ class _Scalar(sp.Function):
     def _latex(self, printer: Any, exp: str = "") -> str:
         text = self.shown % tuple(map(printer.doprint, self.args))
         return rf"{text}^{{{exp}}}" if exp else text
-
-    @staticmethod
-    def value(*matrices: sp.MatrixBase) -> sp.Expr:
-        raise NotImplementedError
 
 
 class Norm(_Scalar):
