@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -117,6 +117,35 @@ class Motion:
             return {}
         return dict(zip(self.parameters, self.signal.at(0.0)[0].tolist(), strict=True))
 
+    def with_values(self, values: Mapping[sp.Symbol | str, float]) -> Motion:
+        """The same motion with constant numbers for its symbols; those of a constant motion stay where none is given.
+
+        Parameters
+        ----------
+        values : mapping of symbols or their names to numbers
+
+        Raises
+        ------
+        ValueError
+            If a symbol is unknown or left without a number, or a value is not a finite number.
+        """
+        names = [symbol.name for symbol in self.parameters]
+        given = {str(symbol): value for symbol, value in values.items()}
+        unknown = [name for name in given if name not in names]
+        if unknown:
+            raise ValueError(
+                f"the {self.name} motion has no symbol {', '.join(unknown)}; it has {', '.join(names) or 'none'}"
+            )
+        numbers = {symbol.name: value for symbol, value in self.values.items()} | given
+        missing = [name for name in names if name not in numbers]
+        if missing:
+            raise ValueError(f"the {self.name} motion needs numbers for all of its symbols: {', '.join(missing)} too")
+        try:
+            row = [float(numbers[name]) for name in names]
+        except (TypeError, ValueError):
+            raise ValueError(f"the values {given} are not all numbers") from None
+        return replace(self, signal=Signal(np.array([row])))
+
     def known(self, times: ArrayLike) -> Values:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
@@ -129,7 +158,7 @@ class Motion:
             if self.parameters:
                 raise ValueError(
                     f"the {self.name} motion has no values for {', '.join(map(str, self.parameters))}; "
-                    "build it with numbers, for instance affine(A, b)"
+                    "build it with numbers, for instance affine(A, b), or give it some: motion.with_values({...})"
                 )
             return np.zeros((1, 0))
         rows = self.signal.at(times)
@@ -146,9 +175,9 @@ def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Moti
 
     Parameters
     ----------
-    A : array of shape (3, 3) or (K, 3, 3), function of time, or sympy expressions, optional
+    A : array of shape (3, 3) or (K, 3, 3), function of time, or sympy matrix, optional
         Coefficients in 1/s; symbols a11 ... a33 when left out.
-    b : array of shape (3,) or (K, 3), function of time, or sympy expressions, optional
+    b : array of shape (3,) or (K, 3), function of time, or sympy expressions or column, optional
         Coefficients in m/s; symbols b1, b2, b3 when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
@@ -225,6 +254,8 @@ def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
     """One coefficient as rows, repeated when it is constant."""
     array = np.asarray(value, dtype=float)
     shape = block.shape if block.shape[1] > 1 else block.shape[:1]
+    if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
+        array = array.reshape(shape)
     if array.shape not in (shape, (count, *shape)):
         sampled = f" or {(count, *shape)}" if count > 1 else ""
         raise ValueError(f"a coefficient of the motion has shape {array.shape}; expected {shape}{sampled}")
