@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import overload
 
 import sympy as sp
 
@@ -19,16 +21,26 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Derivation:
-    """Steps that a notebook shows as text and formulas, and that print as text."""
+class Derivation(Sequence[Step]):
+    """A sequence of steps that a notebook shows as text and formulas, and that prints as text; a slice is one too."""
 
     steps: tuple[Step, ...]
 
+    @overload
+    def __getitem__(self, index: int) -> Step: ...
+    @overload
+    def __getitem__(self, index: slice) -> Derivation: ...
+    def __getitem__(self, index: int | slice) -> Step | Derivation:
+        return Derivation(self.steps[index]) if isinstance(index, slice) else self.steps[index]
+
+    def __len__(self) -> int:
+        return len(self.steps)
+
     def __str__(self) -> str:
-        return "\n".join(f"{k}. {step}" for k, step in enumerate(self.steps, 1))
+        return "\n".join(f"{k}. {step}" for k, step in enumerate(self, 1))
 
     def _repr_markdown_(self) -> str:
-        return "\n\n".join(f"{k}. {s.reason}\n\n   $$ {s.formula} $$" for k, s in enumerate(self.steps, 1))
+        return "\n\n".join(f"{k}. {s.reason}\n\n   $$ {s.formula} $$" for k, s in enumerate(self, 1))
 
 
 def equals(left: str, right: object) -> str:

@@ -83,7 +83,20 @@ def test_the_derivation_ends_at_the_rate_and_shows_every_part():
     assert r"\frac{d}{dt}" in AFFINE._repr_latex_()
 
 
+def test_a_part_of_a_derivation_is_one_too():
+    derivation = AFFINE.derivation()
+    part = derivation[1:3]
+    assert list(part) == [derivation[1], derivation[2]]
+    assert len(part) == 2
+    assert part._repr_markdown_().startswith(f"1. {derivation[1].reason}")
+    assert derivation[-1] is derivation.steps[-1]
+    with pytest.raises(IndexError):
+        derivation[len(derivation)]
+
+
 @pytest.mark.parametrize("names", [(), ("y3",), ("z",), ("y1", "y1"), ("y1", "y4")])
 def test_outputs_that_are_none_are_refused(names):
     with pytest.raises(ValueError, match="the outputs of the pinhole are y1, y2"):
         AFFINE.measure(*names)
+    with pytest.raises(ValueError, match="the outputs of the pinhole are y1, y2"):
+        AFFINE.partition(*names)
