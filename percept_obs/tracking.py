@@ -126,14 +126,20 @@ class Run:
 
     @cached_property
     def points(self) -> Array:
-        """Estimated positions in metres, shape (K, 3); infinite where the estimate is not in front of the camera."""
-        return self.recording.surface.locate(self.estimate)
+        """Estimated positions in metres, shape (K, 3); see `distance` for those that are not finite."""
+        known = np.isfinite(self.estimate).all(axis=1, keepdims=True)
+        return np.where(known, self.recording.surface.locate(self.estimate), np.nan)
 
     @cached_property
     def distance(self) -> Array:
-        """Estimated depth or range in metres, shape (K,); infinite where the inverse distance is not positive."""
+        """Estimated depth or range in metres, shape (K,).
+
+        Infinite where the estimated inverse distance is not positive, so that the point would not be in front of the
+        camera; NaN where there is no finite estimate, as from `diverged_at` on.
+        """
         inverse = self.estimate[:, -1]
-        return np.divide(1, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0)
+        none = np.where(np.isfinite(inverse), np.inf, np.nan)
+        return np.divide(1, inverse, out=none, where=np.isfinite(inverse) & (inverse > 0))
 
     def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
         """When the error entered the tolerance for good.

@@ -1,6 +1,7 @@
 """An observer follows a recording as it was held, and is refused where it does not fit."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,6 +39,14 @@ def test_errors_estimates_and_metres_belong_together():
     assert np.isinf(run.distance[0])
     assert np.isinf(run.points[0]).all()
     assert run.time is RECORDING.time
+
+
+def test_a_distance_is_infinite_only_where_the_estimate_is_finite_and_not_positive():
+    estimate = np.array([[0.1, 0.2, 0.5], [0, 0, 0], [0, 0, -1], [0, 0, np.inf], [0, 0, np.nan], [np.nan, 0, 0.5]])
+    recording = Recording(np.arange(6.0), np.zeros((6, 2)), ("y1", "y2"), pinhole(), RECORDING.motion)
+    run = replace(track(recording, ibo(BOTH)), estimate=estimate)
+    np.testing.assert_array_equal(run.distance, [2, np.inf, np.inf, np.nan, np.nan, 2])
+    np.testing.assert_array_equal(run.points[:, 2], [2, np.inf, np.inf, np.nan, np.nan, np.nan])
 
 
 def test_settling_time_is_when_the_error_stays_inside():
@@ -145,6 +154,9 @@ def test_a_run_that_diverges_says_when_and_why(language):
     assert np.isfinite(blown.estimate[:first]).all()
     assert np.isnan(blown.estimate[first:]).all()
     assert math.isinf(blown.settling_time())
+    for metres in (blown.distance, blown.points):
+        assert not np.isnan(metres[:first]).any()
+        assert np.isnan(metres[first:]).all()
 
 
 def test_resets_keep_the_estimate_within_the_bound_and_are_counted():
