@@ -289,6 +289,25 @@ def test_observers_show_their_equations():
     assert AFFINE.coordinates == BOTH.coordinates
 
 
+@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
+def test_the_start_is_what_its_expressions_say(make):
+    observer = make(BOTH)
+    values = draw([*BOTH.x1, *hats(BOTH.coordinates), *BOTH.parameters], 3)
+    at = {s.name: float(v) for s, v in values.items()}
+    state = observer.initial_state(
+        {y.name: at[y.name] for y in BOTH.x1},
+        {x.name: at[hat.name] for x, hat in zip(BOTH.coordinates, hats(BOTH.coordinates), strict=True)},
+        {s: at[s.name] for s in BOTH.parameters},
+    )
+    expected = [float(e.subs(values).subs(observer.gain_values)) for e in observer.start]
+    np.testing.assert_allclose(state, expected, rtol=1e-14)
+
+
+def test_a_start_that_needs_parameters_says_so():
+    with pytest.raises(ValueError, match="needs b1, b2, b3; pass parameters="):
+        range_identification(BOTH).initial_state({"y1": 0.1, "y2": 0.2}, {})
+
+
 def test_the_identifier_based_observer_with_both_outputs_is_de_lucas():
     gain, lyapunov = 7.0, -0.3
     recording = record(scenarios.ma2005_eq35(), 20)

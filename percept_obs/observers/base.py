@@ -13,7 +13,7 @@ import sympy as sp
 from numpy.typing import NDArray
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.compile import right_hand_side
+from percept_obs.compile import right_hand_side, vectorised
 from percept_obs.equations import Equations, Expressions, Symbols
 from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.motion import Motion
@@ -178,7 +178,7 @@ class Observer:
         Raises
         ------
         ValueError
-            If a name is unknown or a value is not finite.
+            If a name is unknown, a value is not finite, or a parameter is missing.
         """
         names = [symbol.name for symbol in self.form.coordinates]
         wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]
@@ -189,7 +189,10 @@ class Observer:
         asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
         known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
         known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
-        return np.array([float(e.subs(known)) for e in self.start])
+        missing = sorted(str(s) for s in sp.Tuple(*self.start).free_symbols - set(known))
+        if missing:
+            raise ValueError(f"the start of the {self.name} observer needs {', '.join(missing)}; pass parameters=")
+        return np.array(vectorised(tuple(known), self.start)(*known.values()))
 
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
