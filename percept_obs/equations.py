@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -65,18 +66,34 @@ class Equations:
         if used - set(listed):
             raise ValueError(f"the equations use {sorted(map(str, used - set(listed)))}, which nothing provides")
 
+    def xreplace(self, rule: Mapping[sp.Basic, sp.Basic]) -> Equations:
+        """The same equations with symbols replaced in flow, updates, reset condition and reset."""
+        return replace(
+            self,
+            flow=tuple(entry.xreplace(rule) for entry in self.flow),
+            update=tuple(tuple(entry.xreplace(rule) for entry in block) for block in self.update),
+            reset_condition=self.reset_condition.xreplace(rule),
+            reset=tuple(entry.xreplace(rule) for entry in self.reset),
+        )
+
     def _repr_latex_(self) -> str:
         lines = [rf"\dot{{{sp.latex(s)}}} &= {sp.latex(rate)}" for s, rate in zip(self.state, self.flow, strict=True)]
         for output, block in zip(self.measured, self.update, strict=False):
             lines += [
-                rf"{sp.latex(s)}^+ &= {sp.latex(new)} && \text{{at a sample of }} {sp.latex(output)}"
+                rf"{sp.latex(s)}^+ &= {sp.latex(new)} \quad \text{{at a sample of }} {sp.latex(output)}"
                 for s, new in zip(self.state, block, strict=True)
             ]
         if self.reset:
-            lines.append(rf"\text{{when }} & {sp.latex(self.reset_condition)}\text{{:}}")
-            lines += [
-                rf"{sp.latex(s)}^+ &= {sp.latex(new)}"
-                for s, new in zip(self.state, self.reset, strict=True)
-                if new != s
-            ]
+            before, after = zip(*((s, e) for s, e in zip(self.state, self.reset, strict=True) if e != s), strict=True)
+            old, new = _stacked(before), _stacked(after)
+            factors = {e / s for s, e in zip(before, after, strict=True)}
+            if len(factors) == 1 and len(before) > 1:
+                new = sp.MatMul(factors.pop(), old)
+            when = sp.latex(self.reset_condition)
+            lines.append(rf"{sp.latex(old)}^+ &= {sp.latex(new)} \quad \text{{when }} {when}")
         return r"$\displaystyle \begin{aligned}" + r" \\ ".join(lines) + r"\end{aligned}$"
+
+
+def _stacked(expressions: Expressions) -> sp.Basic:
+    """Several expressions as a column, one as it is."""
+    return expressions[0] if len(expressions) == 1 else sp.ImmutableMatrix(expressions)

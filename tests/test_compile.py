@@ -268,5 +268,18 @@ def test_equations_that_do_not_close_are_refused(arguments, message):
 def test_equations_show_flow_update_and_reset():
     shown = Equations((x,), (-x,), (u,), (), (), ((u,),), x > 2, (sp.Integer(0),))._repr_latex_()
     assert r"\dot{x} &= - x" in shown
-    assert r"\text{at a sample of } u" in shown
-    assert r"\text{when } & x > 2" in shown
+    assert r"x^+ &= u \quad \text{at a sample of } u" in shown
+    assert r"x^+ &= 0 \quad \text{when } x > 2" in shown
+
+
+@pytest.mark.parametrize(("factor", "printed"), [(c, "c "), (1 + c, r"\left(c + 1\right) ")])
+def test_a_reset_that_scales_shows_its_factor_once(factor, printed):
+    shown = Equations((x, y, u), (y, x, u), (), (), (c,), (), x > 2, (factor * x, factor * y, u))._repr_latex_()
+    scaled = r"\left[\begin{matrix}x\\y\end{matrix}\right]"
+    assert rf"{scaled}^+ &= {printed}{scaled} \quad \text{{when }} x > 2" in shown
+
+
+def test_a_reset_that_does_not_scale_shows_the_new_state():
+    shown = Equations((x, y), (y, x), (), (), (), (), x > 2, (y, sp.Integer(1)))._repr_latex_()
+    old, new = (rf"\left[\begin{{matrix}}{a}\\{b}\end{{matrix}}\right]" for a, b in ("xy", "y1"))
+    assert rf"{old}^+ &= {new} \quad" in shown

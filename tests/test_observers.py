@@ -289,6 +289,15 @@ def test_observers_show_their_equations():
     assert AFFINE.coordinates == BOTH.coordinates
 
 
+def test_terms_that_a_gain_of_zero_puts_out_are_not_shown():
+    assert sp.latex(sigma2) not in ibo(BOTH)._repr_latex_()
+    assert sp.latex(sigma2) in ibo(BOTH, noise_variance=1e-4)._repr_latex_()
+    assert ibo(BOTH)._repr_latex_().count(r"\text{when }") == 1
+    q = sp.Symbol("Q", real=True)
+    assert q in sp.Tuple(*ekf(ONE).equations.flow).free_symbols
+    assert " Q " not in ekf(ONE)._repr_latex_()
+
+
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
 def test_the_start_is_what_its_expressions_say(make):
     observer = make(BOTH)

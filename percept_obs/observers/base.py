@@ -225,7 +225,9 @@ class Observer:
         return lambda t, state: flow(state, measured(t) if measured else (), motion.known(t)[0])
 
     def _repr_latex_(self) -> str:
-        return self.equations._repr_latex_()
+        """The equations without the terms that the present gains put out."""
+        out = {symbol: sp.S.Zero for symbol, value in self.gain_values.items() if value == 0}
+        return self.equations.xreplace(out)._repr_latex_()
 
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
