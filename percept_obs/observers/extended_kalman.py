@@ -57,7 +57,7 @@ GAINS = (
 ABOUT = About(
     "Extended Kalman filter (EKF)",
     "Jazwinski 1970",
-    "any outputs with a canonical form",
+    "any outputs",
     "local: the covariance must stay bounded, as it does where the linearised system is observable",
 )
 
