@@ -95,7 +95,7 @@ def compare(options: argparse.Namespace) -> int:
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
-        "medians with the 16 % and 84 % quantiles"
+        "medians with the 16 % and 84 % quantiles; a run fails if its error does not stay below 0.05"
     )
     print(described(table))
     print("\n".join(refused))

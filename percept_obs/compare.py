@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+
+WORTH_COMPILING = 100_000
+"""From so many samples in all on, waiting for numba to compile an observer costs less than running it in Python."""
 
 
 def compare(
@@ -67,7 +71,9 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
-    for observer in observers.values():
+    if sum(len(recording.time) for recording in recordings) >= WORTH_COMPILING and find_spec("numba"):
+        settings = {"language": "numba"} | settings
+    for observer in tqdm(observers.values(), desc="compiling", delay=2, leave=False):
         # so that compiling is no part of the cost
         track(recordings[0], observer, start, **settings)
     pairs = [(label, number) for number in range(len(recordings)) for label in observers]

@@ -295,6 +295,11 @@ def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, 
             f"the observer was derived for a motion with {', '.join(map(str, form.parameters))}, but the motion that "
             f"it is to believe has {', '.join(map(str, expected))}; use the same kind of motion for both"
         )
+    if observer.constant_motion and believed.signal is not None and not believed.signal.constant:
+        raise DoesNotFit(
+            f"the {observer.name} observer needs a motion with constant coefficients, but the one that it is to "
+            "believe varies; use an observer with an innovation"
+        )
     if hold not in ("zero", "first", "exact"):
         raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
     if hold == "exact" and recording.signal is None:

@@ -1,8 +1,21 @@
-"""Figures of runs and recordings, excitation and consistency: each takes the data first, and says what it shows."""
+"""Figures of runs, recordings, excitation and comparisons: each takes the data first, and says what it shows."""
 
 from percept_obs.figures.base import Figure
+from percept_obs.figures.chatter import chatter
+from percept_obs.figures.comparison import comparison
 from percept_obs.figures.over_time import compare, distance, signals
 from percept_obs.figures.spatial import image_plane, scene
 from percept_obs.figures.windows import consistency, excitation
 
-__all__ = ["Figure", "compare", "consistency", "distance", "excitation", "image_plane", "scene", "signals"]
+__all__ = [
+    "Figure",
+    "chatter",
+    "compare",
+    "comparison",
+    "consistency",
+    "distance",
+    "excitation",
+    "image_plane",
+    "scene",
+    "signals",
+]

@@ -103,6 +103,8 @@ class Observer:
         Covariance of the estimate, from the state, if the observer claims one.
     about : About, optional
         What is known about the observer.
+    constant_motion : bool
+        Whether the equations hold for a motion with constant coefficients only.
     """
 
     name: str
@@ -113,6 +115,7 @@ class Observer:
     start: tuple[sp.Expr, ...]
     covariance: sp.ImmutableMatrix | None = None
     about: About | None = None
+    constant_motion: bool = False
 
     def with_gains(self, **values: float) -> Observer:
         """The same observer with other gains; nothing is compiled again.

@@ -61,8 +61,8 @@ def immersion_and_invariance(form: PartitionedSystem, **gains: float) -> Observe
     Notes
     -----
     D. Karagiannis, A. Astolfi, A new solution to the problem of range identification in perspective vision systems,
-    IEEE Trans. Automatic Control 50(12), 2005.  beta holds the motion's coefficients: where they vary, the rate of
-    beta that comes from their change is left out.
+    IEEE Trans. Automatic Control 50(12), 2005.  beta holds the motion's coefficients, but the equations leave out the
+    rate that their change would give it: `track` refuses a motion that varies.
     """
     form = form.canonical_form()
     beta = lam * _potential(form)
@@ -74,7 +74,8 @@ def immersion_and_invariance(form: PartitionedSystem, **gains: float) -> Observe
     hidden = dict(zip(form.x2, x2_hat, strict=True))
     estimate = tuple(hidden.get(x, x) for x in form.coordinates)
     start = tuple(sp.ImmutableMatrix(hats(form.x2)) - beta)
-    observer = Observer("immersion and invariance", form, equations, estimate, GAINS, start, about=ABOUT)
+    name = "immersion and invariance"
+    observer = Observer(name, form, equations, estimate, GAINS, start, about=ABOUT, constant_motion=True)
     return observer.with_gains(**gains)
 
 

@@ -1,0 +1,75 @@
+"""The figure of chatter: what a sign costs at fixed steps, and what it does to the steps of adaptive solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import matplotlib.figure
+import numpy as np
+from matplotlib.axes import Axes
+
+from percept_obs.chatter import Effort
+from percept_obs.figures.base import WIDTH, Figure, drawn, legend_above, letter, style, tidy
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def chatter(
+    errors: Mapping[str, pd.DataFrame], efforts: Mapping[str, Effort], axes: Sequence[Axes] | None = None
+) -> Figure:
+    """Errors over the step of integration on the left, steps of adaptive solvers over time on the right.
+
+    Parameters
+    ----------
+    errors : mapping of labels to tables
+        From `percept_obs.chatter.chatter`; the last coordinate, the inverse distance, is drawn.
+    efforts : mapping of labels to Effort
+        From `percept_obs.chatter.effort`.  Curves with the same label look the same on both sides.
+    axes : two axes, optional
+        New ones when left out.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to draw on one of the sides, or there are not two axes.
+    """
+    if not errors or not efforts:
+        raise ValueError(f"there are {len(errors)} tables and {len(efforts)} efforts; at least one of each is needed")
+    if axes is None:
+        figure = matplotlib.figure.Figure(figsize=(WIDTH, 3.6), layout="constrained")
+        axes = list(figure.subplots(1, 2))
+    pair: list[Axes] = list(np.ravel(np.asarray(axes, dtype=object)))
+    if len(pair) != 2:
+        raise ValueError(f"axes= has {len(pair)} axes; 2 are needed, for errors and steps")
+    left, right = pair
+    looks = {label: style(number) for number, label in enumerate({**errors, **efforts})}
+    sentences = ["Left, rms error over the step of integration; right, steps of adaptive solvers; logarithmic axes."]
+    for label, table in errors.items():
+        inverse = table.columns[-1]
+        left.plot(table["step"], table[inverse], label=label, **looks[label])
+        told = [f"{row['step']:.2g} s {row[inverse]:.2g}" for _, row in table.iterrows()]
+        sentences.append(f"{label}: error at a step of {', '.join(told)}.")
+    left.set(
+        xscale="log", yscale="log", xlabel="step of integration (s)", ylabel=f"rms error of {letter(inverse)} (1/m)"
+    )
+    for label, one in efforts.items():
+        known = {"label": "_" + label} if label in errors else {"label": label}
+        right.plot(one.time[1:], one.steps, linewidth=1.2, **looks[label] | known | {"marker": ""})
+        how = "arrived at" if one.finished else "gave up at"
+        sentences.append(
+            f"{label}: {one.method} {how} {one.time[-1]:.2g} s after {one.evaluations[-1]} evaluations; its steps "
+            f"were {one.steps.min():.2g} to {one.steps.max():.2g} s long."
+        )
+    right.set(yscale="log", xlabel="time (s)", ylabel="step that the solver took (s)")
+    for ax in pair:
+        tidy(ax)
+    legend_above(left, fitting=40)
+    if set(efforts) - set(errors):
+        legend_above(right, fitting=40)
+    return drawn(pair, sentences)
