@@ -1,5 +1,6 @@
 """On real tracks, one setting chosen on half of them brings the others' distance within the stated errors."""
 
+from dataclasses import replace
 from functools import lru_cache
 from itertools import product
 
@@ -10,6 +11,9 @@ from utias_folder import utias_folder
 from percept_obs import PerspectiveSystem, ekf, ibo, pinhole, rigid, track
 from percept_obs.compare import best_setting, relative_distance_errors
 from percept_obs.datasets import load_utias
+from percept_obs.least_squares import moving_window_least_squares
+from percept_obs.observers import OBSERVERS, immersion_and_invariance
+from percept_obs.tuning import choose_and_report, side_by_side
 
 FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 IBO_SETTINGS = [
@@ -73,6 +77,50 @@ def test_extended_kalman_filter_after_one_two_three_seconds(reference, medians):
 def test_the_printed_gains_are_far_too_slow_here():
     runs = [track(r, ibo(FORM), twice_the_median_depth(), language="numba") for r in recordings()]
     assert np.median(relative_distance_errors(runs, 2)) > 0.2
+
+
+MEDIANS = {
+    "identifier-based": ((0.098, 0.069, 0.116), (0.089, 0.065, 0.117)),
+    "sliding mode": ((0.101, 0.071, 0.131), (0.088, 0.065, 0.131)),
+    "extended Kalman": ((0.048, 0.02, 0.024), (0.063, 0.042, 0.021)),
+    "De Luca": ((0.098, 0.069, 0.116), (0.089, 0.065, 0.117)),
+    "Spica": ((0.127, 0.07, 0.08), (0.113, 0.062, 0.082)),
+    "range identification": ((0.119, 0.268, 0.227), (0.101, 0.266, 0.245)),
+    "linear approximation": ((0.201, 0.026, 0.033), (0.196, 0.03, 0.027)),
+    "least squares on 2 s": ((0.053, 0.033, 0.035), (0.063, 0.054, 0.029)),
+}
+"""Median errors after 1, 2 and 3 s against both truths."""
+
+
+@pytest.mark.slow
+def test_all_observers_in_one_table():
+    """Samples are held, as a running system must; steps of 2 ms, for the cascade's gain is stiff at the start."""
+
+    def follow(recording, observer):
+        return track(recording, observer, twice_the_median_depth(), step=0.002, language="numba")
+
+    batch = {"least squares on 2 s": moving_window_least_squares}
+    halves = recordings()[::2], recordings()[1::2]
+    table = choose_and_report(*halves, FORM, follow, batch=batch, references=("truth", "stereo"))
+    print(side_by_side(table).to_string())
+    assert set(table["observer"]) == {make(FORM).name for make in OBSERVERS} | set(batch)
+    for label, medians in MEDIANS.items():
+        rows = table[table["observer"] == label].set_index(["reference", "after"])
+        found = [[rows.loc[(reference, after), "median"] for after in (1, 2, 3)] for reference in ("truth", "stereo")]
+        np.testing.assert_allclose(found, medians, rtol=0.05, err_msg=label)
+        assert rows["diverged"].max() == 0
+        assert rows["behind"].max() == (2 if label == "range identification" else 0)
+    refused = table[table["observer"] == "immersion and invariance"]
+    assert refused["refusal"].str.contains("needs a motion with constant coefficients").all()
+
+
+@pytest.mark.slow
+def test_why_immersion_and_invariance_refuses_a_motion_that_varies():
+    """Without the rate that the motion's change would give its beta, it is far off at every gain."""
+    for gain in (5, 10, 20, 40):
+        observer = replace(immersion_and_invariance(FORM, gain=gain), constant_motion=False)
+        runs = [track(r, observer, twice_the_median_depth(), language="numba") for r in recordings()]
+        assert np.median(relative_distance_errors(runs, 3)) > 0.3
 
 
 def test_questions_that_a_run_cannot_answer_are_refused():

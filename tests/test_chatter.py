@@ -1,0 +1,91 @@
+"""A sign that is integrated chatters in proportion to the step or its square root, and stops adaptive solvers."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from examples import BOTH, ZERO
+
+from percept_obs import record, scenarios
+from percept_obs.chatter import METHODS, chatter, effort
+from percept_obs.observers import range_identification, sliding_mode
+
+EQ35 = scenarios.ma2005_eq35()
+FROM_ZERO = dict(zip(("y1", "y2", "y3"), ZERO, strict=True))
+
+
+@cache
+def errors(make, switch, halvings=7, **gains):
+    """Steps from 10 ms on, each half of the last, and the errors over 5 to 10 s."""
+    steps = [0.01 / 2**n for n in range(halvings + 1)]
+    return chatter(record(EQ35, 10), make(BOTH, switch=switch, **gains), steps, ZERO, after=5)
+
+
+def order(table, name):
+    """The power of the step that the errors follow."""
+    return np.polyfit(np.log(table["step"]), np.log(table[name]), 1)[0]
+
+
+def test_chatter_of_dixons_observer_at_the_stated_steps():
+    table = chatter(record(EQ35, 10), range_identification(BOTH, switch="sign"), [1e-2, 1e-3, 1e-4], ZERO, after=5)
+    np.testing.assert_allclose(table["y3"], [0.114, 0.030, 0.0076], rtol=0.02)
+
+
+def test_a_boundary_layer_does_not_chatter():
+    table = errors(range_identification, "hyperbolic tangent", 3)
+    np.testing.assert_allclose(table["y3"], 0.005, atol=1e-4)
+    assert np.ptp(table["y3"]) < 1e-7
+    assert errors(sliding_mode, "fraction", 3)["y3"].max() < 1e-5
+
+
+@pytest.mark.slow
+def test_a_sign_in_the_rate_chatters_in_proportion_to_the_step():
+    assert 0.8 < order(errors(sliding_mode, "sign", adaptation=0), "y3") < 1.2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gamma", [20, 40])
+def test_a_sign_in_the_rate_of_the_rate_chatters_in_proportion_to_the_root_of_the_step(gamma):
+    """Only its innovation is proportional to the step."""
+    table = errors(range_identification, "sign", switching_gain=gamma)
+    assert 0.45 < order(table, "y3") < 0.65
+    assert 0.9 < order(table, "y1") < 1.3
+
+
+@pytest.mark.slow
+def test_chatter_is_proportional_to_the_switching_gain():
+    ratios = errors(range_identification, "sign", switching_gain=40)["y3"]
+    ratios /= errors(range_identification, "sign", switching_gain=20)["y3"]
+    assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2, rel=0.2)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("make", [range_identification, sliding_mode], ids=["Dixon", "sliding mode"])
+def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make, method):
+    smooth = effort(EQ35, make(BOTH), 5.0, method, FROM_ZERO)
+    assert smooth.finished
+    assert smooth.time[-1] == 5
+    assert smooth.evaluations[-1] < 2000
+    switching = effort(EQ35, make(BOTH, switch="sign"), 5.0, method, FROM_ZERO)
+    assert not switching.finished
+    assert switching.time[-1] < 2
+    assert 20_000 <= switching.evaluations[-1] < 20_200
+    # before it slides, it steps as the smooth one does
+    assert switching.steps.max() > 1e-3
+    assert np.median(switching.steps[-100:]) < 2e-4 < np.median(smooth.steps) / 10
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), []), "no steps"),
+        (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), [0.0]), "step is 0.0 s; it must be positive"),
+        (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), [0.01], after=2), "no sample lies between"),
+        (lambda: effort(EQ35, sliding_mode(BOTH), 1, "Euler"), "none of RK45, LSODA, Radau"),
+        (lambda: effort(EQ35, sliding_mode(BOTH), -1), "duration -1 s"),
+        (lambda: effort(EQ35, sliding_mode(BOTH), 1, tolerance=float("nan")), "tolerance nan"),
+    ],
+)
+def test_bad_input_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

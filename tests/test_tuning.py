@@ -1,0 +1,104 @@
+"""Gains are chosen on some recordings and reported on others, and an observer that cannot follow says so."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from examples import AFFINE, BOTH, NOISY, ONE, ZERO
+
+from percept_obs import record, scenarios, track
+from percept_obs.compare import relative_distance_errors
+from percept_obs.least_squares import moving_window_least_squares
+from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, range_identification
+from percept_obs.tuning import HAND_HELD, choose_and_report, grid, side_by_side
+
+FOUR = [record(scenarios.ma2005_eq35(), 3, replace(NOISY, period=0.05), seed) for seed in range(4)]
+CHOOSING, REPORTING = FOUR[:2], FOUR[2:]
+GAINS = {de_luca: grid(measured_gain=(5, 10), hidden_gain=(0.1, 50)), range_identification: ({},)}
+
+
+def follow(recording, observer):
+    return track(recording, observer, ZERO)
+
+
+def reported(form=BOTH, **settings):
+    return choose_and_report(CHOOSING, REPORTING, form, follow, GAINS, after=(1.0, 2.0), **settings)
+
+
+def test_the_grid_has_every_combination():
+    assert grid(a=(1, 2), b=(3, 4)) == ({"a": 1, "b": 3}, {"a": 1, "b": 4}, {"a": 2, "b": 3}, {"a": 2, "b": 4})
+
+
+def test_there_are_candidates_for_every_observer_and_all_are_valid():
+    assert set(HAND_HELD) == set(OBSERVERS)
+    for make, settings in HAND_HELD.items():
+        observer = make(BOTH)
+        assert len({tuple(observer.with_gains(**gains).gain_values.items()) for gains in settings}) == len(settings)
+
+
+def test_a_row_has_the_errors_of_the_chosen_gains_on_the_other_half():
+    table = reported().set_index(["observer", "after"])
+
+    def errors(recordings, gains, after):
+        return relative_distance_errors([follow(r, de_luca(BOTH, **gains)) for r in recordings], after)
+
+    least = min(GAINS[de_luca], key=lambda gains: sum(np.median(errors(CHOOSING, gains, t)) for t in (1, 2)))
+    assert table.loc["De Luca", "gains"].tolist() == [", ".join(f"{name} {v}" for name, v in least.items())] * 2
+    row = table.loc[("De Luca", 2)]
+    assert row["median"] == np.median(errors(REPORTING, least, 2))
+    assert row["nine_in_ten"] == max(errors(REPORTING, least, 2))
+    assert (row["behind"], row["reset"], row["diverged"], row["refusal"]) == (0, 0, 0, "")
+    assert row["cost"] > 0
+
+
+def test_the_table_is_the_same_each_time():
+    first, second = (reported().drop(columns="cost") for _ in range(2))
+    assert first.equals(second)
+
+
+def test_a_refusal_is_told_in_words():
+    table = reported(ONE)
+    refused = table[table["observer"] == "range identification"]
+    assert len(refused) == 2
+    assert refused["median"].isna().all()
+    assert refused["refusal"].str.contains("y2, y3 are hidden; measure every image coordinate").all()
+    line = side_by_side(table).loc["range identification"]
+    assert line["remark"].startswith("cannot: the range identification observer recovers one hidden coordinate")
+    assert set(line.drop("remark")) == {"–"}
+
+
+def test_batch_estimates_stand_beside_the_observers():
+    table = reported(batch={"least squares": moving_window_least_squares}).set_index(["observer", "after"])
+    errors = relative_distance_errors([moving_window_least_squares(recording) for recording in REPORTING], 2)
+    assert table.loc[("least squares", 2), "median"] == np.median(errors)
+
+
+def test_estimates_behind_the_camera_are_counted():
+    table = choose_and_report(
+        CHOOSING,
+        REPORTING,
+        BOTH,
+        follow,
+        {extended_kalman: ({},)},
+        {"none": lambda r: moving_window_least_squares(r, 1e-3)},
+        (1,),
+    )
+    lines = side_by_side(table)
+    assert lines["behind"].tolist() == ["0", "2"]
+    assert lines.loc["none", "truth 1 s"] == "none (none)"
+
+
+@pytest.mark.parametrize(
+    ("choosing", "reporting", "candidates", "message"),
+    [
+        ([], REPORTING, GAINS, "0 recordings to choose on"),
+        (CHOOSING, [], GAINS, "0 to report on"),
+        (CHOOSING, CHOOSING[:1], GAINS, "in both halves"),
+        (CHOOSING, REPORTING, {}, "at least one candidate"),
+        (CHOOSING, REPORTING, {de_luca: ()}, "at least one candidate"),
+        (CHOOSING, REPORTING, {de_luca: ({"hidden_gain": -1},)}, "out of range"),
+    ],
+)
+def test_choices_that_are_none_are_refused(choosing, reporting, candidates, message):
+    with pytest.raises(ValueError, match=message):
+        choose_and_report(choosing, reporting, AFFINE.measure("y1", "y2"), follow, candidates)
