@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from percept_obs.compare import best_setting, relative_distance_errors
-from percept_obs.forms import CanonicalForm
+from percept_obs.forms import NotAffine, PartitionedSystem
 from percept_obs.least_squares import WindowEstimate
 from percept_obs.observers import (
     NeedsMoreOutputs,
@@ -59,7 +59,7 @@ def _identifier_based() -> Iterator[dict[str, float]]:
 
 
 def _extended_kalman() -> Iterator[dict[str, float]]:
-    for deviation, doubt in product((0.002, 0.004, 0.008, 0.016, 0.032), (0, 1e-5, 1e-4, 1e-3)):
+    for deviation, doubt in product((0.004, 0.008, 0.016, 0.032), (0, 1e-4, 1e-3)):
         yield {
             "noise_variance": deviation**2,
             "process_noise": doubt,
@@ -70,16 +70,14 @@ def _extended_kalman() -> Iterator[dict[str, float]]:
 
 def _range_identification() -> Iterator[dict[str, float]]:
     # the equations are symmetric in both rates: take them equal
-    for rate, switching, layer in product((2, 3, 4, 6, 9), (0.3, 1, 3, 10), (0.02, 0.05, 0.1, 0.2)):
+    for rate, switching, layer in product((3, 4, 6), (1, 3, 10), (0.05, 0.1, 0.2)):
         yield {"filter_rate": rate, "feedback": rate, "switching_gain": switching, "boundary_layer": layer}
 
 
 HAND_HELD: Mapping[Make, tuple[Gains, ...]] = MappingProxyType(
     {
         identifier_based: tuple(_identifier_based()),
-        sliding_mode: grid(
-            hidden_gain=(8, 20, 50, 120), switching_gain=(0.3, 0.7, 1.7, 4), boundary_layer=(0.05, 0.1, 0.2, 0.5, 1)
-        ),
+        sliding_mode: grid(hidden_gain=(20, 50, 120), switching_gain=(0.7, 1.7, 4), boundary_layer=(0.1, 0.2, 0.5, 1)),
         extended_kalman: tuple(_extended_kalman()),
         de_luca: grid(measured_gain=(2, 3.5, 6, 10, 17), hidden_gain=(60, 120, 250, 500, 1000)),
         spica: grid(hidden_gain=(20, 40, 60, 80, 110, 150, 200, 270, 370, 500, 700, 1000)),
@@ -97,7 +95,7 @@ HAND_HELD: Mapping[Make, tuple[Gains, ...]] = MappingProxyType(
 def choose_and_report(
     choosing: Sequence[Recording],
     reporting: Sequence[Recording],
-    form: CanonicalForm,
+    form: PartitionedSystem,
     follow: Follow,
     candidates: Mapping[Make, Sequence[Gains]] = HAND_HELD,
     batch: Mapping[str, Estimate] | None = None,
@@ -110,7 +108,7 @@ def choose_and_report(
     ----------
     choosing, reporting : sequences of Recording
         With a truth; none in both.
-    form : CanonicalForm
+    form : PartitionedSystem
         What the observers observe.
     follow : function of (recording, observer)
         How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
@@ -168,7 +166,7 @@ def choose_and_report(
     for make, settings in tqdm(candidates.items(), desc="choosing gains", delay=2, leave=False):
         try:
             chosen = best_setting(choosing, [make(form, **gains) for gains in settings], follow, after)
-        except (DoesNotFit, NeedsMoreOutputs, NotIntegrable) as refusal:
+        except (DoesNotFit, NeedsMoreOutputs, NotAffine, NotIntegrable) as refusal:
             told = {"observer": make.__name__.replace("_", " "), "gains": "", "refusal": str(refusal)}
             rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
             continue

@@ -13,12 +13,14 @@ from hypothesis.extra.numpy import arrays
 
 from percept_obs import (
     Camera,
+    DoesNotFit,
     PerspectiveSystem,
     Scenario,
     affine,
     chained,
     pinhole,
     record,
+    rigid,
     scenarios,
     track,
     windowed,
@@ -164,6 +166,19 @@ def test_python_and_numba_agree(name, form, scenario, seed):
         track(recording, EVERY[name](FORMS[form]), ZERO, language=language) for language in ("python", "numba")
     )
     np.testing.assert_allclose(compiled.state, python.state, rtol=1e-10, atol=1e-10)
+
+
+def test_only_immersion_and_invariance_needs_a_constant_motion():
+    form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
+    motion = rigid(lambda t: [0, 0.1 * t, 0], lambda t: [0.5, 0.1 * t, 0], lambda t: [0, 0, 0])
+    recording = record(Scenario("varying", motion, (0.3, 0.2, 4), 1, pinhole()))
+    for make in OBSERVERS:
+        if make(form).constant_motion:
+            assert make.__name__ == "immersion_and_invariance"
+            with pytest.raises(DoesNotFit, match="needs a motion with constant coefficients"):
+                track(recording, make(form))
+        else:
+            assert np.isfinite(track(recording, make(form), language="python").estimate).all()
 
 
 # ---- Ma's settings with one output

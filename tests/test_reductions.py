@@ -7,7 +7,7 @@ from examples import BOTH, ONE, OTHER
 from scipy.linalg import expm, solve_continuous_are
 
 from percept_obs.compile import Table, solve
-from percept_obs.forms import split
+from percept_obs.forms import partition
 from percept_obs.observers import (
     de_luca,
     extended_kalman,
@@ -27,11 +27,11 @@ alpha1, gamma, sigma2 = sp.symbols("alpha1 gamma sigma^2", real=True)
 
 STIFFNESS, DAMPING = 0.7, 0.2
 position, velocity = sp.symbols("x v", real=True)
-OSCILLATOR = split(
+OSCILLATOR = partition(
     (position, velocity), sp.ImmutableMatrix([velocity, -STIFFNESS * position - DAMPING * velocity]), ["x"], ()
 )
 SYSTEM = np.array([[0, 1], [-STIFFNESS, -DAMPING]])
-SLIDER = split((position, velocity), sp.ImmutableMatrix([velocity, -DAMPING * velocity]), ["x"], ())
+SLIDER = partition((position, velocity), sp.ImmutableMatrix([velocity, -DAMPING * velocity]), ["x"], ())
 """Nothing depends on the measured output."""
 
 
@@ -108,7 +108,7 @@ def test_the_linear_part_of_dixons_observer_has_the_poles_of_de_lucas():
     one = s**2 + (k + alpha) * s + k * alpha
     assert sp.expand(poles - one**2) == 0
     w = sp.Symbol("w", positive=True)
-    resting = split(sp.symbols("y1 y3", real=True), sp.Matrix([w * sp.Symbol("y3", real=True), 0]), ["y1"], (w,))
+    resting = partition(sp.symbols("y1 y3", real=True), sp.Matrix([w * sp.Symbol("y3", real=True), 0]), ["y1"], (w,))
     others = {H: k + alpha, Lam: k * alpha / w**2}
     assert sp.expand(de_luca(resting).jacobian().subs(others).charpoly(s).as_expr() - one) == 0
     critical = spica(resting).jacobian().subs(Lam, alpha**2 / w**2).applyfunc(lambda e: e.replace(sp.Abs, lambda a: a))
