@@ -3,10 +3,18 @@
 from percept_obs import scenarios
 from percept_obs.consistency import check_consistency
 from percept_obs.forms import CanonicalForm, NotAffine, PartitionedSystem
-from percept_obs.motion import Motion, affine, rigid
+from percept_obs.motion import Motion, affine, linear, rigid
 from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import Observer, ekf, extended_kalman, ibo, identifier_based, sliding_mode, smo, with_point
 from percept_obs.perspective import PerspectiveSystem
+from percept_obs.points import (
+    PointsForm,
+    PointsRecording,
+    PointsScenario,
+    luenberger,
+    record_points,
+    track_points,
+)
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
 from percept_obs.tracking import DoesNotFit, Run, track
@@ -25,6 +33,9 @@ __all__ = [
     "Observer",
     "PartitionedSystem",
     "PerspectiveSystem",
+    "PointsForm",
+    "PointsRecording",
+    "PointsScenario",
     "Recording",
     "Run",
     "Scenario",
@@ -37,14 +48,18 @@ __all__ = [
     "ibo",
     "identifier_based",
     "instantaneous",
+    "linear",
+    "luenberger",
     "pinhole",
     "plane",
     "record",
+    "record_points",
     "rigid",
     "scenarios",
     "sliding_mode",
     "smo",
     "track",
+    "track_points",
     "windowed",
     "with_point",
 ]

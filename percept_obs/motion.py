@@ -1,4 +1,4 @@
-"""Motions of a point in the camera's frame: X' = A X + b."""
+"""Motions in the camera's frame: X' = A X + b of a point, x' = A x + v of a state of any size."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Motion:
     ----------
     name : str
         What the motion is called.
-    A, b : sympy matrices of shape (3, 3) and (3, 1)
+    A, b : sympy matrices of shape (n, n) and (n, 1), n = 3 for a single point
         Coefficients in 1/s and m/s.
     parameters : tuple of sympy symbols
         The symbols in A and b, in the order of the signal's columns.
@@ -189,7 +189,7 @@ def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Moti
     """
     A_symbols = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"a{i + 1}{j + 1}", real=True))
     b_symbols = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
-    return _motion("affine", A_symbols, b_symbols, [(A, A_symbols), (b, b_symbols)], times)
+    return bound("affine", A_symbols, b_symbols, [(A, A_symbols), (b, b_symbols)], times)
 
 
 def rigid(
@@ -217,13 +217,74 @@ def rigid(
     w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
     cross = sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
     given = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
-    return _motion("rigid", cross, v_p - v_c, given, times)
+    return bound("rigid", cross, v_p - v_c, given, times)
 
 
-def _motion(
+def linear(A: Any = None, v: Any = None, states: int | None = None, times: ArrayLike | None = None) -> Motion:
+    """Linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
+
+    Parameters
+    ----------
+    A : array of shape (n, n) or (K, n, n), function of time, or sympy expressions, optional
+        Coefficients in 1/s; symbols when left out.
+    v : array of shape (n,) or (K, n), function of time, or sympy expressions, optional
+        Input in m/s; symbols when left out.
+    states : int, optional
+        n; needed where neither array shows it.
+    times : array of shape (K,), optional
+        Times in seconds of sampled coefficients.
+
+    Returns
+    -------
+    Motion
+        Coefficients that are given as arrays and are 0 at all times stay out of its parameters.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not match, n is not known, values are not finite or times do not increase.
+    """
+    shown = [np.shape(value)[-1] for value in (A, v) if value is not None and not callable(value) and np.ndim(value)]
+    n = states if states is not None else (shown or [0])[0]
+    if n < 1:
+        raise ValueError("nothing shows how many states the linear motion has; pass states=")
+    between = "_" if n > 9 else ""
+    A_symbols = sp.ImmutableMatrix(n, n, lambda i, j: sp.Symbol(f"a{i + 1}{between}{j + 1}", real=True))
+    v_symbols = sp.ImmutableMatrix(sp.symbols(f"v1:{n + 1}", real=True))
+    motion = bound("linear", A_symbols, v_symbols, [(A, A_symbols), (v, v_symbols)], times)
+    if motion.signal is None or callable(motion.signal.samples):
+        return motion
+    there = (motion.signal.samples != 0).any(axis=0).tolist()
+    zero = {s: sp.S.Zero for s, t in zip(motion.parameters, there, strict=True) if not t}
+    return Motion(
+        "linear",
+        motion.A.xreplace(zero),
+        motion.b.xreplace(zero),
+        tuple(s for s in motion.parameters if s not in zero),
+        Signal(motion.signal.samples[:, there], motion.signal.times),
+    )
+
+
+def bound(
     name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, given: list[Coefficient], times: ArrayLike | None
 ) -> Motion:
-    """Bind what was given to the symbols it stands for."""
+    """A motion whose symbols are bound to what was given for them.
+
+    Parameters
+    ----------
+    name : str
+    A, b : sympy matrices
+        In the symbols of the blocks.
+    given : list of (value, block of symbols)
+        Values as `affine` takes them: arrays, functions of time, expressions, or None for all.
+    times : array of shape (K,), optional
+        Times in seconds of sampled values.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not match, values are not finite or times do not increase.
+    """
     blocks = [block for _, block in given]
     values = [value for value, _ in given]
     symbols = tuple(s for block in blocks for s in block)

@@ -1,0 +1,36 @@
+"""Many points of one state that moves linearly, and their Luenberger-type observer (Inaba et al. 2005)."""
+
+from percept_obs.points.block import NotLinear, PointBlock, point_block
+from percept_obs.points.bodies import body_with_origin, independent_points, rigid_body
+from percept_obs.points.conditions import Conditions
+from percept_obs.points.form import PointsForm, UnseenDirection
+from percept_obs.points.luenberger import LuenbergerObserver, luenberger
+from percept_obs.points.recording import PointsRecording, PointsScenario, Sighting, record_points
+from percept_obs.points.run import PointsRun
+from percept_obs.points.tracking import track_points
+from percept_obs.points.weights import Weight, constant, lyapunov, riccati, scheduled
+
+__all__ = [
+    "Conditions",
+    "LuenbergerObserver",
+    "NotLinear",
+    "PointBlock",
+    "PointsForm",
+    "PointsRecording",
+    "PointsRun",
+    "PointsScenario",
+    "Sighting",
+    "UnseenDirection",
+    "Weight",
+    "body_with_origin",
+    "constant",
+    "independent_points",
+    "luenberger",
+    "lyapunov",
+    "point_block",
+    "record_points",
+    "riccati",
+    "rigid_body",
+    "scheduled",
+    "track_points",
+]

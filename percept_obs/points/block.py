@@ -1,0 +1,66 @@
+"""One point's images, freed of their division: the block that is repeated for every point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import sympy as sp
+
+from percept_obs.surfaces import POINT, ImagingSurface
+
+
+class NotLinear(ValueError):
+    """The surface's images do not become linear in the point when they are multiplied by its distance."""
+
+
+@dataclass(frozen=True)
+class PointBlock:
+    """One point's images, freed of their division: l(xi) (y - h(xi)) = -B(y) xi.
+
+    Parameters
+    ----------
+    y : symbols
+        Image coordinates of the point, m of them.
+    N : matrix of shape (m, 3)
+        The image times the distance, N xi = l(xi) h(xi).
+    l : matrix of shape (1, 3)
+        The distance l xi.
+    """
+
+    y: tuple[sp.Symbol, ...]
+    N: sp.ImmutableMatrix
+    l: sp.ImmutableMatrix
+
+    @property
+    def B(self) -> sp.ImmutableMatrix:
+        """The matrix N - y l, [I, -y] for the pinhole; B(y) xi = 0 where y is the image of xi."""
+        return self.N - sp.ImmutableMatrix(self.y) * self.l
+
+    @property
+    def S(self) -> sp.ImmutableMatrix:
+        """What an instant tells of the point: B^T B."""
+        return (self.B.T * self.B).expand()
+
+    def eigenvalues(self) -> dict[sp.Expr, int]:
+        """Eigenvalues of S with their multiplicities; 0 belongs to the ray."""
+        return {sp.factor(value): count for value, count in self.S.eigenvals().items()}
+
+
+@lru_cache(maxsize=64)
+def point_block(surface: ImagingSurface) -> PointBlock:
+    """Derive one point's block from the surface.
+
+    Raises
+    ------
+    NotLinear
+        If the distance, or the image times the distance, is not linear in the point, as on curved surfaces.
+    """
+    l = sp.ImmutableMatrix([surface.distance]).jacobian(POINT)
+    N = sp.ImmutableMatrix([sp.cancel(entry * surface.distance) for entry in surface.image]).jacobian(POINT)
+    if (l.free_symbols | N.free_symbols) & set(POINT):
+        raise NotLinear(
+            f"on the {surface.name}, distance or image times distance is not linear in the point, so that many points "
+            "have no common linear form; use the pinhole or a plane"
+        )
+    return PointBlock(surface.image_coordinates, N, l)

@@ -1,0 +1,186 @@
+"""States of bodies in a moving camera's frame: independent points, a rigid body, and what not to choose."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from percept_obs.motion import Motion, bound
+from percept_obs.points.form import PointsForm
+from percept_obs.surfaces import ImagingSurface, pinhole
+
+AXES = "xyz"
+
+
+def independent_points(motion: Motion, points: int, surface: ImagingSurface | None = None) -> PointsForm:
+    """Points that share a known motion and nothing else: the state is x = (X_1, ..., X_p), with X_k' = A X_k + b.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of a single point, from `affine` or `rigid`.
+    points : int
+        p.
+    surface : ImagingSurface, optional
+        The pinhole when left out.
+
+    Returns
+    -------
+    PointsForm
+        With 3 p states X1_x, X1_y, X1_z, X2_x, ...
+
+    Raises
+    ------
+    ValueError
+        If there is no point, or the motion is not that of a point.
+    """
+    _refuse(points)
+    if motion.A.shape != (3, 3):
+        raise ValueError(f"the motion has {motion.A.shape[0]} states; that of a single point has 3")
+    many = Motion(
+        f"{motion.name}, {points} points",
+        _placed(points, {(k, k): motion.A for k in range(points)}),
+        _placed(points, {(k, 0): motion.b for k in range(points)}, columns=1),
+        motion.parameters,
+        motion.signal,
+    )
+    sums = [[k] for k in range(points)]
+    return PointsForm(many, _sums(sums, points), surface or pinhole(), _names([f"X{k + 1}" for k in range(points)]))
+
+
+def rigid_body(
+    points: int,
+    camera_angular_velocity: Any = None,
+    camera_velocity: Any = None,
+    body_angular_velocity: Any = None,
+    point_velocity: Any = None,
+    times: ArrayLike | None = None,
+    surface: ImagingSurface | None = None,
+) -> PointsForm:
+    """A rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), its first point and the others' places from it.
+
+    With the angular velocities w_c of the camera and w_b of the body and the velocities v_c of the camera and v_p of
+    the body's first point, all in the world and written in the camera's axes::
+
+        r' = -w_c x r + v_p - v_c,    d_k' = (w_b - w_c) x d_k,    X_1 = r,  X_k = r + d_k
+
+    Parameters
+    ----------
+    points : int
+        p.
+    camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity : arrays of shape (3,) or (K, 3), \
+functions of time, optional
+        w_c, w_b in rad/s and v_c, v_p in m/s; symbols when all are left out, else 0 for those that are.
+    times : array of shape (K,), optional
+        Times in seconds of sampled velocities.
+    surface : ImagingSurface, optional
+        The pinhole when left out.
+
+    Returns
+    -------
+    PointsForm
+        With 3 p states r_x, r_y, r_z, d2_x, ...
+
+    Raises
+    ------
+    ValueError
+        If there is no point, shapes do not match, values are not finite or times do not increase.
+
+    Notes
+    -----
+    Where instead the velocity is known of the body's point that is momentarily at the camera's centre, all points
+    share one affine motion with w = w_b - w_c; take `independent_points`.
+    """
+    given = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
+    motion = _body_motion("rigid body", points, given, times)
+    sums = [[0], *([0, k] for k in range(1, points))]
+    return PointsForm(
+        motion, _sums(sums, points), surface or pinhole(), _names(["r", *(f"d{k + 1}" for k in range(1, points))])
+    )
+
+
+def body_with_origin(
+    points: int,
+    camera_angular_velocity: Any = None,
+    camera_velocity: Any = None,
+    body_angular_velocity: Any = None,
+    origin_velocity: Any = None,
+    times: ArrayLike | None = None,
+    surface: ImagingSurface | None = None,
+) -> PointsForm:
+    """A rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
+
+    Shown for what it costs: moving the origin one way and all points' places the other changes no image while both
+    turn alike, so that three directions of the state are never seen.  `rigid_body` has none of them.
+
+    Parameters
+    ----------
+    points, camera_angular_velocity, camera_velocity, body_angular_velocity, times, surface
+        See `rigid_body`.
+    origin_velocity : array of shape (3,) or (K, 3), or function of time, optional
+        Velocity of the origin in the world, in m/s.
+
+    Returns
+    -------
+    PointsForm
+        With 3 p + 3 states o_x, o_y, o_z, d1_x, ...
+
+    Warns
+    -----
+    UnseenDirection
+        If the body does not turn, so that the directions are lost for good.
+    """
+    given = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
+    motion = _body_motion("rigid body with an origin", points + 1, given, times)
+    sums = [[0, k + 1] for k in range(points)]
+    names = _names(["o", *(f"d{k + 1}" for k in range(points))])
+    return PointsForm(motion, _sums(sums, points + 1), surface or pinhole(), names)
+
+
+def _body_motion(name: str, vectors: int, given: tuple[Any, ...], times: ArrayLike | None) -> Motion:
+    """The motion of one place and of vectors that turn with a body."""
+    _refuse(vectors)
+    w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
+    symbols = (w_c, v_c, w_b, v_p)
+    if any(value is not None for value in given):
+        given = tuple(np.zeros(3) if value is None else value for value in given)
+    place, turning = _cross(-w_c), _cross(w_b - w_c)
+    A = _placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
+    v = _placed(vectors, {(0, 0): v_p - v_c}, columns=1)
+    return bound(name, A, v, list(zip(given, symbols, strict=True)), times)
+
+
+def _cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    return sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+
+
+def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:
+    """Blocks of three rows at their places in a matrix that is 0 elsewhere."""
+    entries = {
+        (3 * row + i, 3 * column + j): block[i, j]
+        for (row, column), block in blocks.items()
+        for i in range(3)
+        for j in range(block.shape[1])
+        if block[i, j] != 0
+    }
+    return sp.ImmutableSparseMatrix(3 * vectors, columns or 3 * vectors, entries)
+
+
+def _sums(sums: list[list[int]], vectors: int) -> np.ndarray:
+    """C of points that are sums of the state's vectors, shape (p, 3, 3 vectors)."""
+    C = np.zeros((len(sums), 3, vectors, 3))
+    for k, parts in enumerate(sums):
+        C[k, :, parts, :] = np.eye(3)
+    return C.reshape(len(sums), 3, -1)
+
+
+def _names(vectors: list[str]) -> tuple[str, ...]:
+    return tuple(f"{vector}_{axis}" for vector in vectors for axis in AXES)
+
+
+def _refuse(points: int) -> None:
+    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
+        raise ValueError(f"a body has {points!r} points; it needs a whole number, at least 1")

@@ -1,0 +1,115 @@
+"""The inequalities for P under which the error of the Luenberger-type observer cannot grow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.points.luenberger import LuenbergerObserver
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-6
+"""By which, relatively, an inequality may be missed and still counts as met."""
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """The inequalities that make V = rho^T P rho decrease, along a run.
+
+    Parameters
+    ----------
+    time : array of shape (T,)
+        Seconds.
+    printed : array of shape (T,)
+        Largest eigenvalue of A^T P + P A + P'; not positive where (15) holds.
+    weaker : array of shape (T,)
+        Largest eigenvalue of A^T P + P A + P' - (2 - epsilon) S; not positive where V' <= -epsilon |B C rho|^2.
+    least : array of shape (T,)
+        Smallest eigenvalue of P, which is to stay above a positive number.
+    epsilon : float
+    scale : array of shape (T,)
+        Size of the terms, by which the eigenvalues are judged.
+    """
+
+    time: Array
+    printed: Array
+    weaker: Array
+    least: Array
+    epsilon: float
+    scale: Array
+
+    @property
+    def printed_holds(self) -> bool:
+        """Whether (15) holds throughout."""
+        return bool((self.printed <= TOLERANCE * self.scale).all())
+
+    @property
+    def weaker_holds(self) -> bool:
+        """Whether the weaker inequality holds throughout."""
+        return bool((self.weaker <= TOLERANCE * self.scale).all())
+
+    @property
+    def positive(self) -> bool:
+        """Whether P stays positive definite."""
+        return bool((self.least > 0).all())
+
+    def verdict(self) -> str:
+        """What holds, in words; what does not, from when on."""
+        parts = []
+        for name, values in (("(15)", self.printed), (f"the weaker one with epsilon = {self.epsilon:g}", self.weaker)):
+            missed = np.flatnonzero(values > TOLERANCE * self.scale)
+            if not len(missed):
+                parts.append(f"{name} holds throughout")
+            else:
+                parts.append(
+                    f"{name} fails first at {self.time[missed[0]]:.3g} s, by {values.max():.3g} at "
+                    f"{self.time[values.argmax()]:.3g} s"
+                )
+        lost = np.flatnonzero(self.least <= 0)
+        if len(lost):
+            parts.append(f"P is not positive definite from {self.time[lost[0]]:.3g} s on")
+        else:
+            parts.append(f"the smallest eigenvalue of P is {self.least.min():.3g}")
+        return "; ".join(parts)
+
+
+def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Array, epsilon: float = 1.0) -> Conditions:
+    """The inequality (15) and the weaker sufficient one, apart.
+
+    Parameters
+    ----------
+    observer : LuenbergerObserver
+    time : array of shape (T,)
+        Seconds.
+    outputs : array of shape (T, p, m)
+        NaN where a point is not seen.
+    P : array of shape (T, n, n)
+    epsilon : float
+        Of the weaker one, A^T P + P A + P' <= (2 - epsilon) S, above 0 and at most 2.
+
+    Raises
+    ------
+    ValueError
+        If epsilon is out of its range.
+    """
+    if not 0 < epsilon <= 2:
+        raise ValueError(f"epsilon is {epsilon}; it must be above 0 and at most 2")
+    form, weight = observer.form, observer.weight
+    S = form.information(outputs)
+    if weight.computed:
+        left = weight.information * S - weight.forgetting * (P - weight.start) - weight.decrease
+    else:
+        A, _ = form.coefficients(time)
+        left = np.swapaxes(A, 1, 2) @ P + P @ A + weight.rate(time)
+        left = (left + np.swapaxes(left, 1, 2)) / 2
+    return Conditions(
+        time,
+        np.linalg.eigvalsh(left)[:, -1],
+        np.linalg.eigvalsh(left - (2 - epsilon) * S)[:, -1],
+        np.asarray(np.linalg.eigvalsh(P)[:, 0]),
+        epsilon,
+        np.linalg.norm(P, axis=(1, 2)) + np.linalg.norm(S, axis=(1, 2)),
+    )

@@ -1,0 +1,358 @@
+"""Many points of one linear state: what a camera's images say of it, derived for one point and repeated for all."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import null_space
+
+from percept_obs.compile import vectorised
+from percept_obs.derivation import Derivation, Step, equals
+from percept_obs.motion import Motion
+from percept_obs.points.block import PointBlock, point_block
+from percept_obs.surfaces import POINT, ImagingSurface, pinhole
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+DRAWS = 4
+"""Values that a motion's symbols are given at random, to find what no motion lets a camera see."""
+
+NEGLIGIBLE = 1e-9
+"""A direction whose images change less than this, relatively, is not seen."""
+
+
+class UnseenDirection(UserWarning):
+    """A direction of the state that no image of any point depends on, whatever the camera sees."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where a motion's coefficients that are not 0 stand, and which distinct expression each of them is.
+
+    Parameters
+    ----------
+    rows, columns, which : integer arrays of the same length
+        Entry (rows, columns) is ``expressions[which]``.
+    expressions : tuple of expressions
+        In the motion's parameters.
+    """
+
+    rows: Indices
+    columns: Indices
+    which: Indices
+    expressions: tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class PointsForm:
+    """The system x' = A x + v with n states, and p points C_k x that a camera sees (Inaba et al. 2005, (1)-(3)).
+
+    Parameters
+    ----------
+    motion : Motion
+        From `linear`, `affine`, or a helper of `bodies`.
+    C : array of shape (p, 3, n), or sequence of p matrices of shape (3, n)
+        Point k is C_k x, in metres in the camera's frame.  A single matrix stands for one point.
+    surface : ImagingSurface
+        The pinhole when left out.
+    names : tuple of str
+        What the states are called; x1, x2, ... when left out.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not match, entries are not finite, or names repeat.
+    NotLinear
+        If the surface is a curved one.
+
+    Warns
+    -----
+    UnseenDirection
+        If a direction of the state changes no image, whatever the motion's symbols are.
+    """
+
+    motion: Motion
+    C: Any
+    surface: ImagingSurface = field(default_factory=pinhole)
+    names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = self.motion.A.shape[0]
+        blocks = [self.C] if np.ndim(self.C) == 2 else list(self.C)
+        shapes = {np.shape(block) for block in blocks}
+        if shapes != {(3, n)}:
+            raise ValueError(
+                f"C has blocks of shape {', '.join(map(str, sorted(shapes))) or 'none'}; the motion has {n} states, so "
+                f"each point needs a block of shape {(3, n)}"
+            )
+        object.__setattr__(self, "C", tuple(map(_matrix, blocks)))
+        names = tuple(self.names) or tuple(f"x{k + 1}" for k in range(n))
+        object.__setattr__(self, "names", names)
+        if len(set(names)) != len(names) or len(names) != n:
+            raise ValueError(f"{len(names)} names were given for {n} states; each state needs a name of its own")
+        point_block(self.surface)
+        if not self._symbolic:
+            if not np.isfinite(self.blocks).all():
+                raise ValueError("C has entries that are not finite; remove or repair the NaN or infinite ones")
+            if self.unseen.shape[1]:
+                warnings.warn(UnseenDirection(self._complaint()), stacklevel=3)
+
+    @property
+    def points(self) -> int:
+        """Number of points p."""
+        return len(self.C)
+
+    @property
+    def states(self) -> int:
+        """Number of states n."""
+        return len(self.names)
+
+    @property
+    def outputs(self) -> int:
+        """Image coordinates of a point, m."""
+        return len(self.surface.image_coordinates)
+
+    @cached_property
+    def block(self) -> PointBlock:
+        """One point's block."""
+        return point_block(self.surface)
+
+    @cached_property
+    def blocks(self) -> Array:
+        """Numbers of C, shape (p, 3, n)."""
+        dense = np.zeros((self.points, 3, self.states))
+        for k, block in enumerate(self.C):
+            for (i, j), value in block.todok().items():
+                dense[k, i, j] = float(value)
+        return _readonly(dense)
+
+    @cached_property
+    def surface_numbers(self) -> tuple[Array, Array]:
+        """Numbers of the block: N of shape (m, 3) and l of shape (3,)."""
+        values = self.surface.values
+        return (
+            np.array(self.block.N.subs(values), dtype=float),
+            np.array(self.block.l.subs(values), dtype=float).ravel(),
+        )
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The entries of [A, v] that are not 0; v is column n."""
+        entries = [(i, j, e) for (i, j), e in sorted(self.motion.A.todok().items())]
+        entries += [(i, self.states, e) for (i, _), e in sorted(self.motion.b.todok().items())]
+        distinct = tuple(dict.fromkeys(e for _, _, e in entries))
+        place = {e: k for k, e in enumerate(distinct)}
+        places = np.array([(i, j, place[e]) for i, j, e in entries], dtype=np.intp).reshape(-1, 3)
+        rows, columns, which = places.T.copy()
+        return Layout(rows, columns, which, distinct)
+
+    def values(self, times: ArrayLike) -> Array:
+        """Numbers of the layout's expressions at the given times, shape (T, u) or (1, u) when constant."""
+        return self._evaluated(self.motion.known(times))
+
+    def coefficients(self, times: ArrayLike) -> tuple[Array, Array]:
+        """A and v at the given times, shapes (T, n, n) and (T, n), or (1, ...) when constant."""
+        together = self._dense(self.values(times))
+        return together[:, :, :-1], together[:, :, -1]
+
+    def positions(self, states: ArrayLike) -> Array:
+        """Points C_k x of states of shape (..., n), in metres, shape (..., p, 3)."""
+        return np.einsum("kin,...n->...ki", self.blocks, np.asarray(states, dtype=float), optimize=True)
+
+    def distances(self, states: ArrayLike) -> Array:
+        """Depths l C_k x of states of shape (..., n), in metres, shape (..., p); not positive behind the camera."""
+        return np.asarray(self.positions(states) @ self.surface_numbers[1])
+
+    def images(self, states: ArrayLike) -> Array:
+        """Image coordinates of states of shape (..., n), shape (..., p, m); NaN behind the camera."""
+        positions = self.positions(states)
+        N, l = self.surface_numbers
+        distance = (positions @ l)[..., None]
+        return np.divide(
+            positions @ N.T, distance, out=np.full((*positions.shape[:-1], len(N)), np.nan), where=distance > 0
+        )
+
+    def information(self, outputs: ArrayLike) -> Array:
+        """S = C^T B^T B C for outputs of shape (..., p, m), shape (..., n, n); points with a NaN are left out."""
+        rows = self.rows(outputs)
+        return np.swapaxes(rows, -1, -2) @ rows
+
+    def rows(self, outputs: ArrayLike) -> Array:
+        """B C for outputs of shape (..., p, m), shape (..., p m, n); 0 for points with a NaN."""
+        outputs = np.asarray(outputs, dtype=float)
+        N, l = self.surface_numbers
+        seen = np.isfinite(outputs).all(axis=-1)[..., None, None]
+        block = np.where(seen, N - np.nan_to_num(outputs)[..., None] * l, 0.0)
+        rows = block @ self.blocks
+        return rows.reshape(*outputs.shape[:-2], -1, self.states)
+
+    @cached_property
+    def unseen(self) -> Array:
+        """Directions of the state that change no image, whatever the motion's symbols are, shape (n, q).
+
+        The largest subspace that every C_k maps to 0 and every A maps into itself.  The pair (C, A) is then not
+        observable, and so (14) fails for every trajectory (Proposition 3.3).
+        """
+        if self.motion.signal is not None and self.motion.signal.constant:
+            known = self.motion.known(0.0)
+        else:
+            known = np.random.default_rng(0).normal(size=(DRAWS, len(self.motion.parameters)))
+        A = self._dense(self._evaluated(known))[:, :, :-1]
+        basis = null_space(self.blocks.reshape(-1, self.states), rcond=NEGLIGIBLE)
+        while basis.shape[1]:
+            leaving = A @ basis - basis @ (basis.T @ (A @ basis))
+            scale = max(1.0, float(np.abs(A).max(initial=0.0)))
+            kept = _kernel(leaving.reshape(-1, basis.shape[1]), NEGLIGIBLE * scale)
+            if kept.shape[1] == basis.shape[1]:
+                break
+            basis = basis @ kept
+        return _readonly(basis)
+
+    def describe(self, directions: Array) -> tuple[str, ...]:
+        """Directions of the state in words, one sum of states for each column of an array of shape (n, q)."""
+        return tuple(_sum(row, self.names) for row in _reduced(directions.T))
+
+    @cached_property
+    def state(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the states."""
+        return tuple(sp.Symbol(name, real=True) for name in self.names)
+
+    @cached_property
+    def y(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of all image coordinates: y1_2 is the first one of point 2."""
+        return tuple(sp.Symbol(f"{y.name}_{k + 1}", real=True) for k in range(self.points) for y in self.block.y)
+
+    @cached_property
+    def stacked(self) -> sp.ImmutableMatrix:
+        """The blocks C_k one below the other, shape (3 p, n)."""
+        return sp.ImmutableMatrix.vstack(*self.C)
+
+    @cached_property
+    def B(self) -> sp.ImmutableMatrix:
+        """B(y) of all points, shape (m p, 3 p)."""
+        m, block = self.outputs, self.block
+        return sp.ImmutableMatrix(
+            sp.diag(*(block.B.xreplace(dict(zip(block.y, self.y[k * m :], strict=False))) for k in range(self.points)))
+        )
+
+    def E(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        """E of a state: one over the distance of each point, shape (m p, m p)."""
+        points = [C * sp.ImmutableMatrix(state) for C in self.C]
+        return sp.ImmutableMatrix(sp.diag(*(sp.eye(self.outputs) / (self.block.l * xi)[0] for xi in points)))
+
+    def H(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        """Images of all points of a state, shape (m p, 1)."""
+        seen = [dict(zip(POINT, C * sp.ImmutableMatrix(state), strict=True)) for C in self.C]
+        return sp.ImmutableMatrix([e.subs(point, simultaneous=True) for point in seen for e in self.surface.image])
+
+    def derivation(self) -> Derivation:
+        """From one point's image to the innovation of all of them, step by step."""
+        block, xi = self.block, sp.Matrix(POINT)
+        values = ",\\ ".join(sp.latex(value) for value in block.eigenvalues())
+        return Derivation(
+            (
+                Step("The state moves:", rf"\dot x = A x + v,\quad n = {self.states}"),
+                Step("A point of it is seen at:", equals("y", sp.Matrix(self.surface.image))),
+                Step(
+                    "Times its distance this is linear in the point:",
+                    rf"{sp.latex(self.surface.distance)}\, y = {sp.latex(block.N)} {sp.latex(xi)}",
+                ),
+                Step("So the point lies in the kernel of:", equals("B(y)", block.B)),
+                Step(
+                    "The same at the estimate leaves the innovation, linear in the error:",
+                    r"y - h(\hat\xi) = \frac{1}{l\hat\xi}\, B(y)\,(\xi - \hat\xi)",
+                ),
+                Step("What an instant tells of the point:", equals("B^T B", block.S)),
+                Step("Its eigenvalues, 0 for the ray:", values),
+                Step(
+                    f"For all {self.points} points, block by block:",
+                    r"y - H(C\hat x) = E(\hat x)\, B(y)\, C\, (x - \hat x)",
+                ),
+            )
+        )
+
+    def _repr_latex_(self) -> str:
+        return (
+            rf"$\displaystyle \dot x = A x + v,\quad x \in \mathbb{{R}}^{{{self.states}}},\quad "
+            rf"y_k = h(C_k x),\ k = 1 \ldots {self.points},\quad B_k = {sp.latex(self.block.B)}$"
+        )
+
+    @property
+    def _symbolic(self) -> bool:
+        return any(block.free_symbols for block in self.C)
+
+    def _evaluated(self, known: Array) -> Array:
+        expressions = self.layout.expressions
+        if not expressions:
+            return np.zeros((len(known), 0))
+        if not self.motion.parameters:
+            return np.array([[float(e) for e in expressions]])
+        return np.stack(vectorised(self.motion.parameters, expressions)(*known.T), axis=-1)
+
+    def _dense(self, values: Array) -> Array:
+        together = np.zeros((len(values), self.states, self.states + 1))
+        together[:, self.layout.rows, self.layout.columns] = values[:, self.layout.which]
+        return together
+
+    def _complaint(self) -> str:
+        named = self.describe(self.unseen)
+        many = "a direction" if len(named) == 1 else f"{len(named)} directions"
+        return (
+            f"no image shows {many} of the state, whatever the camera sees: {'; '.join(named)}.  No observer finds "
+            "what no image shows: leave it out of the state, or let the camera see a point that moves with it"
+        )
+
+
+def _matrix(block: Any) -> sp.ImmutableMatrix:
+    """A sparse matrix; numbers become floats."""
+    array = np.asarray(block, dtype=object)
+    entries = {(i, j): sp.sympify(array[i, j]) for i, j in zip(*np.nonzero(array), strict=True)}
+    return sp.ImmutableSparseMatrix(*array.shape, entries)
+
+
+def _kernel(matrix: Array, tolerance: float) -> Array:
+    """An orthonormal basis of what the matrix maps to less than the tolerance."""
+    _, singular, right = np.linalg.svd(matrix)
+    return right[int((singular > tolerance).sum()) :].T
+
+
+def _reduced(rows: Array) -> Array:
+    """The same space, spanned by rows that hold as few entries as elimination gets them to."""
+    rows = np.array(rows, dtype=float)
+    for k in range(len(rows)):
+        # the earliest state whose entry is about the largest, so that directions read in the states' order
+        candidates = np.abs(rows[k:]).max(axis=0)
+        column = int(np.argmax(candidates > 0.5 * candidates.max()))
+        pivot = k + int(np.argmax(np.abs(rows[k:, column])))
+        rows[[k, pivot]] = rows[[pivot, k]]
+        rows[k] /= rows[k, column]
+        others = np.arange(len(rows)) != k
+        rows[others] -= rows[others][:, [column]] * rows[k]
+    return rows
+
+
+def _sum(row: Array, names: Sequence[str]) -> str:
+    """A row as a sum of names, such as "r_x - d2_x"."""
+    largest = np.abs(row).max()
+    terms: list[str] = []
+    for value, name in zip(row, names, strict=True):
+        if abs(value) < 1e-6 * largest:
+            continue
+        size = "" if abs(abs(value) - 1) < 1e-6 else f"{abs(value):.3g} "
+        sign = "-" if value < 0 else "+"
+        terms.append(f"{sign} {size}{name}" if terms else f"{'-' if value < 0 else ''}{size}{name}")
+    return " ".join(terms)
+
+
+def _readonly(array: Array) -> Array:
+    array = np.array(array, dtype=float)
+    array.setflags(write=False)
+    return array

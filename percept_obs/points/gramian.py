@@ -1,0 +1,329 @@
+"""Condition (14): what the images of a window tell of the state, along a trajectory, and how fast errors then decay."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.points.conditions import conditions
+from percept_obs.points.form import PointsForm
+from percept_obs.points.luenberger import LuenbergerObserver
+from percept_obs.points.recording import PointsRecording
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Piece = tuple[Array, Array]
+
+LARGEST_TABLE = 2e7
+"""Numbers that the transition matrices of all samples may take; of more samples only some are used."""
+
+UNSEEN = 1e-6
+"""A direction whose eigenvalue is below this share of the largest one is not seen."""
+
+PARTS = 80
+"""Intervals into which a window is divided for the bound on the decay."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gramian:
+    """The integral of Phi^T S Phi over windows, from the state at their beginnings.
+
+    Parameters
+    ----------
+    form : PointsForm
+    time : array of shape (T,)
+        Beginnings of the windows in seconds.
+    matrices : array of shape (T, n, n)
+    window : float
+        Length of the windows in seconds.
+    states : array of shape (T, n), optional
+        True states at the beginnings.
+    """
+
+    form: PointsForm
+    time: Array
+    matrices: Array
+    window: float
+    states: Array | None = None
+
+    @cached_property
+    def eigenvalues(self) -> Array:
+        """Eigenvalues of each window's matrix, increasing, shape (T, n)."""
+        return np.asarray(np.linalg.eigvalsh(self.matrices))
+
+    @property
+    def smallest(self) -> Array:
+        """Smallest eigenvalue of each window, shape (T,)."""
+        return np.asarray(self.eigenvalues[:, 0])
+
+    @property
+    def least(self) -> float:
+        """The smallest of all windows: the epsilon of (14), or 0 but for rounding where it fails."""
+        return float(self.smallest.min())
+
+    @property
+    def holds(self) -> bool:
+        """Whether every direction is seen in every window."""
+        return bool((self.eigenvalues[:, 0] > UNSEEN * self.eigenvalues[:, -1]).all())
+
+    @cached_property
+    def weakest(self) -> int:
+        """Number of the window whose smallest eigenvalue is the least, relatively to its largest."""
+        return int(np.argmin(self.eigenvalues[:, 0] / np.maximum(self.eigenvalues[:, -1], 1e-300)))
+
+    def unseen(self, window: int | None = None) -> Array:
+        """Directions of the state that a window does not show, orthonormal, shape (n, q).
+
+        Parameters
+        ----------
+        window : int, optional
+            Its number; the weakest one when left out.
+        """
+        values, vectors = np.linalg.eigh(self.matrices[self.weakest if window is None else window])
+        return np.asarray(vectors[:, values <= UNSEEN * max(values[-1], 1e-300)])
+
+    def verdict(self) -> str:
+        """Whether (14) holds, in words; if not, which directions of the state are not seen."""
+        k = self.weakest
+        where = f"the {self.window:g} s from {self.time[k]:.3g} s on"
+        lost = self.unseen()
+        if not lost.shape[1]:
+            direction = np.linalg.eigh(self.matrices[k])[1][:, :1]
+            return (
+                f"(14) holds: the smallest eigenvalue is at least {self.least:.3g}; least is seen in {where}, "
+                f"of {self.form.describe(direction)[0]}"
+            )
+        named = self.form.describe(lost)
+        many = "1 direction is" if len(named) == 1 else f"{len(named)} directions are"
+        text = f"(14) fails: in {where} {many} not seen: {'; '.join(named)}"
+        if self.states is None or not np.isfinite(self.states[k]).all():
+            return text
+        state = self.states[k] / max(float(np.linalg.norm(self.states[k])), 1e-300)
+        if np.linalg.norm(lost.T @ state) > 1 - 1e-4:
+            whole = "this is the state itself" if len(named) == 1 else "the state itself is among them"
+            text += f"; {whole}: the images do not tell its scale"
+        return text
+
+
+def gramian(recording: PointsRecording, window: float, form: PointsForm | None = None) -> Gramian:
+    """What the images of a window tell of the state: the integral in (14), Inaba et al. 2005.
+
+    Parameters
+    ----------
+    recording : PointsRecording
+        Its true images are used where there is a truth, else its outputs; points count while they are seen.
+    window : float
+        Seconds.
+    form : PointsForm, optional
+        What is believed of the motion; the recording's own when left out.
+
+    Returns
+    -------
+    Gramian
+        With a window for each sample from which it fits into the recording.
+
+    Raises
+    ------
+    ValueError
+        If the window is not positive or longer than the recording, or the form has another number of points.
+    """
+    form = form or recording.form
+    if form.points != recording.form.points:
+        raise ValueError(f"the form has {form.points} points, the recording {recording.form.points}")
+    images = true_images(recording)
+    return _windows(recording, window, form, lambda k: form.information(images[k]))
+
+
+def linear_gramian(recording: PointsRecording, window: float, form: PointsForm | None = None) -> Gramian:
+    """What the points themselves, with their distances, would tell: the integral of Phi^T C^T C Phi.
+
+    The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
+    with epsilon, this one is at least epsilon / (1 + sup |y|^2) (Proposition 3.3); the converse fails.
+
+    Parameters
+    ----------
+    recording, window, form
+        See `gramian`.  Points count while they are seen.
+    """
+    form = form or recording.form
+
+    def information(k: Indices) -> Array:
+        C = np.where(recording.seen[k][..., None, None], form.blocks, 0.0).reshape(len(k), -1, form.states)
+        return np.swapaxes(C, 1, 2) @ C
+
+    return _windows(recording, window, form, information)
+
+
+@dataclass(frozen=True, eq=False)
+class DecayBound:
+    """What the proof of Theorem 3.4 guarantees of the error, window by window.
+
+    Parameters
+    ----------
+    time : array of shape (T,)
+        Beginnings of windows that follow each other, in seconds.
+    seen : array of shape (T,)
+        Smallest eigenvalue of the Gramian relative to P: rho^T G rho >= seen rho^T P rho.
+    feedback : array of shape (T,)
+        Norm of the operator by which the observer's own corrections hide the error from the images.
+    window : float
+        Seconds.
+    """
+
+    time: Array
+    seen: Array
+    feedback: Array
+    window: float
+
+    @property
+    def contraction(self) -> Array:
+        """Largest ratio of V = rho^T P rho at the end of each window to that at its beginning, shape (T,)."""
+        return np.maximum(1 - 2 * self.seen / (1 + self.feedback) ** 2, 0.0)
+
+    @property
+    def rate(self) -> float:
+        """Rate in 1/s at which sqrt(V) decays at least, over all of the windows."""
+        with np.errstate(divide="ignore"):
+            return float(-np.log(self.contraction).mean() / (2 * self.window))
+
+
+def decay_bound(recording: PointsRecording, observer: LuenbergerObserver, window: float) -> DecayBound:
+    """A bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
+
+    With z = B C rho, (15) gives V(t) - V(t + T) >= 2 int |z|^2.  By (22), the error without corrections would have
+    shown B C Phi rho(t) = z + K z, where K is the operator with the kernel B C Phi(s, tau) P^-1 C^T B^T.  So
+    rho^T G rho <= (1 + |K|)^2 int |z|^2, and with G >= seen P the error shrinks by
+    V(t + T) <= (1 - 2 seen / (1 + |K|)^2) V(t).  A small P makes the Gramian large relatively to it, but |K| as well:
+    too much gain slows down.
+
+    Parameters
+    ----------
+    recording : PointsRecording
+        With a truth.
+    observer : LuenbergerObserver
+        With a given P, that meets (15).
+    window : float
+        Seconds.
+
+    Returns
+    -------
+    DecayBound
+
+    Raises
+    ------
+    ValueError
+        If there is no truth, P is computed or misses (15), or the window does not fit.
+    """
+    form, weight = observer.form, observer.weight
+    if recording.truth is None:
+        raise ValueError("the recording has no truth, so that the true images are not known")
+    _check_window(recording, window)
+    time, images = recording.time, true_images(recording)
+    every = slice(None, None, max(1, len(time) // PARTS))
+    P_there = (
+        None if weight.computed else np.broadcast_to(weight.at(time[every]), (len(time[every]), *[form.states] * 2))
+    )
+    if P_there is None or not conditions(observer, time[every], images[every], P_there).printed_holds:
+        raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
+    begins = time[0] + window * np.arange(int((time[-1] - time[0]) / window + 1e-9))
+    seen, feedback = np.empty(len(begins)), np.empty(len(begins))
+    for k, begin in enumerate(begins):
+        inside = np.flatnonzero((time >= begin - 1e-9) & (time <= begin + window + 1e-9))
+        inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
+        at = time[inside]
+        shares = np.zeros(len(at))
+        shares[:-1] += np.diff(at) / 2
+        shares[1:] += np.diff(at) / 2
+        step = _transitions(form, at)
+        Phi = np.concatenate([np.eye(form.states)[None], step])
+        for j in range(1, len(Phi)):
+            Phi[j] = step[j - 1] @ Phi[j - 1]
+        rows = form.rows(images[inside])
+        shown = np.sqrt(shares)[:, None, None] * rows @ Phi
+        P = weight.at(at)
+        inverse = np.linalg.inv(np.broadcast_to(P, (len(at), *P.shape[1:])))
+        corrected = np.linalg.inv(Phi) @ inverse @ np.swapaxes(rows, 1, 2) * np.sqrt(shares)[:, None, None]
+        # what is corrected at one instant is missing from all later images
+        size = rows.shape[1]
+        operator = np.concatenate(list(shown)) @ np.concatenate(list(corrected), axis=1)
+        later = np.kron(np.tri(len(at), k=-1) + np.eye(len(at)) / 2, np.ones((size, size)))
+        G = np.einsum("tij,tik->jk", shown, shown)
+        half = np.linalg.inv(np.linalg.cholesky(P[0]))
+        seen[k] = np.linalg.eigvalsh(half @ G @ half.T)[0]
+        feedback[k] = np.linalg.norm(operator * later, 2)
+    return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
+
+
+def true_images(recording: PointsRecording) -> Array:
+    """The images without noise where the truth is known, shape (K, p, m); NaN while a point is not seen."""
+    if recording.truth is None:
+        return recording.outputs
+    return np.where(recording.seen[..., None], recording.form.images(recording.truth), np.nan)
+
+
+def _check_window(recording: PointsRecording, window: float) -> None:
+    length = recording.time[-1] - recording.time[0]
+    if not 0 < window <= length + 1e-9:
+        raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
+
+
+def _transitions(form: PointsForm, time: Array) -> Array:
+    """Transition matrices from each time to the next, shape (K - 1, n, n), by the Runge-Kutta method."""
+    h = np.diff(time)[:, None, None]
+    both = np.empty(2 * len(time) - 1)
+    both[::2], both[1::2] = time, (time[:-1] + time[1:]) / 2
+    A, _ = form.coefficients(both)
+    A = np.broadcast_to(A, (len(both), *A.shape[1:]))
+    unit = np.eye(form.states)
+    k1 = A[:-1:2]
+    k2 = A[1::2] @ (unit + h / 2 * k1)
+    k3 = A[1::2] @ (unit + h / 2 * k2)
+    k4 = A[2::2] @ (unit + h * k3)
+    return np.asarray(unit + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+
+
+def _windows(
+    recording: PointsRecording, window: float, form: PointsForm, information: Callable[[Indices], Array]
+) -> Gramian:
+    """Integrals over all windows that begin at a sample, without inverting a transition.
+
+    A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
+    window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
+    """
+    _check_window(recording, window)
+    used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
+    time = recording.time[used]
+    S, Phi = information(used), _transitions(form, time)
+    h = np.diff(time)[:, None, None]
+    integrals = h / 2 * (S[:-1] + np.swapaxes(Phi, 1, 2) @ S[1:] @ Phi)
+    ends = np.searchsorted(time, time + window - 1e-9)
+    begins = np.flatnonzero(ends < len(time))
+
+    front: list[Piece] = []
+    back: Piece | None = None
+    pushed, matrices = 0, []
+    for first in begins:
+        while pushed < ends[first]:
+            piece = (Phi[pushed], integrals[pushed])
+            back = piece if back is None else _join(back, piece)
+            pushed += 1
+        if not front:
+            # all pieces of the window, joined from the last one on
+            for j in range(pushed - 1, first - 1, -1):
+                piece = (Phi[j], integrals[j])
+                front.append(_join(piece, front[-1]) if front else piece)
+            back = None
+        whole = front.pop() if back is None else _join(front.pop(), back)
+        matrices.append((whole[1] + whole[1].T) / 2)
+    states = None if recording.truth is None or form is not recording.form else recording.truth[used][begins]
+    return Gramian(form, time[begins], np.stack(matrices), window, states)
+
+
+def _join(first: Piece, second: Piece) -> Piece:
+    """One piece from two: the second one is seen through the first one's transition."""
+    (Phi, G), (Phi_next, G_next) = first, second
+    return Phi_next @ Phi, G + Phi.T @ G_next @ Phi

@@ -1,0 +1,332 @@
+"""The loop over points: one text that numpy runs as it is and numba compiles once, for any number of points."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.points.form import PointsForm
+
+Array = NDArray[np.float64]
+Language = Literal["python", "numba"]
+
+LARGEST_SQUARED_STATE = 1e300
+"""A state whose squared norm exceeds this, or is not a number, has diverged."""
+
+SMALL_WORK = 2e5
+"""Steps times states up to which Python does not wait for numba to compile."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arrays:
+    """A form as the loop takes it: entries that are not 0, point by point for C.
+
+    Parameters
+    ----------
+    rows, columns, which : integer arrays
+        As in `Layout`; column n is v.
+    begins : integer array of shape (p + 1,)
+        Where each point's entries of C begin.
+    axes, states : integer arrays
+        Row in C_k and state of each entry of C.
+    entries : array
+        Entries of C.
+    N, l : arrays of shape (m, 3) and (3,)
+        One point's block.
+    """
+
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    which: NDArray[np.intp]
+    begins: NDArray[np.intp]
+    axes: NDArray[np.intp]
+    states: NDArray[np.intp]
+    entries: Array
+    N: Array
+    l: Array
+
+    @property
+    def all(self) -> tuple[Any, ...]:
+        """The arrays in the order of the loop's arguments."""
+        return (
+            self.rows,
+            self.columns,
+            self.which,
+            self.begins,
+            self.axes,
+            self.states,
+            self.entries,
+            self.N,
+            self.l,
+        )
+
+
+def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp]) -> Arrays:
+    """Some states and points of a form as the loop takes them; the states' rates must not need others."""
+    n = form.states
+    place = np.full(n + 1, -1)
+    place[states], place[n] = np.arange(len(states)), len(states)
+    layout = form.layout
+    within = place[layout.rows] >= 0
+    rows, columns = place[layout.rows[within]], place[layout.columns[within]]
+    blocks = form.blocks[points][:, :, states]
+    owners, axes, used = np.nonzero(blocks)
+    begins = np.searchsorted(owners, np.arange(len(points) + 1))
+    N, l = form.surface_numbers
+    return Arrays(rows, columns, layout.which[within], begins, axes, used, blocks[owners, axes, used], N, l)
+
+
+def rate(solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-untyped-def]
+    """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
+    rows, columns, which, begins, axes, states, entries, N, l = form
+    computed, information, forgetting, decrease = law
+    n, m = len(x), len(N)
+    dx[:] = 0.0
+    for i in range(n if computed else 0):
+        dP[i] = -forgetting * P[i] - decrease[i]
+    for e in range(len(rows)):
+        i, j, a = rows[e], columns[e], coefficients[which[e]]
+        if j == n:
+            dx[i] += a
+        else:
+            dx[i] += a * x[j]
+            if computed:
+                dP[:, j] -= a * P[i]
+                dP[j] -= a * P[i]
+    correction = np.zeros(n)
+    xi, c, S = np.zeros(3), np.zeros(3), np.zeros((3, 3))
+    anything = False
+    for k in range(len(begins) - 1):
+        seen = True
+        for j in range(m):
+            seen = seen and y[k, j] == y[k, j]
+        if not seen:
+            continue
+        anything = True
+        first, last = begins[k], begins[k + 1]
+        xi[:] = 0.0
+        for e in range(first, last):
+            xi[axes[e]] += entries[e] * x[states[e]]
+        distance = l[0] * xi[0] + l[1] * xi[1] + l[2] * xi[2]
+        c[:] = 0.0
+        S[:] = 0.0
+        for j in range(m):
+            innovation = y[k, j] * distance - N[j, 0] * xi[0] - N[j, 1] * xi[1] - N[j, 2] * xi[2]
+            for i in range(3):
+                b = N[j, i] - y[k, j] * l[i]
+                c[i] += b * innovation
+                for h in range(3 if computed else 0):
+                    S[i, h] += b * (N[j, h] - y[k, j] * l[h])
+        for e in range(first, last):
+            correction[states[e]] += entries[e] * c[axes[e]]
+            if computed:
+                for f in range(first, last):
+                    dP[states[e], states[f]] += information * entries[e] * entries[f] * S[axes[e], axes[f]]
+    if anything:
+        moved = solve(P, correction) if computed else P @ correction
+        for i in range(n):
+            dx[i] += moved[i]
+
+
+def run(rate, solve, form, law, start, P, steps, coefficients, inverses, outputs, path):  # type: ignore[no-untyped-def]
+    """Step the estimate, and P where it is computed, by the classical Runge-Kutta method.
+
+    The blocks `coefficients` and `inverses` have a row for each start, middle and end of a step, or one row if
+    constant; `outputs` has three rows a step.  The estimates go to `path`, the last P to `P`.  Returns the first row
+    of `path` at which the estimate was no longer finite, or -1.
+    """
+    computed, n = law[0], len(start)
+    x, x_stage, dx = start.copy(), start.copy(), np.zeros(n)
+    P_stage, dP = P.copy(), np.zeros(P.shape)
+    path[0] = start
+    for k in range(len(steps)):
+        x_sum, P_sum = x.copy(), P.copy()
+        for stage in range(4):
+            place = (stage + 1) // 2
+            row = 2 * k + place
+            if computed:
+                for i in range(n):
+                    P_stage[i] = P[i] + 0.5 * steps[k] * place * dP[i]
+            else:
+                P_stage = inverses[row if len(inverses) > 1 else 0]
+            for i in range(n):
+                x_stage[i] = x[i] + 0.5 * steps[k] * place * dx[i]
+            known = coefficients[row if len(coefficients) > 1 else 0]
+            rate(solve, form, law, x_stage, P_stage, known, outputs[k, place], dx, dP)
+            weight = steps[k] / (6.0 if stage % 3 == 0 else 3.0)
+            for i in range(n):
+                x_sum[i] += weight * dx[i]
+                if computed:
+                    P_sum[i] += weight * dP[i]
+        x[:] = x_sum
+        P[:] = P_sum
+        path[k + 1] = x_sum
+        squared = 0.0
+        for i in range(n):
+            squared += x[i] * x[i]
+        if not squared <= LARGEST_SQUARED_STATE:
+            return k + 1
+    return -1
+
+
+def solve_by_loops(P, right):  # type: ignore[no-untyped-def]
+    """Solve P x = right by Cholesky's method; NaN where P is not positive definite.
+
+    LAPACK's takes numba twice as long to compile as all the rest.
+    """
+    n = len(right)
+    L, x = np.zeros((n, n)), right.copy()
+    for j in range(n):
+        for i in range(j, n):
+            total = P[i, j]
+            for k in range(j):
+                total -= L[i, k] * L[j, k]
+            if i == j:
+                L[j, j] = math.sqrt(total) if total > 0.0 else math.nan
+            else:
+                L[i, j] = total / L[j, j]
+    for i in range(n):
+        for k in range(i):
+            x[i] -= L[i, k] * x[k]
+        x[i] /= L[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            x[i] -= L[k, i] * x[k]
+        x[i] /= L[i, i]
+    return x
+
+
+def solve_by_numpy(P: Array, right: Array) -> Array:
+    """The same with numpy, whose loops do not run in Python."""
+    try:
+        np.linalg.cholesky(P)
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan)
+    return np.asarray(np.linalg.solve(P, right))
+
+
+class _Compiled:
+    """The loop in machine code, once it is there."""
+
+    def __init__(self) -> None:
+        self.run: Callable[..., int] | None = None
+        self._lock = threading.Lock()
+        self._beside: threading.Thread | None = None
+
+    def beside(self) -> None:
+        """Compile while Python goes on."""
+        if self._beside is None:
+            self._beside = threading.Thread(target=self.now)
+            self._beside.start()
+
+    def now(self) -> Callable[..., int]:
+        """Compile, or wait until that is done."""
+        with self._lock:
+            if self.run is None:
+                import numba
+
+                compiled, solve, loop = (numba.njit(error_model="numpy")(text) for text in (rate, solve_by_loops, run))
+                line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
+                shelf = numba.float64[:, :, :, ::1]
+                form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, sheet, line))
+                law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
+                functions = (numba.typeof(compiled), numba.typeof(solve))
+                loop.compile((*functions, form, law, line, sheet, line, sheet, book, shelf, sheet))
+                self.run = lambda *arguments: int(loop(compiled, solve, *arguments))
+            return self.run
+
+
+_COMPILED = _Compiled()
+
+
+def choose(language: Language | None, work: float) -> Language:
+    """The language to run in: numba if it is installed, unless the work is small and it has not compiled yet.
+
+    Parameters
+    ----------
+    language : "python" or "numba", optional
+        What is asked for.
+    work : float
+        Steps times states.
+
+    Raises
+    ------
+    ValueError
+        If the language is another one.
+    """
+    if language not in (None, "python", "numba"):
+        raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
+    if language is not None:
+        return language
+    if not find_spec("numba"):
+        return "python"
+    if _COMPILED.run is None and work <= SMALL_WORK:
+        _COMPILED.beside()
+        return "python"
+    return "numba"
+
+
+def advance(
+    form: Arrays,
+    law: tuple[bool, float, float, Array],
+    start: Array,
+    P: Array,
+    steps: Array,
+    coefficients: Array,
+    inverses: Array,
+    outputs: Array,
+    language: Language,
+) -> tuple[Array, Array, int | None]:
+    """Run the loop.
+
+    Parameters
+    ----------
+    form : Arrays
+    law : (computed, information, forgetting, decrease)
+        Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P - decrease.
+    start : array of shape (n,)
+    P : array of shape (n, n)
+        At the start, where it is computed.
+    steps : array of shape (N,)
+        In seconds.
+    coefficients : array of shape (2 N + 1, u) or (1, u)
+        Numbers of the form's expressions at the starts, middles and ends.
+    inverses : array of shape (2 N + 1, n, n) or (1, n, n)
+        Inverse of P at the same times, where P is given.
+    outputs : array of shape (N, 3, p, m)
+        Images as they are held at the start, middle and end of each step; NaN where a point is not seen.
+    language : "python" or "numba"
+
+    Returns
+    -------
+    path : array of shape (N + 1, n)
+        NaN from where the estimate was no longer finite on.
+    P : array of shape (n, n)
+        At the end.
+    diverged : int or None
+        The first row of the path that is not finite.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If numba is asked for and is not installed.
+    """
+    path, P = np.full((len(steps) + 1, len(start)), np.nan), np.array(P, dtype=float)
+    blocks = [np.array(block, dtype=float, order="C") for block in (steps, coefficients, inverses, outputs)]
+    loop = _COMPILED.now() if language == "numba" else _in_python
+    diverged = loop(form.all, law, np.array(start, dtype=float), P, *blocks, path)
+    if diverged >= 0:
+        path[diverged:] = np.nan
+    return path, P, None if diverged < 0 else diverged
+
+
+def _in_python(*arguments: Any) -> int:
+    with np.errstate(all="ignore"):
+        return int(run(rate, solve_by_numpy, *arguments))

@@ -1,0 +1,153 @@
+"""The Luenberger-type observer of many points, whose error obeys linear equations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.observers.base import About, hats
+from percept_obs.points.form import PointsForm
+from percept_obs.points.weights import Weight, weight
+
+ABOUT = About(
+    "Luenberger-type observer",
+    "Inaba et al. 2005",
+    "both image coordinates of at least one point, and the whole known motion A(t), v(t)",
+    "global and exponential, if (14) holds, A is Lyapunov stable and A^T P + P A + P' <= 0",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class LuenbergerObserver:
+    """An observer of a form with many points.
+
+    Parameters
+    ----------
+    form : PointsForm
+        What it believes in.
+    weight : Weight
+        P.
+    """
+
+    form: PointsForm
+    weight: Weight
+
+    @property
+    def name(self) -> str:
+        """The observer's name."""
+        return f"Luenberger, {self.weight.name}"
+
+    @property
+    def about(self) -> About:
+        """What is known about it."""
+        return ABOUT
+
+    @cached_property
+    def estimate(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the estimates."""
+        return hats(self.form.state)
+
+    @cached_property
+    def inverse(self) -> sp.ImmutableMatrix:
+        """Symbols of the inverse of P."""
+        n = self.form.states
+        return sp.ImmutableMatrix(n, n, lambda i, j: sp.Symbol(f"Q_{min(i, j) + 1}_{max(i, j) + 1}", real=True))
+
+    @cached_property
+    def gain(self) -> sp.ImmutableMatrix:
+        """K = P^-1 C^T B^T E^-1, which multiplies y - H(C xhat); Inaba et al. 2005, (10) and (17)."""
+        form = self.form
+        distances = sp.diag(*(1 / e for e in form.E(self.estimate).diagonal()))
+        return sp.ImmutableMatrix(self.inverse * form.stacked.T * form.B.T * distances)
+
+    @cached_property
+    def scaled_innovation(self) -> sp.ImmutableMatrix:
+        """E^-1 (y - H(C xhat)) without a division: y_k l xi_k - N xi_k for each point, xi_k = C_k xhat."""
+        form, m = self.form, self.form.outputs
+        estimate = sp.ImmutableMatrix(self.estimate)
+        parts = []
+        for k, C in enumerate(form.C):
+            xi = C * estimate
+            y = sp.ImmutableMatrix(form.y[k * m : (k + 1) * m])
+            parts.append(y * (form.block.l * xi)[0] - form.block.N * xi)
+        return sp.ImmutableMatrix.vstack(*parts).expand()
+
+    @cached_property
+    def flow(self) -> sp.ImmutableMatrix:
+        """Rate of the estimate: A xhat + v + P^-1 C^T B^T E^-1 (y - H(C xhat)); Inaba et al. 2005, (11)."""
+        form, estimate = self.form, sp.ImmutableMatrix(self.estimate)
+        correction = self.inverse * form.stacked.T * form.B.T * self.scaled_innovation
+        return sp.ImmutableMatrix(form.motion.A * estimate + form.motion.b + correction).expand()
+
+    @property
+    def error(self) -> tuple[sp.Symbol, ...]:
+        """Symbols rho1, rho2, ... of the errors x - xhat."""
+        return sp.symbols(f"rho1:{self.form.states + 1}", real=True)
+
+    def error_dynamics(self) -> sp.ImmutableMatrix:
+        """Rate of the error rho = x - xhat, in terms of the images and the error; Inaba et al. 2005, (12).
+
+        Returns
+        -------
+        matrix of shape (n, 1)
+
+        Notes
+        -----
+        The difference of the rates is affine in the state, which enters it through B(y) C x alone: 0, for y are the
+        images of x.
+        """
+        form, rho = self.form, sp.ImmutableMatrix(self.error)
+        x = sp.ImmutableMatrix(form.state)
+        at_estimate = dict(zip(self.estimate, x - rho, strict=True))
+        difference = form.motion.A * x + form.motion.b - self.flow.subs(at_estimate, simultaneous=True)
+        difference = sp.ImmutableMatrix(difference).expand()
+        seen = form.B * form.stacked
+        rest = difference.jacobian(form.state) - self.inverse * seen.T * seen
+        images = dict(zip(form.y, form.H(form.state), strict=True))
+        on_rays = (seen * x).subs(images, simultaneous=True).applyfunc(sp.cancel)
+        if any(rest.expand()) or any(on_rays):
+            raise ArithmeticError("the state does not drop out of the error's rate; is y the image of C x?")
+        return sp.ImmutableMatrix(difference.subs(dict.fromkeys(form.state, 0)))
+
+    def _repr_latex_(self) -> str:
+        return (
+            r"$\displaystyle \begin{aligned} \dot{\hat x} &= A \hat x + v + P^{-1} C^T B^T E^{-1} (y - H(C \hat x)) "
+            rf"\\ B_k &= {sp.latex(self.form.block.B)} \end{{aligned}}$"
+        )
+
+
+def luenberger(form: PointsForm, P: Any = 1.0) -> LuenbergerObserver:
+    """Luenberger-type observer of a linear state seen through many points.
+
+    ::
+
+        xhat' = A xhat + v + P^-1 C^T B(y)^T E^-1 (y - H(C xhat))
+
+    E^-1 (y - H) = y_k l xi_k - N xi_k has no division, and the error obeys rho' = (A - P^-1 C^T B^T B C) rho whatever
+    the start.  Points that are not seen have no rows in B.
+
+    Parameters
+    ----------
+    form : PointsForm
+    P : number, array of shape (n, n), function of time, or Weight
+        A number stands for its multiple of the identity.  Weights come from `constant`, `scheduled`, `lyapunov` and
+        `riccati`.  A smaller P corrects more.
+
+    Returns
+    -------
+    LuenbergerObserver
+
+    Raises
+    ------
+    ValueError
+        If P is not symmetric positive definite or of another size.
+
+    Notes
+    -----
+    H. Inaba et al., Nonlinear observers for perspective time-varying linear systems with multiple observing points,
+    IFAC 2005, (10), (11) and Theorem 3.4.
+    """
+    return LuenbergerObserver(form, weight(P).sized(form.states))

@@ -1,0 +1,89 @@
+"""What many points cost: 60 s at 100 Hz with constant P, from 1 to 64 points of a rigid body, n = 3 p.
+
+    python tests/benchmarks/bench_points.py
+
+Prints each figure with the bound that it is to keep, and exits with 1 if one is not kept.  The cost of a step is
+compared between numbers of points, so that it does not depend on the machine.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+
+from percept_obs import linear, luenberger, record_points, track_points
+from percept_obs.points import PointsForm, PointsScenario
+from percept_obs.points.kernel import advance, arrays
+from percept_obs.points.scenarios import moving_body
+
+COUNTS = (1, 2, 4, 8, 16, 32, 64)
+STEPS = 6000
+
+
+def best_of(function, repeats):
+    """Least time of several calls, in seconds."""
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - begin)
+    return min(times)
+
+
+def full(states):
+    """A symmetric positive definite P without zeros."""
+    return 2 * np.eye(states) + 0.5 / states
+
+
+def loop(recording, observer):
+    """The compiled loop alone, for all steps."""
+    form = recording.form
+    n = form.states
+    known = form.values(np.linspace(0, 60, 2 * STEPS + 1))
+    images = np.repeat(recording.outputs[:-1, None], 3, axis=1)
+    tables = (np.full(STEPS, 0.01), known, np.linalg.inv(observer.weight.at(0.0)), images)
+    law = (False, 0.0, 0.0, np.zeros((n, n)))
+    form_arrays = arrays(form, np.arange(n), np.arange(form.points))
+    path, _, diverged = advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba")
+    assert diverged is None
+    assert np.linalg.norm(path[-1] - recording.truth[-1]) < np.linalg.norm(path[0] - recording.truth[0])
+    return best_of(lambda: advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba"), 5)
+
+
+def main() -> int:
+    small = PointsScenario("one point", PointsForm(linear(np.zeros((3, 3)), np.ones(3)), np.eye(3)), [0, 0, 2], 1)
+    begin = time.perf_counter()
+    track_points(record_points(small), luenberger(small.form), language="numba")
+    compiling = time.perf_counter() - begin
+    print(f"the loop compiled with the first run in {compiling:.2f} s")
+    print("points  states   first run   later runs   the loop alone, a step")
+    first, later, alone = {}, {}, {}
+    for points in COUNTS:
+        recording = record_points(moving_body(points))
+        observer = luenberger(recording.form, full(3 * points))
+
+        def follow(recording=recording, observer=observer):
+            return track_points(recording, observer, language="numba")
+
+        first[points] = best_of(follow, 1)
+        later[points] = best_of(follow, 3)
+        alone[points] = loop(recording, observer) / STEPS
+        print(
+            f"{points:6d}  {3 * points:6d}   {first[points]:7.3f} s    {later[points]:7.3f} s   "
+            f"{alone[points] * 1e6:10.1f} us"
+        )
+    bars = {f"64 points follow 60 s in under 2 s: {later[64]:.2f} s": later[64] < 2}
+    for fewer, more in ((16, 32), (16, 64)):
+        ratio, square = alone[more] / alone[fewer], (more / fewer) ** 2
+        bars[f"a step of {more} points costs at most {square:.0f} times one of {fewer}: {ratio:.1f}"] = ratio <= square
+    extra = first[64] - later[64]
+    bars[f"64 points compile nothing of their own: {extra:.2f} s more in the first run"] = extra < compiling / 4
+    for bar, kept in bars.items():
+        print(f"{'kept' if kept else 'NOT KEPT':9} {bar}")
+    return 0 if all(bars.values()) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,129 @@
+"""The Luenberger-type observer's error obeys linear equations, and P meets the inequalities that it claims."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from test_points_form import generic
+
+from percept_obs import PointsForm, linear, luenberger, record_points, track_points
+from percept_obs.points import constant, lyapunov, riccati, scheduled
+from percept_obs.points.scenarios import moving_body
+
+
+@pytest.mark.parametrize(("points", "states"), [(1, 3), (1, 4), (2, 3)])
+def test_the_error_dynamics_are_the_printed_ones(points, states):
+    """rho' = (A - P^-1 C^T B^T B C) rho, Inaba et al. 2005, (12), for symbols in every place."""
+    observer = luenberger(generic(points, states))
+    form, rho = observer.form, sp.Matrix(observer.error)
+    seen = form.B * form.stacked
+    printed = (form.motion.A - observer.inverse * seen.T * seen) * rho
+    assert (observer.error_dynamics() - printed).expand() == sp.zeros(states, 1)
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_the_gain_has_no_division(points):
+    observer = luenberger(generic(points, 3))
+    form = observer.form
+    assert all(entry.is_polynomial(*observer.estimate, *form.y) for entry in observer.gain)
+    assert all(entry.is_polynomial(*observer.estimate, *form.y) for entry in observer.flow)
+    images = form.E(observer.estimate).inv() * (sp.Matrix(form.y) - form.H(observer.estimate))
+    assert all(sp.cancel(entry) == 0 for entry in images - observer.scaled_innovation)
+    with_gain = observer.gain * (sp.Matrix(form.y) - form.H(observer.estimate))
+    rest = observer.flow - form.motion.A * sp.Matrix(observer.estimate) - form.motion.b - with_gain
+    assert all(sp.cancel(entry) == 0 for entry in rest)
+
+
+def test_one_point_and_constant_coefficients_give_the_earlier_observer():
+    """p = 1, A, v and P constant: xhat' = A xhat + v + P^-1 C^T B^T (xi3 y - xi12), and (15) is A^T P + P A <= 0."""
+    observer = luenberger(generic(1, 3))
+    (C,), (y1, y2) = observer.form.C, observer.form.y
+    x_hat = sp.Matrix(observer.estimate)
+    xi = C * x_hat
+    B = sp.Matrix([[1, 0, -y1], [0, 1, -y2]])
+    earlier = observer.form.motion.A * x_hat + observer.form.motion.b
+    earlier += observer.inverse * C.T * B.T * sp.Matrix([y1 * xi[2] - xi[0], y2 * xi[2] - xi[1]])
+    assert (observer.flow - earlier).expand() == sp.zeros(3, 1)
+    draw = np.random.default_rng(0)
+    A, P = draw.normal(size=(3, 3)), np.diag([1.0, 2, 3])
+    run = track_points(record_points(moving_body()), luenberger(PointsForm(linear(A, np.ones(3)), np.eye(3)), P))
+    np.testing.assert_allclose(run.conditions().printed, np.linalg.eigvalsh(A.T @ P + P @ A)[-1])
+
+
+def test_points_of_their_own_do_not_disturb_each_other():
+    """Two independent points in one state: the error of each is that of its own observer."""
+    A, v = sp.Matrix(3, 3, sp.symbols("a:9", real=True)), sp.Matrix(sp.symbols("v:3", real=True))
+    C = np.hstack([np.eye(3), np.zeros((3, 3))]), np.hstack([np.zeros((3, 3)), np.eye(3)])
+    both = luenberger(PointsForm(linear(sp.diag(A, A), sp.Matrix([*v, *v])), C))
+    one = luenberger(PointsForm(linear(A, v), np.eye(3)))
+    block_diagonal = {both.inverse[i, j]: 0 for i in range(3) for j in range(3, 6)}
+    first = both.error_dynamics()[:3, :].subs(block_diagonal)
+    assert (first - one.error_dynamics()).expand() == sp.zeros(3, 1)
+
+
+def weights():
+    return {
+        "constant": (constant(2.0), True, True),
+        "scheduled, shrinking": (scheduled(lambda t: 2 + np.exp(-t)), True, True),
+        "scheduled, growing": (scheduled([1.0, 3.0], times=[0, 60]), False, False),
+        "Lyapunov": (lyapunov(2.0), True, True),
+        "Lyapunov with a decrease": (lyapunov(2.0, 0.01), True, True),
+        "Riccati": (riccati(0.1, 0.3), False, True),
+        "Riccati that forgets nothing": (riccati(0.1, 0), False, True),
+    }
+
+
+@pytest.mark.parametrize("name", weights())
+def test_the_inequalities_are_told_apart(name):
+    weight, printed, weaker = weights()[name]
+    recording = record_points(moving_body(), 6)
+    found = track_points(recording, luenberger(recording.form, weight)).conditions()
+    assert (found.printed_holds, found.weaker_holds, found.positive) == (printed, weaker, True)
+    assert ("(15) holds throughout" in found.verdict()) == printed
+
+
+def test_the_error_in_the_metric_of_p_never_grows():
+    """V = rho^T P rho decreases wherever one of the inequalities holds."""
+    recording = record_points(moving_body(), 10)
+    for weight in (3.0, riccati(0.1, 0.3), lyapunov(2.0, 0.01)):
+        run = track_points(recording, luenberger(recording.form, weight), hold="exact")
+        rho = run.error[run.kept]
+        V = np.einsum("ti,tij,tj->t", rho, run.P, rho)
+        assert (np.diff(V) <= 1e-9 * V[0]).all()
+        assert V[-1] < 0.2 * V[0]
+
+
+@pytest.mark.parametrize(
+    ("P", "message"),
+    [
+        (0.0, "must be positive definite"),
+        (-1.0, "must be positive definite"),
+        (np.nan, "not finite"),
+        (np.eye(2), r"scheduled with 4 entries; expected 1 or 3 x 3"),
+        (np.arange(9.0).reshape(3, 3), "finite symmetric"),
+        (riccati(np.eye(2)), r"shape \(2, 2\); expected a number or \(3, 3\)"),
+        (riccati(-1.0), "must be positive definite"),
+        (lyapunov(1.0, -1.0), "positive semidefinite"),
+        (scheduled([1.0, -1.0], times=[0, 1]), "sample 1, has the eigenvalue -1"),
+    ],
+)
+def test_wrong_ps_are_refused(P, message):
+    with pytest.raises(ValueError, match=message):
+        luenberger(PointsForm(linear(np.eye(3), np.ones(3)), np.eye(3)), P)
+
+
+@pytest.mark.parametrize("forgetting", [-0.1, np.nan, np.inf])
+def test_wrong_forgetting_is_refused(forgetting):
+    with pytest.raises(ValueError, match="finite and not negative"):
+        riccati(1.0, forgetting)
+
+
+def test_samples_of_p_need_times():
+    with pytest.raises(ValueError, match="need their times"):
+        scheduled([1.0, 2.0])
+
+
+def test_it_shows_itself():
+    observer = luenberger(moving_body().form, riccati())
+    assert "P^{-1}" in observer._repr_latex_()
+    assert observer.name == "Luenberger, Riccati"
+    assert observer.about.claim.startswith("global")

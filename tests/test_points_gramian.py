@@ -1,0 +1,185 @@
+"""Condition (14) and the decay of the error are as they were verified, and what is not seen is named."""
+
+import warnings
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from percept_obs import PointsScenario, luenberger, record_points, track_points
+from percept_obs.points import UnseenDirection, riccati, rigid_body
+from percept_obs.points.gramian import decay_bound, gramian, linear_gramian
+from percept_obs.points.scenarios import along_the_line_of_sight, lost_offset, moving_body
+
+START_ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])
+RATES = {
+    1: {1 / 3: 0.086, 1: 0.179, 3: 0.215, 10: 0.067},
+    2: {1 / 3: 0.032, 1: 0.085, 3: 0.083, 10: 0.029},
+}
+
+
+@lru_cache
+def recording(points, duration=60.0):
+    return record_points(moving_body(points), duration)
+
+
+@pytest.mark.parametrize(("points", "at_start", "least", "when"), [(1, 2.44, 0.749, 7.2), (2, 0.90, 0.277, 47.8)])
+def test_the_smallest_eigenvalue(points, at_start, least, when):
+    found = gramian(recording(points), 8)
+    assert found.holds
+    assert found.smallest[0] == pytest.approx(at_start, rel=0.01)
+    assert found.least == pytest.approx(least, rel=0.01)
+    assert found.time[found.smallest.argmin()] == pytest.approx(when, abs=0.1)
+    assert "(14) holds" in found.verdict()
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_the_decay_rates(points):
+    """Fitted to log|rho| from 20 to 60 s; too much gain, a small P, slows the decay as too little does."""
+    rates = {}
+    for P, expected in RATES[points].items():
+        start = np.array(moving_body(points).state) - START_ERROR[: 3 * points]
+        run = track_points(recording(points), luenberger(recording(points).form, P), start, hold="exact")
+        rates[P] = run.decay_rate(20, 60)
+        assert rates[P] == pytest.approx(expected, rel=0.02)
+    assert rates[1 / 3] < rates[1] > rates[10]
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
+    whole = recording(points, 20.0)
+    bounds = [decay_bound(whole, luenberger(whole.form, P), 4) for P in (*RATES[points], 300)]
+    for bound, (P, measured) in zip(bounds, RATES[points].items(), strict=False):
+        assert 0 < bound.rate < measured, P
+    rates = [bound.rate for bound in bounds]
+    assert rates[0] < max(rates) > rates[-1]
+    # the larger P, the less is seen relatively to it, and the less do corrections hide
+    assert (np.diff([bound.seen.min() for bound in bounds]) < 0).all()
+    assert (np.diff([bound.feedback.max() for bound in bounds]) < 0).all()
+
+
+def test_the_bound_holds_window_by_window():
+    whole, window = recording(1), 4.0
+    start = np.array(moving_body().state) - START_ERROR[:3]
+    run = track_points(whole, luenberger(whole.form, 1.0), start, hold="exact")
+    bound = decay_bound(whole, run.observer, window)
+    V = run.size**2
+    at = np.searchsorted(whole.time, [*bound.time, bound.time[-1] + window])
+    assert (V[at[1:]] / V[at[:-1]] <= bound.contraction).all()
+
+
+def test_the_best_constant_gain_is_critical_damping():
+    """A point whose ray turns at the rate omega: the 2 x 2 error decays fastest at k = 2 omega."""
+    omega = 0.3
+    slowest = {k: -np.linalg.eigvals([[-k, -omega], [omega, 0]]).real.max() for k in (0.1, 0.3, 0.6, 1.2, 6.0)}
+    assert max(slowest, key=slowest.get) == 2 * omega
+    assert slowest[0.6] == pytest.approx(omega)
+    assert slowest[0.1] == pytest.approx(0.05)
+    assert slowest[6.0] == pytest.approx(omega**2 / 6.0, rel=0.01)
+
+
+def test_an_offset_that_is_not_seen_is_named():
+    with pytest.warns(UnseenDirection, match="3 directions.*d2_x; d2_y; d2_z"):
+        scenario = lost_offset()
+    found = gramian(record_points(scenario, 20), 8)
+    assert not found.holds
+    assert "3 directions are not seen: d2_x; d2_y; d2_z" in found.verdict()
+
+
+def test_a_depth_that_is_not_seen_is_named():
+    found = gramian(record_points(along_the_line_of_sight(), 20), 8)
+    assert not found.holds
+    (direction,) = found.unseen(0).T
+    np.testing.assert_allclose(np.abs(direction), np.array([0.4, 0.2, 2]) / np.linalg.norm([0.4, 0.2, 2]), atol=1e-9)
+    assert "1 direction is not seen: 0.2 X + 0.1 Y + Z; this is the state itself" in found.verdict()
+
+
+@pytest.mark.parametrize("points", [1, 2, 3, 8])
+def test_without_an_input_the_scale_is_never_seen(points):
+    """v = 0: x(t) = Phi x(0), so that B C Phi x(0) = 0 and (14) fails for every p, although (C, A) is observable."""
+    draw = np.random.default_rng(points)
+    offsets = draw.uniform(-0.4, 0.4, 3 * points - 3)
+    form = rigid_body(
+        points, [0.02, 0.03, 0.1], body_angular_velocity=lambda t: [0.5 * np.sin(t), 0.4 * np.cos(t), 0.3]
+    )
+    scenario = PointsScenario("no input", form, [0.2, -0.1, 3.0, *offsets], 8)
+    whole = record_points(scenario)
+    found, pair = gramian(whole, 6), linear_gramian(whole, 6)
+    assert found.unseen(0).shape[1] == 1
+    along = found.unseen(0).T @ found.states[0]
+    np.testing.assert_allclose(np.abs(along), np.linalg.norm(found.states[0]), rtol=1e-9)
+    assert "this is the state itself: the images do not tell its scale" in found.verdict()
+    assert pair.holds
+    assert pair.least > 0.1
+
+
+def test_a_camera_that_only_turns_sees_no_depth_of_any_point():
+    offsets = np.random.default_rng(0).uniform(-0.4, 0.4, 6)
+    form = rigid_body(3, [0.02, 0.03, 0.1])
+    found = gramian(record_points(PointsScenario("turning only", form, [0.2, -0.1, 3.0, *offsets], 8)), 6)
+    assert found.unseen(0).shape[1] == 3
+    assert "the state itself is among them" in found.verdict()
+
+
+def test_the_input_decides_at_equal_a():
+    """The same A and C, and three inputs: nothing, along the ray, across it."""
+    least = []
+    for velocity in ([0.0, 0, 0], [0.0, 0, 0.2], [0.3, 0, 0]):
+        form = rigid_body(1, [0.0, 0, 0], velocity)
+        found = gramian(record_points(PointsScenario("input", form, [0.0, 0, 3], 4)), 3)
+        least.append(found.least)
+        assert linear_gramian(record_points(PointsScenario("input", form, [0.0, 0, 3], 4)), 3).least == pytest.approx(3)
+    assert max(abs(least[0]), abs(least[1])) < 1e-9 < 1e-3 < least[2]
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_where_14_holds_the_pair_is_uniformly_observable(points):
+    """Proposition 3.3 with its constant."""
+    whole = recording(points)
+    found, pair = gramian(whole, 8), linear_gramian(whole, 8)
+    largest = np.nanmax((whole.outputs**2).sum(axis=-1))
+    assert (pair.smallest >= found.smallest / (1 + largest) - 1e-9).all()
+
+
+def test_a_window_without_images_shows_nothing():
+    whole = recording(1).hidden(0, 10, 20)
+    found = gramian(whole, 8)
+    assert not found.holds
+    assert found.unseen(int(np.searchsorted(found.time, 11))).shape[1] == 3
+    assert found.smallest[0] == pytest.approx(gramian(recording(1), 8).smallest[0])
+
+
+def test_windows_agree_with_their_plain_sums():
+    whole = recording(2, 6.0)
+    found = gramian(whole, 2)
+    A, _ = whole.form.coefficients(whole.time)
+    for first in (0, 150, 400):
+        Phi, total = np.eye(6), np.zeros((6, 6))
+        S = whole.form.information(whole.outputs)
+        for k in range(first, first + 200):
+            middle = (A[k] + A[k + 1]) / 2 * 0.01
+            step = np.eye(6) + middle + middle @ middle / 2 + middle @ middle @ middle / 6
+            total += 0.005 * Phi.T @ (S[k] + step.T @ S[k + 1] @ step) @ Phi
+            Phi = step @ Phi
+        np.testing.assert_allclose(found.matrices[first], total, atol=1e-4)
+
+
+@pytest.mark.parametrize("window", [0, -1, np.nan, 61])
+def test_windows_that_do_not_fit_are_refused(window):
+    with pytest.raises(ValueError, match="must be positive and at most 60 s"):
+        gramian(recording(1), window)
+
+
+def test_the_bound_needs_what_the_proof_needs():
+    with pytest.raises(ValueError, match=r"rests on \(15\)"):
+        decay_bound(recording(1), luenberger(recording(1).form, riccati()), 4)
+    with pytest.raises(ValueError, match=r"rests on \(15\)"):
+        decay_bound(recording(1), luenberger(recording(1).form, lambda t: 1 + t), 4)
+    with pytest.raises(ValueError, match="2 points, the recording 1"):
+        gramian(recording(1), 4, moving_body(2).form)
+
+
+def test_no_warning_for_what_is_seen():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        moving_body(2)
