@@ -83,7 +83,7 @@ def compare(
         begin = time.perf_counter()
         run = track(recording, observers[label], start, **settings)
         cost = (time.perf_counter() - begin) / (recording.time[-1] - recording.time[0])
-        inverse = str(recording.surface.inverse_distance)
+        inverse = recording.imaging_surface.inverse_distance.name
         error = np.abs(run.error[:, -1])
         late = error[recording.time - recording.time[0] >= after - 1e-9]
         if not len(late):

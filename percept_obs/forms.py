@@ -5,12 +5,13 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
 
 import sympy as sp
 
 from percept_obs.derivation import Derivation, Step, equals
-from percept_obs.surfaces import ImagingSurface
+from percept_obs.views import View
 
 
 class NotAffine(ValueError):
@@ -33,6 +34,16 @@ class NotAffine(ValueError):
         )
 
 
+class NeedsMoreOutputs(ValueError):
+    """The measured outputs' rates do not determine the hidden coordinates."""
+
+    def __init__(self, form: CanonicalForm) -> None:
+        super().__init__(
+            f"{', '.join(form.hidden)} are hidden; measure every image coordinate, for the rates of "
+            f"{', '.join(form.measured)} do not determine them at an instant"
+        )
+
+
 @dataclass(frozen=True)
 class PartitionedSystem:
     """A system whose coordinates are divided into measured and hidden ones: (x1, x2)' = f(x1, x2).
@@ -47,7 +58,7 @@ class PartitionedSystem:
         Known motion and surface.
     coordinates : tuple of symbols
         All coordinates in the order of the surface.
-    surface : ImagingSurface or None
+    surface : View or None
         Where the outputs are seen.
     """
 
@@ -56,7 +67,7 @@ class PartitionedSystem:
     rate: sp.ImmutableMatrix
     parameters: tuple[sp.Symbol, ...]
     coordinates: tuple[sp.Symbol, ...]
-    surface: ImagingSurface | None = None
+    surface: View | None = None
 
     @property
     def values(self) -> dict[sp.Symbol, float]:
@@ -116,7 +127,7 @@ class CanonicalForm(PartitionedSystem):
         Known motion and surface.
     coordinates : tuple of symbols
         All coordinates in the order of the surface.
-    surface : ImagingSurface or None
+    surface : View or None
         Where the outputs are seen.
     """
 
@@ -134,7 +145,7 @@ class CanonicalForm(PartitionedSystem):
         g: sp.ImmutableMatrix,
         parameters: tuple[sp.Symbol, ...],
         coordinates: tuple[sp.Symbol, ...],
-        surface: ImagingSurface | None = None,
+        surface: View | None = None,
     ) -> None:
         rate = sp.ImmutableMatrix([*(w.T * sp.ImmutableMatrix(x2) + phi), *g])
         super().__init__(x1, x2, rate, parameters, coordinates, surface)
@@ -144,6 +155,32 @@ class CanonicalForm(PartitionedSystem):
     def canonical_form(self) -> CanonicalForm:
         """The form itself."""
         return self
+
+    @cached_property
+    def cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
+        """Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
+
+        With as many outputs as hidden coordinates N / D is the inverse of w^T, with more (w w^T)^-1 w, the solution
+        in the least-squares sense.
+
+        Returns
+        -------
+        matrix of shape (n2, n1)
+        expression
+
+        Raises
+        ------
+        NeedsMoreOutputs
+            If w^T x2 never determines x2: there are fewer outputs than hidden coordinates, or D is zero everywhere.
+        """
+        if len(self.x2) > len(self.x1):
+            raise NeedsMoreOutputs(self)
+        square = self.w.T if self.w.is_square else self.w * self.w.T
+        # neither is multiplied out, for small differences would be lost in the sum of large terms
+        determinant, adjugate = square.det(method="laplace"), square.adjugate(method="laplace")
+        if determinant.expand().is_zero:
+            raise NeedsMoreOutputs(self)
+        return adjugate if self.w.is_square else adjugate * self.w, determinant
 
     def derivation(self) -> Derivation:
         """The form in formulas, one part after the other."""
@@ -173,7 +210,7 @@ def partition(
     rate: sp.ImmutableMatrix,
     measured: Sequence[str],
     parameters: tuple[sp.Symbol, ...],
-    surface: ImagingSurface | None = None,
+    surface: View | None = None,
 ) -> PartitionedSystem:
     """Divide a system, given the names of the measured coordinates and the rate in the order of all coordinates."""
     rates = dict(zip(coordinates, rate, strict=True))

@@ -53,7 +53,7 @@ class WindowEstimate:
     def estimate(self) -> Array:
         """Image coordinates and inverse distance, shape (K, n); all 0 where no point is determined."""
         estimate = np.zeros((len(self.points), len(self.recording.surface.coordinates)))
-        estimate[self.determined] = self.recording.surface.project(self.points[self.determined])
+        estimate[self.determined] = self.recording.imaging_surface.project(self.points[self.determined])
         return estimate
 
     @cached_property
@@ -106,7 +106,7 @@ def moving_window_least_squares(
     -----
     Between samples the motion's coefficients are taken from the middle of the interval.
     """
-    surface = recording.surface
+    surface = recording.imaging_surface
     names = tuple(symbol.name for symbol in surface.image_coordinates)
     if recording.names != names:
         raise ValueError(f"least squares need the outputs {', '.join(names)}; there are {', '.join(recording.names)}")

@@ -128,6 +128,10 @@ class ImagingSurface:
             )
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
+    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Inverse distances in 1/m, shape (...): the last of the coordinates, of shape (..., n)."""
+        return np.asarray(coordinates, dtype=float)[..., -1]
+
     def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
         """Points of space that have the given coordinates: the ray over the inverse distance.
 

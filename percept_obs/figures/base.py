@@ -15,12 +15,14 @@ from typing import Any
 import matplotlib
 import matplotlib.figure
 import numpy as np
+import sympy as sp
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.recording import Recording
 from percept_obs.surfaces import POINT, ImagingSurface
 from percept_obs.tracking import Run
+from percept_obs.views import View
 
 Array = NDArray[np.float64]
 
@@ -226,8 +228,10 @@ def finite(values: ArrayLike) -> Array:
     return array[np.isfinite(array)]
 
 
-def depth_or_range(surface: ImagingSurface) -> tuple[str, str]:
+def depth_or_range(surface: View) -> tuple[str, str]:
     """The word for a surface's distance, and its letter."""
+    if not isinstance(surface, ImagingSurface):
+        return "depth", "Z"
     if surface.distance.is_Symbol:
         return "depth", str(surface.distance)
     slopes = [surface.distance.diff(axis) for axis in POINT]
@@ -237,19 +241,23 @@ def depth_or_range(surface: ImagingSurface) -> tuple[str, str]:
 
 def letter(name: str) -> str:
     """The symbol of a coordinate such as y1, for matplotlib."""
-    return f"${name[0]}_{{{name[1:]}}}$"
+    return f"${sp.latex(sp.Symbol(name))}$"
 
 
-def label(name: str, surface: ImagingSurface) -> str:
+def label(name: str, surface: View) -> str:
     """How an axis names a coordinate: its symbol, what it is and its unit."""
-    if name != surface.inverse_distance.name:
+    if not _is_inverse_distance(name, surface):
         return letter(name)
     return f"{letter(name)[:-1]} = 1/{depth_or_range(surface)[1]}$ (1/m)"
 
 
-def words(name: str, surface: ImagingSurface) -> str:
+def words(name: str, surface: View) -> str:
     """How a sentence names a coordinate."""
-    return f"{name} = 1/{depth_or_range(surface)[1]}" if name == surface.inverse_distance.name else name
+    return f"{name} = 1/{depth_or_range(surface)[1]}" if _is_inverse_distance(name, surface) else name
+
+
+def _is_inverse_distance(name: str, surface: View) -> bool:
+    return isinstance(surface, ImagingSurface) and name == surface.inverse_distance.name
 
 
 def recording_of(data: Run | Recording) -> Recording:

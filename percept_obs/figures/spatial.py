@@ -88,7 +88,7 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
         raise ValueError(f"the threshold is {threshold}; it must be positive")
     path, kind = _path(recording, run)
     estimate = np.empty((0, 2)) if run is None else run.estimate[:, :2]
-    system = PerspectiveSystem(recording.motion, recording.surface)
+    system = PerspectiveSystem(recording.motion, recording.imaging_surface)
     measured = recording.names if run is None else run.observer.form.measured
     focus = _focus(system, recording.time)
     radius = _blind_radius(system, measured, threshold) if len(focus) == 1 else np.nan

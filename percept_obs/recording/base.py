@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.motion import Motion
 from percept_obs.surfaces import BehindCamera, ImagingSurface, pinhole
+from percept_obs.views import View
 
 Array = NDArray[np.float64]
 
@@ -28,12 +29,12 @@ class Recording:
         Samples of the image coordinates; NaN where one was lost.  The first row is complete.
     names : tuple of str
         Names of the outputs, such as ("y1", "y2").
-    surface : ImagingSurface
-        Where they were seen.
+    surface : View
+        Where they were seen: an imaging surface, or what was derived from several image points.
     motion : Motion
         Known motion, with numbers for all times.
     truth : array of shape (K, n), optional
-        True image coordinates and inverse distance.
+        True coordinates of the surface: image coordinates and inverse distance.
     signal : function of times, optional
         The outputs without noise at any time, shape (T, m), if they are known.
     noise_variance : float, optional
@@ -47,7 +48,7 @@ class Recording:
     time: Array
     outputs: Array
     names: tuple[str, ...]
-    surface: ImagingSurface
+    surface: View
     motion: Motion
     truth: Array | None = None
     signal: Callable[[Array], Array] | None = None
@@ -80,6 +81,11 @@ class Recording:
                 f"the recording names the outputs {', '.join(self.names)}; those of the {self.surface.name} are "
                 f"{', '.join(known)}, each once"
             )
+        valueless = [str(symbol) for symbol in self.surface.parameters if symbol not in self.surface.values]
+        if valueless:
+            raise ValueError(
+                f"the {self.surface.name} has no values for {', '.join(valueless)}; give them numbers first"
+            )
         if np.isinf(outputs).any() or not np.isfinite(outputs[0]).all():
             raise ValueError("outputs are finite, or NaN where a sample was lost; the first row must be complete")
         if self.truth is not None:
@@ -90,10 +96,11 @@ class Recording:
                     f"the truth has shape {truth.shape}; expected {(len(time), len(self.surface.coordinates))}, "
                     f"finite: {', '.join(map(str, self.surface.coordinates))}"
                 )
-            if not (truth[:, -1] > 0).all():
-                k = int(np.argmin(truth[:, -1] > 0))
+            inverse = self.surface.inverse(truth)
+            if not (inverse > 0).all():
+                k = int(np.argmin(inverse > 0))
                 raise BehindCamera(
-                    f"the true inverse distance is {truth[k, -1]:.4g} at {time[k]:.4g} s; only points in front of the "
+                    f"the true inverse distance is {inverse[k]:.4g} at {time[k]:.4g} s; only points in front of the "
                     "camera, at positive inverse distances, are seen"
                 )
         distances = {name: _readonly(values) for name, values in self.distances.items()}
@@ -102,6 +109,19 @@ class Recording:
             if values.shape != time.shape or not (np.isfinite(values) & (values > 0)).all():
                 raise ValueError(f"the distances {name!r} must be {len(time)} positive numbers, one a sample")
         self.motion.known(time[[0, -1]])
+
+    @property
+    def imaging_surface(self) -> ImagingSurface:
+        """The surface, where rays and distances are needed.
+
+        Raises
+        ------
+        ValueError
+            If the recording was not seen on an imaging surface.
+        """
+        if not isinstance(self.surface, ImagingSurface):
+            raise ValueError(f"this needs image coordinates alone, but the recording shows the {self.surface.name}")
+        return self.surface
 
     @property
     def points(self) -> Array | None:
