@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from percept_obs.compile import Table, solve, vectorised
 from percept_obs.equations import Symbols
 from percept_obs.motion import Motion
-from percept_obs.observers.base import Observer
+from percept_obs.observers.base import Observer, elapsed
 from percept_obs.recording import Recording, halves, step_grid
 
 Array = NDArray[np.float64]
@@ -26,6 +27,14 @@ LONGEST_STEP = 0.01
 
 class DoesNotFit(ValueError):
     """An observer cannot follow this recording."""
+
+
+LARGEST_STEP_RATE = 2.0
+"""Largest product of a step and a decay rate: explicit Euler's limit of stability; Runge-Kutta's is 2.78."""
+
+
+class StepTooLong(UserWarning):
+    """The steps become too long for the fastest part of an observer, which will then chatter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,9 +146,19 @@ class Run:
         Infinite where the estimated inverse distance is not positive, so that the point would not be in front of the
         camera; NaN where there is no finite estimate, as from `diverged_at` on.
         """
-        inverse = self.estimate[:, -1]
+        inverse = self.recording.surface.inverse(self.estimate)
         none = np.where(np.isfinite(inverse), np.inf, np.nan)
         return np.divide(1, inverse, out=none, where=np.isfinite(inverse) & (inverse > 0))
+
+    @cached_property
+    def gaps(self) -> list[tuple[float, float]]:
+        """Times in seconds of every gap's first and last sample, where the hidden coordinates have no estimate.
+
+        Their estimates are NaN there, although the observer runs on: `Observer.gap` says why.
+        """
+        missing = np.isnan(self.estimate).any(axis=1) & np.isfinite(self.state).all(axis=1)
+        edges = np.flatnonzero(np.diff(missing, prepend=False, append=False))
+        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in edges.reshape(-1, 2)]
 
     def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
         """When the error entered the tolerance for good.
@@ -182,6 +201,10 @@ class Run:
         if len(self.resets):
             times = "once" if len(self.resets) == 1 else f"{len(self.resets)} times"
             resets = f"; driven to the bound and reset {times}, first at {self.resets[0]:.3g} s"
+        if self.gaps and self.observer.gap:
+            begin, end = self.gaps[0]
+            resets += f"; no estimate from {begin:.3g} to {end:.3g} s, for {self.observer.gap.reason}"
+            resets += f", and in {len(self.gaps) - 1} more gaps" * (len(self.gaps) > 1)
         if self.recording.truth is None:
             return f"followed {self.time[-1] - self.time[0]:.3g} s; no truth to compare with{resets}"
         hidden = ", ".join(self.observer.form.hidden)
@@ -224,7 +247,8 @@ def track(
     hold : "zero", "first" or "exact"
         What the observer takes for the outputs between samples: the last sample; a line to the next one, which a
         running system does not have yet, so that it looks one sample ahead; or the exact signal without noise,
-        known in simulations only.  A lost sample prolongs the hold.
+        known in simulations only.  A lost sample prolongs the hold.  Estimates at the samples use no later one with
+        the line either, but those between would have to wait for it.
     believed : Motion, optional
         The motion that the observer believes in; the recording's own when left out.
     step : float
@@ -242,6 +266,11 @@ def track(
         If surface, outputs or motion do not fit the observer.
     ValueError
         If the start, the hold or the step make no sense.
+
+    Warns
+    -----
+    StepTooLong
+        If the fastest part of the observer becomes too fast for the steps.
     """
     form = observer.form
     believed = believed or recording.motion
@@ -249,6 +278,7 @@ def track(
     columns = [recording.names.index(name) for name in form.measured]
     samples = recording.outputs[:, columns]
     grid, index = step_grid(recording.time, step)
+    _warn_of_long_steps(observer, grid)
     known = _known(recording, believed, grid)
     initial = observer.initial_state(
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
@@ -261,18 +291,48 @@ def track(
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
     at_samples = known if len(known) == 1 else known[2 * index]
-    estimate = vectorised(
-        (*observer.equations.state, *form.x1, *form.parameters), observer.estimate, observer.gain_values
-    )
+    inputs = (*states.T, *(_last_sample(column) for column in samples.T), *at_samples.T)
     return Run(
         recording,
         observer,
-        np.stack(estimate(*states.T, *(_last_sample(column) for column in samples.T), *at_samples.T), axis=-1),
+        _estimates(observer, inputs),
         states,
         grid[trace.resets],
         None if trace.diverged is None else float(grid[trace.diverged]),
         hold,
     )
+
+
+def _estimates(observer: Observer, inputs: Sequence[Array]) -> Array:
+    """Estimates at the samples, NaN for the hidden coordinates in a gap; from state, outputs and parameters."""
+    form = observer.form
+    symbols = (*observer.equations.state, *form.x1, *form.parameters)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        estimate = np.stack(vectorised(symbols, observer.estimate, observer.gain_values)(*inputs), axis=-1)
+        if observer.gap:
+            (missing,) = vectorised(symbols, [observer.gap.condition], observer.gain_values)(*inputs)
+            hidden = [form.coordinates.index(symbol) for symbol in form.x2]
+            estimate[np.ix_(missing != 0, hidden)] = np.nan
+    return estimate
+
+
+def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
+    """Tell before the run, from gains and times alone, when a step will no longer resolve the observer."""
+    if observer.fastest is None:
+        return
+    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(grid[1:] - grid[0])
+    steps = np.diff(grid)
+    late = np.flatnonzero(rate * steps >= LARGEST_STEP_RATE)
+    if len(late):
+        k = late[0]
+        warnings.warn(
+            f"from {grid[k] - grid[0]:.3g} s on, the {observer.name} observer's fastest part decays with "
+            f"{rate[k]:.4g}/s, too fast for a step of {steps[k]:.3g} s: their product must stay below "
+            f"{LARGEST_STEP_RATE:g}; "
+            f"{observer.fastest.remedy}, or take steps below {LARGEST_STEP_RATE / rate.max():.2g} s",
+            StepTooLong,
+            stacklevel=3,
+        )
 
 
 def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, hold: str, step: float) -> None:

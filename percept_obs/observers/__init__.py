@@ -1,12 +1,14 @@
 """Observers, one family a file."""
 
+from percept_obs.forms import NeedsMoreOutputs
 from percept_obs.observers.base import About, Gain, Observer, noise_bias, with_point
 from percept_obs.observers.de_luca import de_luca, spica
 from percept_obs.observers.extended_kalman import ekf, extended_kalman
 from percept_obs.observers.identifier_based import ibo, identifier_based
 from percept_obs.observers.immersion_and_invariance import NotIntegrable, ii, immersion_and_invariance
+from percept_obs.observers.integral_sliding_mode import integral_sliding_mode, ismo
 from percept_obs.observers.linear_approximation import lao, linear_approximation
-from percept_obs.observers.range_identification import NeedsMoreOutputs, range_identification, rio
+from percept_obs.observers.range_identification import range_identification, rio
 from percept_obs.observers.sliding_mode import sliding_mode, smo
 
 OBSERVERS = (
@@ -18,6 +20,7 @@ OBSERVERS = (
     immersion_and_invariance,
     range_identification,
     linear_approximation,
+    integral_sliding_mode,
 )
 """Every observer of a canonical form; the laws that tests hold run over this list."""
 
@@ -35,6 +38,8 @@ __all__ = [
     "identifier_based",
     "ii",
     "immersion_and_invariance",
+    "integral_sliding_mode",
+    "ismo",
     "lao",
     "linear_approximation",
     "noise_bias",

@@ -17,6 +17,7 @@ from percept_obs.compile import right_hand_side, vectorised
 from percept_obs.equations import Equations, Expressions, Symbols
 from percept_obs.forms import CanonicalForm, PartitionedSystem
 from percept_obs.motion import Motion
+from percept_obs.recovery import Gap, largest
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,26 @@ class About:
     claim: str
 
 
+elapsed = sp.Symbol("t", real=True)
+"""Seconds since the first sample."""
+
+
+@dataclass(frozen=True)
+class FastestRate:
+    """How fast the fastest part of an observer is, so that one can tell beforehand whether a step resolves it.
+
+    Parameters
+    ----------
+    rate : expression
+        Decay rate in 1/s, from the gains and `elapsed`.
+    remedy : str
+        What to do if the step is too long, besides shortening it.
+    """
+
+    rate: sp.Expr
+    remedy: str
+
+
 @dataclass(frozen=True)
 class Observer:
     """An observer of a system with measured and hidden coordinates, as equations.
@@ -105,6 +126,10 @@ class Observer:
         What is known about the observer.
     constant_motion : bool
         Whether the equations hold for a motion with constant coefficients only.
+    gap : Gap, optional
+        Where the hidden coordinates have no estimate.
+    fastest : FastestRate, optional
+        What limits the integration step, if it is known.
     """
 
     name: str
@@ -116,6 +141,8 @@ class Observer:
     covariance: sp.ImmutableMatrix | None = None
     about: About | None = None
     constant_motion: bool = False
+    gap: Gap | None = None
+    fastest: FastestRate | None = None
 
     def with_gains(self, **values: float) -> Observer:
         """The same observer with other gains; nothing is compiled again.
@@ -148,6 +175,11 @@ class Observer:
         -------
         matrix of shape (n, 1)
             In terms of the true coordinates and the error, in the order of ``form.coordinates``.
+
+        Raises
+        ------
+        ValueError
+            If the estimate cannot be solved for the state.
         """
         form, state = self.form, self.equations.state
         truth = sp.ImmutableMatrix(form.coordinates)
@@ -157,7 +189,13 @@ class Observer:
         estimate_rate += estimate.jacobian(form.x1) * sp.ImmutableMatrix([rates[x] for x in form.x1])
         error_rate = sp.ImmutableMatrix([rates[x] for x in form.coordinates]) - estimate_rate
         misses = [m for m in estimate - truth + sp.ImmutableMatrix(self.error) if m.free_symbols & set(state)]
-        at_error = sp.solve(misses, state, dict=True)[0]
+        try:
+            at_error = sp.solve(misses, state, dict=True)[0]
+        except NotImplementedError:
+            raise ValueError(
+                f"the estimate of the {self.name} observer cannot be solved for its state, so that its error has no "
+                "dynamics of its own; look at the equations of the state instead"
+            ) from None
         return error_rate.subs(at_error, simultaneous=True).expand()
 
     def jacobian(self) -> sp.ImmutableMatrix:
@@ -305,6 +343,19 @@ def output_injection(
 def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
     """Measured outputs minus their estimates, x1 - x1hat."""
     return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
+
+
+RECOVERY_GAIN = Gain(
+    largest,
+    "largest_amplification",
+    1e5,
+    10,
+    1e7,
+    "how much recovering the hidden part may amplify an error of its rate",
+    largest > 0,
+    "it bounds a norm",
+)
+"""Gain of `recovery.recovered`."""
 
 
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:

@@ -8,7 +8,7 @@ from percept_obs.equations import Equations
 from percept_obs.forms import PartitionedSystem
 from percept_obs.observers.base import About, Gain, Observer, hats
 
-R, Q, P1, P2 = sp.symbols("R Q P01 P02", real=True)
+R, Q, Q2, P1, P2 = sp.symbols("R Q Q2 P01 P02", real=True)
 
 GAINS = (
     Gain(
@@ -29,6 +29,16 @@ GAINS = (
         1e-2,
         "variance per second by which the motion is doubted",
         Q >= 0,
+        "it is a variance",
+    ),
+    Gain(
+        Q2,
+        "hidden_process_noise",
+        0,
+        0,
+        1,
+        "what is added to it in the hidden part, which may change more than the motion says",
+        Q2 >= 0,
         "it is a variance",
     ),
     Gain(
@@ -68,7 +78,7 @@ def extended_kalman(form: PartitionedSystem, **gains: float) -> Observer:
     Between samples, with the system's rate f and its Jacobian F at the estimate::
 
         xhat' = f(xhat)
-        P' = F P + P F^T + Q I
+        P' = F P + P F^T + Q I + Q2 I2,      I2 = 1 for hidden coordinates, else 0
 
     At a sample of each measured output y_j in turn, with column P_j of P::
 
@@ -81,6 +91,8 @@ def extended_kalman(form: PartitionedSystem, **gains: float) -> Observer:
         R, variance of the noise in each output; positive.  Default 0.01^2 / 3, uniform noise of +-0.01.
     process_noise : float
         Q, variance per second added to every coordinate; not negative.  Default 0.
+    hidden_process_noise : float
+        Q2, what is added to it in the hidden coordinates, such as constants that may wander; not negative.  Default 0.
     measured_variance, hidden_variance : float
         Variances of the start in the measured and in the hidden coordinates; positive.  Default 1.
 
@@ -104,7 +116,7 @@ def extended_kalman(form: PartitionedSystem, **gains: float) -> Observer:
     rate = form.rate.xreplace(at_estimate)
     F = rate.jacobian(x_hat)
     P = sp.ImmutableMatrix(size, size, lambda i, j: sp.Symbol(f"P{min(i, j) + 1}{max(i, j) + 1}", real=True))
-    P_rate = F * P + P * F.T + Q * sp.eye(size)
+    P_rate = F * P + P * F.T + sp.diag(*(Q for _ in form.x1), *(Q + Q2 for _ in form.x2))
 
     def state(estimate: sp.Matrix, covariance: sp.Matrix) -> tuple[sp.Expr, ...]:
         return (*estimate, *(covariance[i, j] for i in range(size) for j in range(i, size)))

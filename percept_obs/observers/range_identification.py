@@ -6,7 +6,8 @@ import sympy as sp
 
 from percept_obs.equations import Equations
 from percept_obs.forms import PartitionedSystem
-from percept_obs.observers.base import About, Gain, Observer, hats, innovation
+from percept_obs.observers.base import RECOVERY_GAIN, About, Gain, Observer, hats, innovation
+from percept_obs.recovery import recovered
 from percept_obs.switching import switch_named
 
 alpha, k, gamma, delta = sp.symbols("alpha k gamma delta", real=True)
@@ -18,11 +19,8 @@ GAINS = (
     Gain(
         delta, "boundary_layer", 0.05, 0.001, 0.5, "width over which the sign is smoothed", delta > 0, "it is a width"
     ),
+    RECOVERY_GAIN,
 )
-
-
-class NeedsMoreOutputs(ValueError):
-    """The observer recovers one hidden coordinate only."""
 
 
 ABOUT = About(
@@ -36,16 +34,16 @@ ABOUT = About(
 def range_identification(form: PartitionedSystem, switch: str = "hyperbolic tangent", **gains: float) -> Observer:
     """Range identification observer (RIO).
 
-    With e = x1 - x1hat, for one hidden coordinate x2::
+    It learns f = w^T x2.  With e = x1 - x1hat::
 
         x1hat' = phi + f
         f' = -(k + alpha) f + gamma sgn(e) + alpha k e
-        x2hat = w^T f / |w|^2
+        x2hat solves w^T x2hat = f, with more outputs than hidden coordinates in the least-squares sense
 
     Parameters
     ----------
     form : PartitionedSystem
-        With a canonical form and one hidden coordinate.
+        With a canonical form and at least as many measured as hidden coordinates.
     switch : "hyperbolic tangent", "sign" or "fraction"
         What stands for sgn; the sign itself chatters at a fixed step.
     filter_rate : float
@@ -56,32 +54,30 @@ def range_identification(form: PartitionedSystem, switch: str = "hyperbolic tang
         gamma; larger than the bounds on f' and f'' for the theory to hold.  Default 20.
     boundary_layer : float
         delta, width of the boundary layer.  Default 0.05.
+    largest_amplification : float
+        c_max; where recovering x2 from f would amplify an error more than this, there is no estimate.  Default 1e5.
 
     Returns
     -------
     Observer
-        The estimate is not defined where w = 0, at the focus of expansion.
+        With both image coordinates measured there is no estimate near the focus of expansion, where w = 0.
 
     Raises
     ------
     NotAffine
         If there is no canonical form.
     NeedsMoreOutputs
-        If more than one coordinate is hidden.
+        If f never determines the hidden coordinates, as with one output for two of them.
     ValueError
         If a gain is unknown or out of its range, or the switch has no such name.
 
     Notes
     -----
     W. E. Dixon, Y. Fang, D. M. Dawson, T. J. Flynn, Range identification for perspective vision systems, IEEE Trans.
-    Automatic Control 48(12), 2003; Ma, Chen and Moore 2005, p. 65.
+    Automatic Control 48(12), 2003, for one hidden coordinate, where x2hat = w^T f / |w|^2; Ma, Chen and Moore 2005,
+    p. 65.
     """
     form = form.canonical_form()
-    if len(form.x2) != 1:
-        raise NeedsMoreOutputs(
-            f"the range identification observer recovers one hidden coordinate, but {', '.join(form.hidden)} are "
-            "hidden; measure every image coordinate"
-        )
     sgn = switch_named(switch)
     x1_hat = hats(form.x1)
     f = sp.symbols(f"f1:{len(form.x1) + 1}", real=True)
@@ -92,12 +88,11 @@ def range_identification(form: PartitionedSystem, switch: str = "hyperbolic tang
     equations = Equations(
         (*x1_hat, *f), (*rates, *filters), form.x1, form.parameters, tuple(gain.symbol for gain in GAINS)
     )
-    squared = sum(entry**2 for entry in form.w)
-    hidden = (form.w * sp.ImmutableMatrix(f))[0] / squared
-    by_coordinate = dict(zip((*form.x1, *form.x2), (*x1_hat, hidden), strict=True))
+    hidden, gap = recovered(form, sp.ImmutableMatrix(f))
+    by_coordinate = dict(zip((*form.x1, *form.x2), (*x1_hat, *hidden), strict=True))
     estimate = tuple(by_coordinate[x] for x in form.coordinates)
-    start = (*x1_hat, *(form.w.T * hats(form.x2)[0]))
-    observer = Observer("range identification", form, equations, estimate, GAINS, start, about=ABOUT)
+    start = (*x1_hat, *(form.w.T * sp.ImmutableMatrix(hats(form.x2))))
+    observer = Observer("range identification", form, equations, estimate, GAINS, start, about=ABOUT, gap=gap)
     return observer.with_gains(**gains)
 
 

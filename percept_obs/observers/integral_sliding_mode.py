@@ -1,0 +1,229 @@
+"""The integral sliding mode observer of Chwa (2019)."""
+
+from __future__ import annotations
+
+import math
+
+import sympy as sp
+
+from percept_obs.equations import Equations
+from percept_obs.forms import PartitionedSystem
+from percept_obs.observers.base import (
+    RECOVERY_GAIN,
+    About,
+    FastestRate,
+    Gain,
+    Observer,
+    elapsed,
+    hats,
+    innovation,
+)
+from percept_obs.recovery import recovered
+from percept_obs.switching import Switch, switch_named
+
+k1, k2, gamma, a, b, delta = sp.symbols("k1 k2 gamma a b delta", real=True)
+c = sp.Symbol("c", real=True)
+
+IDEAL = "ideal"
+"""Name of the switch that is infinitely fast, so that s = 0 at all times."""
+
+GAINS = (
+    Gain(k1, "feedback", 15, 1, 50, "weight of the integral sliding surface", k1 > 0, "it must damp"),
+    Gain(gamma, "switching_gain", 15, 1, 50, "bound on what is not known of the rate", gamma > 0, "it bounds a size"),
+    Gain(a, "sharpness", 1, 0.1, 10, "slope of the hyperbolic tangents at the start", a > 0, "they must push back"),
+    Gain(b, "sharpening", 0.1, 0, 1, "how fast that slope grows", b >= 0, "the slope may not turn around"),
+    RECOVERY_GAIN,
+)
+SWITCHING_GAINS = (
+    Gain(k2, "reaching_gain", 1, 0.1, 20, "size of the switching that remains", k2 > 0, "it must push towards s = 0"),
+    Gain(delta, "boundary_layer", 0.5, 0.01, 2, "width over which the sign is smoothed", delta > 0, "it is a width"),
+)
+
+ABOUT = About(
+    "Integral sliding mode observer (ISMO)",
+    "Chwa 2019, (8)-(14)",
+    "at least as many outputs as hidden coordinates",
+    "asymptotic, if gamma exceeds what is not known of the rate in every output",
+)
+
+
+def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains: float) -> Observer:
+    """Integral sliding mode observer (ISMO).
+
+    It takes all of g = w^T x2 for an unknown disturbance.  With e = x1 - x1hat, se = e + eI,
+    s = v + gamma tanh(c se), and functions taken of each entry::
+
+        x1hat' = phi + ghat                           ghat = k1 se - v + gamma tanh(c e)
+        eI' = gamma tanh(c e)                         eI(0) = -e(0), so that se(0) = 0
+        v' = gamma sech^2(c se) (c (ghat - gamma tanh(c e)) - b se)
+             - (gamma^2 c sech^2(c se) + k2) sgn(s) - se,    v(0) = -gamma tanh(a se(0)), so that s(0) = 0
+        c = a + b t
+
+        x2hat solves w^T x2hat = ghat, with more outputs than hidden coordinates in the least-squares sense
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+        With a canonical form and at least as many measured as hidden coordinates.
+    switch : "ideal", "sign", "hyperbolic tangent" or "fraction"
+        What stands for sgn(s).  The ideal switch is infinitely fast and keeps s = 0, so that v = -gamma tanh(c se)
+        is no state any more; the sign chatters by about gamma^2 c h at a step h, and the others smooth it over the
+        boundary layer, as long as the step resolves that.
+    feedback : float
+        k1, positive.  Default 15.
+    switching_gain : float
+        gamma, larger than the absolute value of each entry of w^T x2.  Default 15.
+    sharpness : float
+        a, slope of the hyperbolic tangents at the start; positive.  Default 1.
+    sharpening : float
+        b, how fast the slope grows, per second; not negative.  Default 0.1.  With 0 the observer's gain, and so the
+        noise that it passes on, does not grow with time; Theorem 1 asks it to be positive.
+    largest_amplification : float
+        c_max; where recovering x2 from ghat would amplify an error more than this, there is no estimate.  Default 1e5.
+    reaching_gain : float
+        k2, positive.  Default 1; not for the ideal switch.
+    boundary_layer : float
+        delta, width over which the sign is smoothed.  Default 0.5; not for the ideal switch.
+
+    Returns
+    -------
+    Observer
+        It starts from estimates of the measured outputs only.
+
+    Raises
+    ------
+    NotAffine
+        If there is no canonical form.
+    NeedsMoreOutputs
+        If ghat never determines the hidden coordinates, as with one output for two of them.
+    ValueError
+        If a gain is unknown or out of its range, or the switch has no such name.
+
+    Notes
+    -----
+    D. Chwa, Integral-sliding-mode-observer-based structure and motion estimation of a single object in general motion
+    using a monocular dynamic camera, IEEE Access 8, 2020 (published in November 2019), section III.  The paper starts
+    from ghat(0) = x1hat(0) = 0, but (9)-(14) give ghat(0) = gamma tanh(a e(0)), which is 0 only where e(0) is.
+    """
+    form = form.canonical_form()
+    x1_hat, e = hats(form.x1), innovation(form)
+    integral, v = (sp.symbols(f"{name}1:{len(e) + 1}", real=True) for name in ("eI", "v"))
+    se = e + sp.ImmutableMatrix(integral)
+    push, pull = (gamma * surface.applyfunc(lambda entry: sp.tanh(c * entry)) for surface in (e, se))
+    state, start = (*x1_hat, *integral, c), (*x1_hat, *-e, a)
+    used: tuple[Gain, ...] = GAINS
+    if switch == IDEAL:
+        g_hat = k1 * se + pull + push
+        flow = (*(form.phi + g_hat), *push, b)
+    else:
+        sgn = switch_named(switch)
+        g_hat = k1 * se - sp.ImmutableMatrix(v) + push
+        s = sp.ImmutableMatrix(v) + pull
+        pseudo_input = [_pseudo_input(*row, sgn) for row in zip(g_hat - push, se, s, strict=True)]
+        flow = (*(form.phi + g_hat), *push, b, *pseudo_input)
+        state, start, used = (*state, *v), (*start, *(sp.S.Zero for _ in v)), (*GAINS, *SWITCHING_GAINS)
+    hidden, gap = recovered(form, g_hat)
+    by_coordinate = dict(zip((*form.x1, *form.x2), (*x1_hat, *hidden), strict=True))
+    observer = Observer(
+        "integral sliding mode",
+        form,
+        Equations(state, flow, form.x1, form.parameters, tuple(gain.symbol for gain in used)),
+        tuple(by_coordinate[x] for x in form.coordinates),
+        used,
+        start,
+        about=ABOUT,
+        gap=gap,
+        fastest=_fastest(switch),
+    )
+    return observer.with_gains(**gains)
+
+
+class GainTooSmall(ValueError):
+    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing."""
+
+
+def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) -> float:
+    """Bound on each entry of se, outside of which Theorem 1 makes it shrink.
+
+    With alpha = |g| / gamma < 1 it is ln((1 + alpha) / (1 - alpha)) / (2 (a + b t)), and goes to 0 with time if b > 0.
+
+    Parameters
+    ----------
+    observer : Observer
+        From `integral_sliding_mode`.
+    disturbance : float
+        Largest absolute value of the entries of g = w^T x2.
+    time : float
+        Seconds since the first sample.
+
+    Raises
+    ------
+    GainTooSmall
+        If alpha is 1 or more.
+
+    Notes
+    -----
+    Chwa 2019, (16)-(21), p. 5.
+    """
+    gains = observer.gain_values
+    alpha = disturbance / gains[gamma]
+    if not 0 <= alpha < 1:
+        raise GainTooSmall(
+            f"g reaches {disturbance:.4g}, but the switching gain gamma is {gains[gamma]:.4g}; alpha = |g| / gamma "
+            "must be below 1, so take a larger switching_gain"
+        )
+    return math.atanh(alpha) / (gains[a] + gains[b] * time)
+
+
+def tolerable_amplification(
+    observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
+) -> float:
+    """A value for the gain `largest_amplification` at which noise cannot make a spike that looks like an estimate.
+
+    White noise of standard deviation sigma on the samples passes into ghat with the factor k1 + 2 gamma c, and from
+    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.
+
+    Parameters
+    ----------
+    observer : Observer
+        From `integral_sliding_mode`.
+    noise : float
+        Standard deviation of the noise in the outputs.
+    hidden : float
+        Size of the hidden coordinate that must not be lost in it.
+    time : float
+        Seconds at the end of the run; with b > 0 the factor grows.
+    margin : float
+        How many standard deviations must fit into `hidden`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+    """
+    if not (noise > 0 and hidden > 0 and margin > 0):
+        raise ValueError(f"noise, hidden and margin must be positive, not {noise}, {hidden} and {margin}")
+    gains = observer.gain_values
+    return hidden / (margin * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
+
+
+def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch) -> sp.Expr:
+    """The rate u of v for one output, (13), with the estimated rate k1 se - v of the surface."""
+    sech2 = 1 - sp.tanh(c * se) ** 2
+    return gamma * sech2 * (c * estimated_rate - b * se) - (gamma**2 * c * sech2 + k2) * sgn(s, delta) - se
+
+
+def _fastest(switch: str) -> FastestRate | None:
+    """Rate at se = 0 at which se decays on the ideal surface, and s in the boundary layer; a sign has none."""
+    slope = a + b * elapsed
+    if switch == IDEAL:
+        return FastestRate(k1 + gamma * slope, "take smaller gains, or keep the slope with sharpening=0")
+    if switch == "sign":
+        return None
+    return FastestRate(
+        gamma**2 * slope / delta,
+        f"take the ideal switch (switch={IDEAL!r}), a wider boundary_layer, or keep the slope with sharpening=0",
+    )
+
+
+ismo = integral_sliding_mode
