@@ -1,0 +1,179 @@
+"""Pixels: the camera's intrinsic matrix, noise as a ratio of powers, and what several image points tell together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PixelCamera:
+    """Pinhole camera with pixels: p = A_c m, m = (y1, y2, 1) (Chwa 2019, (1), p. 4).
+
+    Parameters
+    ----------
+    focal : pair of floats
+        Focal lengths in pixels, along a row and along a column; positive.
+    centre : pair of floats
+        Principal point in pixels.
+    size : pair of ints, optional
+        Width and height of the image in pixels; an image without borders when left out.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or a focal length or a size is not positive.
+    """
+
+    focal: Sequence[float]
+    centre: Sequence[float] = (0.0, 0.0)
+    size: Sequence[int] | None = None
+
+    def __post_init__(self) -> None:
+        for name, positive in (("focal", True), ("centre", False), ("size", True)):
+            if name == "size" and self.size is None:
+                continue
+            values = np.asarray(getattr(self, name), dtype=float)
+            if values.shape != (2,) or not np.isfinite(values).all() or (positive and not (values > 0).all()):
+                kind = "positive" if positive else "finite"
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
+            object.__setattr__(self, name, tuple(values.tolist()))
+
+    @property
+    def matrix(self) -> Array:
+        """The intrinsic matrix A_c, of shape (3, 3)."""
+        return np.array([[self.focal[0], 0, self.centre[0]], [0, self.focal[1], self.centre[1]], [0, 0, 1.0]])
+
+    def pixels(self, image: ArrayLike) -> Array:
+        """Pixel coordinates of image coordinates (y1, y2), shape (..., 2)."""
+        return np.asarray(image, dtype=float) * self.focal + self.centre
+
+    def image(self, pixels: ArrayLike) -> Array:
+        """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2)."""
+        return (np.asarray(pixels, dtype=float) - self.centre) / self.focal
+
+    def sees(self, pixels: ArrayLike) -> NDArray[np.bool_]:
+        """Whether pixel coordinates lie in the image, shape (...)."""
+        pixels = np.asarray(pixels, dtype=float)
+        if self.size is None:
+            return np.ones(pixels.shape[:-1], dtype=bool)
+        return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
+
+
+CHWA_CAMERA = PixelCamera((720, 720), (320, 240))
+"""The camera of Chwa 2019, section VII.A; the paper states no size of the image."""
+
+
+@dataclass(frozen=True)
+class SignalToNoise:
+    """White Gaussian noise, given by the signal's power over the noise's.
+
+    The signal is the raw pixel coordinates, principal point included, and its power is their mean square over the
+    recording, both coordinates together: sigma^2 = mean(p^2) / 10^(decibels / 10).
+
+    Parameters
+    ----------
+    decibels : float
+    """
+
+    decibels: float
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.decibels):
+            raise ValueError(f"the ratio is {self.decibels} dB; it must be finite")
+
+    def sigma(self, pixels: ArrayLike) -> float:
+        """Standard deviation of the noise on these pixel coordinates, in pixels."""
+        return float(np.sqrt(np.mean(np.square(pixels))) * 10 ** (-self.decibels / 20))
+
+
+def homography(reference: ArrayLike, images: ArrayLike) -> Array:
+    """Homographies that carry the image of a planar patch in a reference picture to its image in others.
+
+    With the motion X = R X* + t of points on the plane n . X* = d they are H = R + t n^T / d.  They are found by the
+    direct linear transform, on coordinates shifted and scaled to their centre and spread, up to a factor that makes
+    the second singular value 1, as that of R + t n^T / d is, and the points stay in front of the camera.
+
+    Parameters
+    ----------
+    reference : array of shape (n, 2)
+        Image coordinates (y1, y2) of n >= 4 points, no three of four of them on a line.
+    images : array of shape (..., n, 2)
+        Those of the same points in other pictures.
+
+    Returns
+    -------
+    array of shape (..., 3, 3)
+        Depth in the other picture over depth in the reference is the third entry of H m*.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than four points, shapes differ, values are not finite, or the points lie on a line.
+
+    Notes
+    -----
+    R. Hartley, A. Zisserman, Multiple View Geometry in Computer Vision (2004), section 4.1; Y. Ma, S. Soatto,
+    J. Kosecka, S. Sastry, An Invitation to 3-D Vision (2004), section 5.3, for the factor.
+    """
+    reference, images = np.asarray(reference, dtype=float), np.asarray(images, dtype=float)
+    if reference.ndim != 2 or reference.shape[1] != 2 or images.shape[-2:] != reference.shape or len(reference) < 4:
+        raise ValueError(
+            f"the reference has shape {reference.shape} and the images {images.shape}; expected (n, 2) and "
+            "(..., n, 2) with the same n of at least 4 points"
+        )
+    if not (np.isfinite(reference).all() and np.isfinite(images).all()):
+        raise ValueError("image points are not finite; leave out the pictures in which one was lost")
+    if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
+        raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
+    to_reference, to_images = _normalising(reference), _normalising(images)
+    m = _carried(to_reference, reference)
+    p = _carried(to_images, images)
+    m = np.broadcast_to(m, p.shape)
+    zero = np.zeros_like(m)
+    rows = np.concatenate(
+        [
+            np.concatenate([m, zero, -p[..., :1] * m], axis=-1),
+            np.concatenate([zero, m, -p[..., 1:2] * m], axis=-1),
+            np.zeros((*p.shape[:-2], 1, 9)),  # so that four points, with eight equations, have nine rows as well
+        ],
+        axis=-2,
+    )
+    solution = np.linalg.svd(rows, full_matrices=False)[2][..., -1, :]
+    H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
+    H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
+    depths = H[..., 2, :] @ _homogeneous(reference).T
+    return H * np.sign(depths.sum(axis=-1))[..., None, None]
+
+
+def apparent_size(images: ArrayLike) -> Array:
+    """Root mean square distance of image points to their centre, shape (...), for images of shape (..., n, 2).
+
+    For an object of constant size that neither turns nor is turned to by the camera it is proportional to the
+    inverse depth if its points share one depth.
+    """
+    images = np.asarray(images, dtype=float)
+    return np.sqrt(np.sum((images - images.mean(axis=-2, keepdims=True)) ** 2, axis=-1).mean(axis=-1))
+
+
+def _homogeneous(points: Array) -> Array:
+    return np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1)
+
+
+def _carried(transform: Array, points: Array) -> Array:
+    return _homogeneous(points) @ np.swapaxes(transform, -1, -2)
+
+
+def _normalising(points: Array) -> Array:
+    """The similarity that puts the points' centre at 0 and their root mean square distance to it at sqrt(2)."""
+    centre, scale = points.mean(axis=-2), np.sqrt(2) / apparent_size(points)
+    transform = np.zeros((*points.shape[:-2], 3, 3))
+    transform[..., 0, 0] = transform[..., 1, 1] = scale
+    transform[..., :2, 2] = -scale[..., None] * centre
+    transform[..., 2, 2] = 1
+    return transform

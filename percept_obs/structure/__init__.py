@@ -1,0 +1,43 @@
+"""Structure and motion from a scaled inverse depth: choices of what is known, and their canonical forms."""
+
+from percept_obs.structure.base import (
+    QUANTITIES,
+    ImpossibleChoice,
+    ScaledDynamics,
+    StructureAndMotion,
+    scaled_dynamics,
+)
+from percept_obs.structure.corollaries import COROLLARIES, Corollary, corollary_of
+from percept_obs.structure.linear import LinearView
+from percept_obs.structure.simulation import (
+    DepthSource,
+    GivenDepth,
+    PatchDepth,
+    SizeDepth,
+    StructureScenario,
+    grid_patch,
+    linear_view,
+    record_structure,
+    seen_as,
+)
+
+__all__ = [
+    "COROLLARIES",
+    "QUANTITIES",
+    "Corollary",
+    "DepthSource",
+    "GivenDepth",
+    "ImpossibleChoice",
+    "LinearView",
+    "PatchDepth",
+    "ScaledDynamics",
+    "SizeDepth",
+    "StructureAndMotion",
+    "StructureScenario",
+    "corollary_of",
+    "grid_patch",
+    "linear_view",
+    "record_structure",
+    "scaled_dynamics",
+    "seen_as",
+]

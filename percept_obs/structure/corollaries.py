@@ -1,0 +1,82 @@
+"""The cases that Chwa (2019) states, as choices of what is known, and which case a choice is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+from percept_obs.structure.base import StructureAndMotion
+
+
+@dataclass(frozen=True)
+class Corollary:
+    """A case that the paper states (Chwa 2019, sections IV to VI, pp. 6-9).
+
+    Parameters
+    ----------
+    number : int
+    section : str
+    camera, object : str
+        Its cell of Table 1: how the camera and the object move.
+    unknown, zero, earlier : tuples of str
+        As in `StructureAndMotion`, with the axes i, j, k for 1, 2, 3.
+    """
+
+    number: int
+    section: str
+    camera: str
+    object: str
+    unknown: tuple[str, ...]
+    zero: tuple[str, ...] = ()
+    earlier: tuple[str, ...] = ()
+
+    def choice(self, axes: str = "123", scale: float | None = None) -> StructureAndMotion:
+        """The case with the axes i, j, k in the given order, "123" in the paper's section VII.
+
+        Raises
+        ------
+        ValueError
+            If the axes are no order of 1, 2 and 3.
+        """
+        if sorted(axes) != ["1", "2", "3"]:
+            raise ValueError(f"the axes {axes!r} must be 1, 2 and 3 in some order")
+        order = str.maketrans("ijk", axes)
+        unknown, zero, earlier = (
+            tuple(name if name == "d_s" else name.translate(order) for name in group)
+            for group in (self.unknown, self.zero, self.earlier)
+        )
+        return StructureAndMotion(unknown, zero, earlier, scale)
+
+    def __str__(self) -> str:
+        return f"corollary {self.number}, section {self.section}: {self.camera} camera, object in {self.object} motion"
+
+
+_STILL = ("v_pi", "v_pj", "v_pk")
+_DYNAMIC, _GENERAL = "dynamic", "general"
+
+COROLLARIES = (
+    Corollary(1, "IV.A", _DYNAMIC, "semigeneral", ("d_s", "v_cj", "v_ck"), zero=_STILL),
+    Corollary(2, "IV.B", _DYNAMIC, "semigeneral", _STILL, earlier=("d_s", "v_cj", "v_ck")),
+    Corollary(3, "V.A", _DYNAMIC, _GENERAL, ("d_s", "v_pi", "v_pj"), zero=("v_pk",)),
+    Corollary(4, "V.B", _DYNAMIC, _GENERAL, ("d_s", "v_ck", "v_pi"), zero=("v_pj", "v_pk")),
+    Corollary(5, "VI.A", _GENERAL, _GENERAL, _STILL),
+    Corollary(6, "VI.B", _GENERAL, _GENERAL, ("v_ck", "v_pi", "v_pj"), zero=("v_pk",)),
+    Corollary(7, "VI.C", _GENERAL, _GENERAL, ("v_cj", "v_ck", "v_pi"), zero=("v_pj", "v_pk")),
+)
+"""The seven corollaries, in the paper's order."""
+
+
+def corollary_of(choice: StructureAndMotion) -> Corollary | None:
+    """The corollary that states a choice, with its axes in any order; None for a choice that the paper does not state.
+
+    Whether the known camera's velocity was estimated earlier makes no difference, unlike d_s.
+    """
+
+    def pattern(case: StructureAndMotion) -> StructureAndMotion:
+        return replace(case, earlier=tuple(n for n in case.earlier if n == "d_s"), scale=None)
+
+    asked = pattern(choice)
+    for corollary in COROLLARIES:
+        if any(pattern(corollary.choice("".join(axes))) == asked for axes in permutations("123")):
+            return corollary
+    return None

@@ -1,0 +1,93 @@
+"""The linear view of structure and motion: scaled positions, on which a Kalman filter needs no linearisation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.forms import CanonicalForm
+from percept_obs.motion import rigid
+from percept_obs.structure.base import StructureAndMotion, d_s
+
+OUTPUTS = sp.symbols("xbar1:4", real=True)
+
+
+@dataclass(frozen=True)
+class LinearView:
+    """Scaled positions xbar = (y1, y2, 1) / ybar3 = d_s X, which obey a linear equation.
+
+    With X' = [w]x X + v_p - v_c and a constant scale::
+
+        xbar' = [w]x xbar + d_s (v_p - v_c)
+
+    The unknowns are those of the choice, and so is the condition that they are observable.  The extended Kalman filter
+    on this form is the Kalman filter; the noise of the outputs, however, depends on where the point is seen.
+
+    Parameters
+    ----------
+    choice : StructureAndMotion
+    """
+
+    choice: StructureAndMotion
+
+    @cached_property
+    def form(self) -> CanonicalForm:
+        """The canonical form, with x1 = xbar and x2 = theta; neither w nor the Jacobian of phi depends on them."""
+        motion = rigid()
+        rate = motion.A * sp.ImmutableMatrix(OUTPUTS) + d_s * motion.b
+        return self.choice.split(OUTPUTS, rate, self)
+
+    def outputs(self, ybar: ArrayLike) -> NDArray[np.float64]:
+        """Scaled positions of (y1, y2, ybar3), shape (..., 3); NaN where ybar3 is not positive."""
+        ybar = np.asarray(ybar, dtype=float)
+        inverse = np.where(ybar[..., 2:] > 0, ybar[..., 2:], np.nan)
+        return np.concatenate([ybar[..., :2], np.ones_like(inverse)], axis=-1) / inverse
+
+    @property
+    def name(self) -> str:
+        """What is unknown, in words."""
+        return f"linear view of the {self.choice.name}"
+
+    @property
+    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the scaled position."""
+        return OUTPUTS
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Scaled position and then theta."""
+        return self.form.coordinates
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """The scale, where it is known."""
+        return self.choice.parameters
+
+    @property
+    def values(self) -> Mapping[sp.Symbol, float]:
+        """The scale's number, if it has one."""
+        return self.choice.values
+
+    def fits(self, other: object) -> bool:
+        """Whether what is derived for this choice holds for the other."""
+        return isinstance(other, LinearView) and self.choice.fits(other.choice)
+
+    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Inverse depth in 1/m, shape (...), from xbar and theta; NaN where theta gives no positive d_s."""
+        return self.choice.inverse(self._scaled(coordinates))
+
+    def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Points in metres, shape (..., 3), from xbar and theta; infinite where no positive inverse depth follows."""
+        return self.choice.locate(self._scaled(coordinates))
+
+    @staticmethod
+    def _scaled(coordinates: ArrayLike) -> NDArray[np.float64]:
+        """The choice's coordinates (ybar, theta) from (xbar, theta)."""
+        position, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
+        depth = np.where(position[..., 2:] > 0, position[..., 2:], np.nan)
+        return np.concatenate([position[..., :2] / depth, 1 / depth, theta], axis=-1)

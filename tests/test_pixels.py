@@ -1,0 +1,117 @@
+"""Pixels and image coordinates are each other's inverse, and a homography gives back motion and depth."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from percept_obs import scenarios
+from percept_obs.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise, apparent_size, homography
+
+small = st.floats(-0.3, 0.3)
+vectors = st.tuples(small, small, small)
+
+
+def patch(count, seed=0, normal=(-0.3, 0.2, 1.0)):
+    """Points on a plane n . X = d in front of the camera, with n and d."""
+    offsets = np.random.default_rng(seed).uniform(-0.3, 0.3, (count, 2)) @ np.linalg.svd([normal])[2][1:]
+    points = offsets + np.array([0.3, 0.2, 2.0])
+    return points, np.array(normal), points[0] @ normal
+
+
+def seen(points):
+    return points[..., :2] / points[..., 2:]
+
+
+@given(st.floats(10, 2000), st.floats(10, 2000), st.tuples(small, small))
+def test_pixels_and_image_coordinates_are_each_others_inverse(f1, f2, image):
+    camera = PixelCamera((f1, f2), (320, 240))
+    pixels = camera.pixels(image)
+    np.testing.assert_allclose(camera.image(pixels), image, atol=1e-12)
+    np.testing.assert_allclose(camera.matrix @ [*image, 1], [*pixels, 1])
+
+
+def test_the_intrinsic_matrix_is_that_of_the_paper():
+    np.testing.assert_array_equal(CHWA_CAMERA.matrix, [[720, 0, 320], [0, 720, 240], [0, 0, 1]])
+
+
+def test_the_points_of_the_paper_do_not_stay_in_an_ordinary_image():
+    """With 640 x 480 pixels, the experiment's points leave within 0.3 s, and the simulations' start outside."""
+    camera = PixelCamera(CHWA_CAMERA.focal, CHWA_CAMERA.centre, (640, 480))
+    simulated = scenarios.chwa2019_simulation("V.A").ybar([0.0])[:, :2]
+    assert not camera.sees(camera.pixels(simulated)).any()
+    for section in ("IV.A", "IV.B", "V.B", "VI.B", "VI.C"):
+        image = scenarios.chwa2019_experiment(section).ybar([0.0, 0.3])[:, :2]
+        assert camera.sees(camera.pixels(image)).tolist() == [True, False]
+    assert CHWA_CAMERA.sees(CHWA_CAMERA.pixels(simulated)).all()
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"focal": (720, 0)}, "focal is .* two positive numbers"),
+        ({"focal": (720,)}, "focal is"),
+        ({"focal": (720, 720), "centre": (np.nan, 0)}, "centre is .* two finite numbers"),
+        ({"focal": (720, 720), "size": (640, -1)}, "size is"),
+    ],
+)
+def test_a_camera_that_is_none_is_refused(settings, message):
+    with pytest.raises(ValueError, match=message):
+        PixelCamera(**settings)
+
+
+def test_a_ratio_of_powers():
+    pixels = np.array([[300.0, 400.0], [0.0, 0.0]])
+    assert SignalToNoise(20).sigma(pixels) == pytest.approx(np.sqrt(500**2 / 4) / 10)
+    noisy = SignalToNoise(40).sigma(np.full((10_000, 2), 500.0)) * np.random.default_rng(0).normal(size=(10_000, 2))
+    assert 10 * np.log10(500**2 / np.mean(noisy**2)) == pytest.approx(40, abs=0.1)
+    with pytest.raises(ValueError, match="must be finite"):
+        SignalToNoise(float("inf"))
+
+
+@given(vectors, vectors, st.integers(4, 12))
+def test_a_homography_is_the_motion_of_the_patch(turn, shift, count):
+    """H = R + t n^T / d, with the second singular value 1, and (H m*)_3 the ratio of the depths."""
+    points, normal, distance = patch(count)
+    R = Rotation.from_rotvec(turn).as_matrix()
+    moved = points @ R.T + shift
+    H = homography(seen(points), seen(np.stack([points, moved])))
+    expected = R + np.outer(shift, normal) / distance
+    np.testing.assert_allclose(H[0], np.eye(3), atol=1e-7)
+    np.testing.assert_allclose(H[1], expected, atol=1e-7)
+    np.testing.assert_allclose(np.linalg.svd(H[1], compute_uv=False)[1], 1, atol=1e-9)
+    ratio = H[1][2] @ np.vstack([seen(points).T, np.ones(count)])
+    np.testing.assert_allclose(ratio, moved[:, 2] / points[:, 2], atol=1e-7)
+
+
+def test_more_points_leave_less_noise():
+    spread = []
+    for count in (9, 81):
+        points, *_ = patch(count, normal=(0, 0, 1.0))
+        images = seen(np.broadcast_to(points, (400, count, 3)))
+        H = homography(seen(points), images + np.random.default_rng(1).normal(0, 1e-4, images.shape))
+        spread.append((H[:, 2] @ [*seen(points)[0], 1]).std())
+    assert spread[1] < 0.6 * spread[0]
+
+
+@pytest.mark.parametrize(
+    ("reference", "images", "message"),
+    [
+        (np.zeros((3, 2)), np.zeros((3, 2)), "at least 4 points"),
+        (np.zeros((4, 2)), np.zeros((5, 2)), r"shape \(4, 2\) and the images \(5, 2\)"),
+        (np.full((4, 2), np.nan), np.zeros((4, 2)), "not finite"),
+        (np.column_stack([np.arange(4.0)] * 2), np.eye(4)[:, :2], "lie on a line"),
+    ],
+)
+def test_points_that_give_no_homography_are_refused(reference, images, message):
+    with pytest.raises(ValueError, match=message):
+        homography(reference, images)
+
+
+@given(st.floats(0.5, 5))
+def test_the_apparent_size_is_proportional_to_the_inverse_depth(depth):
+    points, *_ = patch(6, normal=(0, 0, 1.0))
+    further = points + np.array([0.4, -0.2, depth - 2.0])
+    ratio = apparent_size(seen(further)) / apparent_size(seen(points))
+    assert ratio == pytest.approx(2.0 / depth)

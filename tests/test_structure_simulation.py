@@ -1,0 +1,274 @@
+"""What pictures of an object give: its scaled inverse depth, with what noise, bias and drift do to the estimates."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from examples import NOISE
+
+from percept_obs import (
+    BehindCamera,
+    Camera,
+    DoesNotFit,
+    PerspectiveSystem,
+    Recording,
+    Scenario,
+    affine,
+    pinhole,
+    record,
+    rigid,
+    scenarios,
+    track,
+)
+from percept_obs.least_squares import moving_window_least_squares
+from percept_obs.observers import OBSERVERS, NotIntegrable, ekf, immersion_and_invariance, ismo
+from percept_obs.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
+from percept_obs.structure import (
+    COROLLARIES,
+    GivenDepth,
+    ImpossibleChoice,
+    LinearView,
+    PatchDepth,
+    SizeDepth,
+    StructureAndMotion,
+    StructureScenario,
+    grid_patch,
+    linear_view,
+    record_structure,
+    seen_as,
+)
+
+CASE = scenarios.chwa2019_experiment("IV.A")
+STILL = (0.0, 0.0, 0.0)
+W = (0.1, -0.2, 0.3)
+
+
+def late_scale(recording, **gains):
+    run = track(recording, ismo(recording.surface.form, **gains), hold="first", step=1e-3, language="python")
+    return run.estimate[recording.time >= 2, 3]
+
+
+def test_a_recording_of_a_choice_holds_what_it_may_know():
+    recording = record_structure(CASE, 1)
+    assert recording.names == ("y1", "y2", "ybar3")
+    assert recording.truth.shape == (1001, 6)
+    np.testing.assert_allclose(recording.truth[:, 3:], [[10.4, -0.23 * 10.4, 0]] * 1001)
+    # of the motion, the unknown velocities are not there
+    assert [s.name for s in recording.motion.parameters] == ["w1", "w2", "w3", "v_c1"]
+    np.testing.assert_allclose(recording.truth[0, :3], [0.32, 0.30, 0.05])
+    np.testing.assert_allclose(recording.points[0], np.array([0.32, 0.30, 1]) / 0.52)
+    known = record_structure(scenarios.chwa2019_experiment("VI.B"), 1)
+    assert known.surface.scale == 10.4
+    np.testing.assert_allclose(known.truth[0, 3:], [0, -0.22, -0.23])
+
+
+@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
+def test_every_observer_runs_on_the_form_as_it_is(make):
+    recording = record_structure(CASE, 1, Camera(period=0.01))
+    views = [recording, linear_view(recording)]
+    if make is immersion_and_invariance:
+        with pytest.raises(NotIntegrable, match="w has no potential"):
+            make(views.pop(0).surface.form)
+    for seen in views:
+        run = track(seen, make(seen.surface.form), language="python")
+        assert np.isfinite(run.estimate).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angular_velocity", [STILL, W], ids=["w = 0", "w"])
+@pytest.mark.parametrize("normal", [(0, 0, 1), (0.3, -0.2, 1)], ids=["facing", "tilted"])
+def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, normal):
+    setup = scenarios.chwa2019_simulation("V.A", angular_velocity)
+    recording = record_structure(setup, 2, depth=PatchDepth(grid_patch(0.4, 3, normal)))
+    np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
+
+
+def test_the_size_gives_it_to_a_camera_that_does_not_turn():
+    size = SizeDepth(grid_patch(0.4))
+    recording = record_structure(scenarios.chwa2019_simulation("V.A"), 2, depth=size)
+    np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
+    turned = record_structure(scenarios.chwa2019_simulation("V.A", W), 2, depth=size)
+    assert np.abs(turned.outputs[:, 2] / turned.truth[:, 2] - 1).max() > 0.01
+
+
+def test_noise_in_pixels_and_as_a_ratio():
+    recording = record_structure(CASE, 10, pixels=CHWA_CAMERA, ratio=SignalToNoise(100), seed=1)
+    error = (recording.outputs - recording.truth[:, :3])[:, :2] * 720
+    assert error.std() == pytest.approx(0.0096, rel=0.02)
+    assert recording.noise_variance == pytest.approx((0.0096 / 720) ** 2, rel=0.02)
+    in_pixels = record_structure(CASE, 10, Camera(1e-3, NOISE), pixels=CHWA_CAMERA, seed=1)
+    assert (in_pixels.outputs - in_pixels.truth[:, :3])[:, :2].std() == pytest.approx(0.01 / 3**0.5 / 720, rel=0.02)
+    again = record_structure(CASE, 10, pixels=CHWA_CAMERA, ratio=SignalToNoise(100), seed=1)
+    np.testing.assert_array_equal(again.outputs, recording.outputs)
+
+
+def test_pictures_without_the_object_are_lost():
+    small = PixelCamera(CHWA_CAMERA.focal, CHWA_CAMERA.centre, (640, 480))
+    recording = record_structure(CASE, 1, pixels=small)
+    lost = np.isnan(recording.outputs).all(axis=1)
+    assert not lost[:200].any()
+    assert lost[300:].all()
+    dropped = record_structure(CASE, 1, Camera(1e-3, dropout=0.3), seed=2)
+    assert np.isnan(dropped.outputs[:, 0]).mean() == pytest.approx(0.3, abs=0.05)
+    with pytest.raises(ValueError, match="outside the first picture"):
+        record_structure(scenarios.chwa2019_simulation("V.A"), 1, pixels=small)
+
+
+def test_bias_and_drift_do_what_the_sensitivity_says():
+    choice = CASE.choice
+    derivatives = choice.sensitivity()
+    for errors in ({"bias": 1e-4}, {"drift": 1e-5}):
+        recording = record_structure(CASE, 4, depth=GivenDepth(**errors))
+        change = errors.get("bias", 0.0) + errors.get("drift", 0.0) * 4.0, errors.get("drift", 0.0)
+        at = dict(zip(choice.form.coordinates, recording.truth[-1], strict=True))
+        at |= dict(zip(choice.form.parameters, recording.motion.known(4.0)[0], strict=True))
+        predicted = np.array(derivatives.subs(at) * sp.Matrix(change), dtype=float).ravel()
+        found = late_scale(recording)[-1] - 10.4
+        assert abs(predicted[0]) > 0.01
+        assert found == pytest.approx(predicted[0], rel=0.05)
+
+
+def test_a_constant_factor_of_the_inverse_depth_is_another_scale():
+    """Twice ybar3 is half of d_s, and no velocity changes."""
+    doubled = StructureScenario(CASE.scenario, 5.2, CASE.choice)
+    recording = record_structure(doubled, 3)
+    run = track(recording, ismo(CASE.choice.form), hold="first", step=1e-3)
+    found = CASE.choice.quantities(run.estimate[-1, 3:])
+    assert found["d_s"] == pytest.approx(5.2, rel=1e-3)
+    assert found["v_c2"] == pytest.approx(-0.23, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_noise_of_the_inverse_depth_in_proportion():
+    spread = [
+        late_scale(record_structure(CASE, 4, depth=GivenDepth(noise=type(NOISE)(bound)), seed=3)).std()
+        for bound in (1e-7, 1e-6)
+    ]
+    assert spread[1] == pytest.approx(10 * spread[0], rel=0.05)
+    assert spread[0] > 1e-3
+
+
+def test_fewer_unknowns_are_found_in_the_least_squares_sense():
+    choice = StructureAndMotion(("d_s", "v_c2"), ("v_p1", "v_p2", "v_p3"))
+    recording = record_structure(StructureScenario(CASE.scenario, 10.4, choice), 2)
+    run = track(recording, ismo(choice.form), hold="first", step=1e-3)
+    np.testing.assert_allclose(run.estimate[-1, 3:], [10.4, -0.23 * 10.4], rtol=1e-3)
+
+
+def test_seen_as_another_choice():
+    recording = record_structure(scenarios.chwa2019_experiment("IV.B"), 1)
+    fifth = COROLLARIES[4].choice(scale=10.4)
+    motion = scenarios.chwa2019_experiment("IV.B").scenario.motion
+    again = seen_as(recording, fifth, motion, 10.4)
+    np.testing.assert_array_equal(again.outputs, recording.outputs)
+    np.testing.assert_allclose(again.truth[:, 3:], [[-0.22, -0.23, 0]] * 1001)
+    assert seen_as(recording, fifth, motion).truth is None
+    with pytest.raises(ImpossibleChoice, match=r"v_p1, v_p2, v_p3 are said to be zero, .* up to 0.23 m/s"):
+        seen_as(recording, COROLLARIES[0].choice(), motion)
+
+
+def test_the_filter_on_the_linear_view_is_the_kalman_filter():
+    """Against the discrete filter of the textbooks, with the transition of the linear system."""
+    from scipy.linalg import expm
+
+    period, R, Q2, P0 = 0.01, 1e-2, 1.0, 100.0
+    recording = linear_view(record_structure(scenarios.chwa2019_simulation("IV.A", W), 1, Camera(period), seed=4))
+    form = recording.surface.form
+    observer = ekf(form, noise_variance=R, hidden_process_noise=Q2, hidden_variance=P0, measured_variance=1.0)
+    run = track(recording, observer, step=1e-3)
+    known = dict(zip(form.parameters, recording.motion.known(0.0)[0], strict=True))
+    F = np.array(form.rate.jacobian(form.coordinates).subs(known), dtype=float)
+    Q = np.diag([0, 0, 0, Q2, Q2, Q2])
+    # Van Loan's transition and noise of a period
+    block = expm(np.block([[-F, Q], [np.zeros((6, 6)), F.T]]) * period)
+    transition = block[6:, 6:].T
+    noise = transition @ block[:6, 6:]
+    x, P, H = np.append(recording.outputs[0], np.zeros(3)), np.diag([1.0] * 3 + [P0] * 3), np.eye(3, 6)
+    for k, sample in enumerate(recording.outputs):
+        if k:
+            x, P = transition @ x, transition @ P @ transition.T + noise
+        gain = P @ H.T @ np.linalg.inv(H @ P @ H.T + R * np.eye(3))
+        x, P = x + gain @ (sample - H @ x), P - gain @ H @ P
+    np.testing.assert_allclose(run.estimate[-1], x, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(run.covariance[-1], P, rtol=1e-5, atol=1e-7)
+
+
+def test_what_does_not_fit_is_refused():
+    recording = record_structure(CASE, 1)
+    with pytest.raises(DoesNotFit, match="made for the scaled pinhole with d_s, v_c3, v_p1 unknown"):
+        track(recording, ismo(COROLLARIES[3].choice().form))
+    with pytest.raises(DoesNotFit, match="was made for the scaled pinhole"):
+        track(record(scenarios.ma2005_eq35(), 1), ismo(CASE.choice.form))
+    with pytest.raises(ValueError, match="needs image coordinates alone, but the recording shows the scaled pinhole"):
+        moving_window_least_squares(recording, 0.5)
+    with pytest.raises(ValueError, match="the linear view needs the outputs y1, y2, ybar3"):
+        linear_view(record(scenarios.ma2005_eq35(), 1))
+    with pytest.raises(ValueError, match="has no values for d_s; give them numbers first"):
+        seen_as(recording, COROLLARIES[4].choice(), rigid(STILL, STILL, STILL))
+
+
+def test_scenarios_that_make_no_sense_are_refused():
+    for scale in (0.0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="it is one over a distance in metres"):
+            StructureScenario(CASE.scenario, scale, CASE.choice)
+    affine_motion = Scenario("affine", affine(np.eye(3), STILL), (1, 1, 1), 1.0, pinhole())
+    with pytest.raises(ValueError, match=r"the affine motion is none of rigid\(\)"):
+        StructureScenario(affine_motion, 1.0, CASE.choice)
+    with pytest.raises(ValueError, match="the motion has no numbers"):
+        CASE.choice.known_motion(rigid())
+    towards = Scenario("towards", rigid(STILL, (0.1, 0, 1.0), STILL), (0, 0, 1), 2.0, pinhole())
+    with pytest.raises(BehindCamera, match="only points at a positive distance are seen"):
+        record_structure(StructureScenario(towards, 1.0, CASE.choice))
+    for duration in (0.0, 1e-4, float("inf")):
+        with pytest.raises(ValueError, match="holds no two pictures"):
+            record_structure(CASE, duration)
+    with pytest.raises(ValueError, match=r"there is no case 'V.A'; there are IV.A"):
+        scenarios.chwa2019_experiment("V.A")
+    with pytest.raises(ValueError, match="needs a positive third component"):
+        scenarios.chwa2019_simulation("V.A", (0.1, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((0.0,), "positive side"),
+        ((0.1, 4), "odd count"),
+        ((0.1, 1), "odd count"),
+        ((0.1, 3, (0, 0, 0)), "not all zero"),
+    ],
+)
+def test_patches_that_are_none_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        grid_patch(*arguments)
+
+
+def test_a_patch_begins_at_the_tracked_point_and_is_flat():
+    patch = grid_patch(0.4, 5, (0.1, 0.2, 1.0))
+    assert patch.shape == (25, 3)
+    np.testing.assert_array_equal(patch[0], 0)
+    np.testing.assert_allclose(patch @ [0.1, 0.2, 1.0], 0, atol=1e-15)
+    np.testing.assert_allclose(patch.mean(axis=0), 0, atol=1e-15)
+
+
+def test_sampled_velocities_serve_as_well_as_functions():
+    time = np.linspace(0, 1, 101)
+    samples = np.column_stack([0.3 + 0 * time, 0.1 * time, -0.1 * time])
+    sampled = rigid(np.zeros((101, 3)), samples, np.zeros((101, 3)), times=time)
+    known = CASE.choice.known_motion(sampled)
+    np.testing.assert_allclose(known.known([0.0, 0.5]), [[0, 0, 0, 0.3]] * 2)
+    recording = record_structure(
+        StructureScenario(Scenario("sampled", sampled, (1, 1, 4), 1.0, pinhole()), 2.0, CASE.choice)
+    )
+    np.testing.assert_allclose(recording.truth[500, 3:], [2, 0.1, -0.1])
+
+
+def test_a_recording_from_real_outputs():
+    """Nothing is asked of what is unknown."""
+    choice = COROLLARIES[0].choice()
+    made = record_structure(CASE, 2)
+    motion = choice.known_motion(rigid(STILL, (-0.22, 9.9, 9.9), STILL))
+    recording = Recording(made.time, made.outputs, made.names, choice, motion)
+    assert recording.truth is None
+    run = track(recording, ismo(choice.form), hold="first", step=1e-3)
+    assert choice.quantities(run.estimate[-1, 3:])["v_c2"] == pytest.approx(-0.23, abs=1e-3)
+    assert LinearView(choice).form.measured == ("xbar1", "xbar2", "xbar3")
+    assert PerspectiveSystem(rigid(), pinhole()).coordinates[2].name == "y3"
