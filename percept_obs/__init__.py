@@ -5,7 +5,18 @@ from percept_obs.consistency import check_consistency
 from percept_obs.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.motion import Motion, affine, linear, rigid
 from percept_obs.observability import instantaneous, windowed
-from percept_obs.observers import Observer, ekf, extended_kalman, ibo, identifier_based, sliding_mode, smo, with_point
+from percept_obs.observers import (
+    Observer,
+    ekf,
+    extended_kalman,
+    ibo,
+    identifier_based,
+    integral_sliding_mode,
+    ismo,
+    sliding_mode,
+    smo,
+    with_point,
+)
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.points import (
     PointsForm,
@@ -16,8 +27,10 @@ from percept_obs.points import (
     track_points,
 )
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.structure import StructureAndMotion, record_structure
 from percept_obs.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
 from percept_obs.tracking import DoesNotFit, Run, track
+from percept_obs.two_stage import semigeneral
 
 __version__ = "0.1.0"
 
@@ -39,6 +52,7 @@ __all__ = [
     "Recording",
     "Run",
     "Scenario",
+    "StructureAndMotion",
     "Uniform",
     "affine",
     "chained",
@@ -48,14 +62,18 @@ __all__ = [
     "ibo",
     "identifier_based",
     "instantaneous",
+    "integral_sliding_mode",
+    "ismo",
     "linear",
     "luenberger",
     "pinhole",
     "plane",
     "record",
     "record_points",
+    "record_structure",
     "rigid",
     "scenarios",
+    "semigeneral",
     "sliding_mode",
     "smo",
     "track",

@@ -1,0 +1,74 @@
+"""Noise makes every observer of structure and motion scatter as was measured; the paper's figures have their runs."""
+
+import numpy as np
+import pytest
+
+from percept_obs import scenarios
+from percept_obs.structure import PatchDepth, grid_patch, record_structure
+from percept_obs.structure_runs import FIGURES, PROPOSED, STAND_IN, competitors, figure_runs, scale_spread
+
+pytestmark = pytest.mark.slow
+
+
+def spread_of(table, name, column="decibels"):
+    rows = table[table.observer == name].set_index(column)
+    return rows["std"]
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return scale_spread()
+
+
+def test_scatter_with_an_exact_inverse_depth(exact):
+    """Chatter-free observers pass on noise in proportion; filters trade it against how fast they follow."""
+    layer = spread_of(exact, "ISMO, boundary layer")
+    for decibels, expected in ((100, 0.065), (80, 0.66), (60, 6.5), (40, 62)):
+        assert layer[decibels] == pytest.approx(expected, rel=0.1)
+    kalman, extended = (spread_of(exact, name) for name in ("Kalman filter, linear view", "EKF"))
+    for decibels, bound in ((100, 0.14), (80, 0.26), (60, 0.46), (40, 0.93)):
+        assert kalman[decibels] < bound
+        assert extended[decibels] < kalman[decibels]
+    assert spread_of(exact, "IBO, linear view")[40] < 0.3
+    assert (spread_of(exact, "ISMO, ideal switch, b = 0") < layer).all()
+    right = exact[(exact.decibels == 100) & ~exact.observer.isin(["IBO", "De Luca, linear view"])]
+    assert (abs(right["mean"] - 10.4) < 0.01).all()
+    # one gain for columns of such different sizes: the scale hardly moves
+    assert exact[(exact.observer == "IBO") & (exact.decibels == 100)]["mean"].item() < 5
+    assert not exact.missing.any()
+
+
+def test_scatter_with_the_inverse_depth_of_a_homography(exact):
+    table = scale_spread((100.0, 40.0), depth=PatchDepth(grid_patch(0.4, 5)))
+    for name in ("ISMO, boundary layer", "ISMO, ideal switch", "EKF", "Kalman filter, linear view"):
+        assert (spread_of(table, name) > spread_of(exact, name)[[100, 40]]).all()
+    assert spread_of(table, "ISMO, boundary layer")[100] == pytest.approx(0.27, rel=0.15)
+    assert spread_of(table, "EKF")[40] < 0.2
+    assert spread_of(table, "ISMO, boundary layer")[40] > 100
+
+
+def test_scatter_grows_with_time_unless_the_slope_stays():
+    table = scale_spread((80.0,), windows=((1, 2), (9, 10), (19, 20)))
+    growing, staying = (spread_of(table, f"ISMO, ideal switch{end}", "begin") for end in ("", ", b = 0"))
+    assert growing[19] > 1.8 * growing[1]
+    np.testing.assert_allclose(staying, staying.mean(), rtol=0.1)
+
+
+def test_filters_need_to_know_the_noise():
+    with pytest.raises(ValueError, match="the recording has none; record it with noise"):
+        competitors(record_structure(scenarios.chwa2019_experiment("IV.A"), 1))
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_the_runs_of_a_figure(number):
+    for curves in figure_runs(number, 4.0):
+        late = curves.time >= curves.time[0] + 1.5
+        assert set(curves.estimated) == {PROPOSED, STAND_IN}
+        for name, true in curves.true.items():
+            found = curves.estimated[PROPOSED][name]
+            assert np.abs(found - true)[late].max() < {"d_s": 0.06 * true[0], "y3": 0.06}.get(name, 0.03)
+
+
+def test_there_are_no_other_figures():
+    with pytest.raises(ValueError, match="there is no figure 8 of runs; there are 5, 6, 7, 9, 10, 11"):
+        figure_runs(8)

@@ -1,0 +1,86 @@
+"""An object that stands still and then moves: the first stage hands its findings on to the second."""
+
+import numpy as np
+import pytest
+
+from percept_obs import rigid, scenarios
+from percept_obs.observers import ekf
+from percept_obs.structure import COROLLARIES, GivenDepth, record_structure
+from percept_obs.two_stage import semigeneral
+
+fine = {"hold": "first", "step": 1e-3, "language": "python"}
+
+
+@pytest.fixture(scope="module")
+def wandering():
+    setup = scenarios.chwa2019_semigeneral("simulation")
+    return setup, record_structure(setup)
+
+
+def worst(run, setup, after):
+    """Largest error of the object's velocity, so many seconds after it has begun to move."""
+    time = run.moving.time
+    true = setup.scenario.motion.known(time)[:, 6:]
+    return np.abs(run.object_velocity - true)[time >= time[0] + after].max()
+
+
+@pytest.mark.slow
+def test_a_camera_that_keeps_its_velocity(wandering):
+    setup, recording = wandering
+    run = semigeneral(recording, setup.scenario.motion, 5.0, scale=setup.scale, **fine)
+    assert run.found["d_s"] == pytest.approx(4, rel=1e-4)
+    assert run.found["v_c2"] == pytest.approx(0.2, abs=1e-6)
+    assert run.found["v_c3"] == pytest.approx(-0.1, abs=1e-6)
+    assert worst(run, setup, 1.0) < 1e-3
+    assert run.static.time[-1] == 5.0
+    assert run.moving.time[0] == 5.0
+    assert run.moving.rms(6.0, 10.0) < 0.01
+
+
+@pytest.mark.slow
+def test_a_camera_that_changes_its_velocity_needs_it_anew():
+    setup = scenarios.chwa2019_semigeneral("experiment")
+    recording = record_structure(setup)
+    given = semigeneral(recording, setup.scenario.motion, 5.0, camera="given", **fine)
+    kept = semigeneral(recording, setup.scenario.motion, 5.0, camera="kept", **fine)
+    assert worst(given, setup, 1.5) < 0.01
+    # v_c2 goes from -0.23 to -0.47 m/s, and the object is held responsible
+    assert worst(kept, setup, 1.5) == pytest.approx(0.24, abs=0.01)
+    assert given.moving.recording.truth is None
+
+
+@pytest.mark.slow
+def test_unknown_velocities_of_the_motion_are_not_used(wandering):
+    setup, recording = wandering
+    believed = rigid((0, 0, 0), (0.3, 9.0, 9.0), (0, 0, 0))
+    run = semigeneral(recording, believed, 5.0, **fine)
+    assert worst(run, setup, 1.0) < 1e-3
+
+
+@pytest.mark.slow
+def test_another_observer_in_both_stages(wandering):
+    setup, recording = wandering
+
+    def filter_of(form):
+        return ekf(form, noise_variance=1e-7, hidden_process_noise=1.0, hidden_variance=100.0)
+
+    run = semigeneral(recording, setup.scenario.motion, 5.0, make=filter_of, **fine)
+    assert run.found["d_s"] == pytest.approx(4, rel=1e-2)
+    assert worst(run, setup, 2.0) < 0.1
+
+
+def test_what_cannot_be_divided_is_refused(wandering):
+    setup, recording = wandering
+    for moves_at in (0.0, 10.0, 20.0, float("nan")):
+        with pytest.raises(ValueError, match="each stage needs two samples"):
+            semigeneral(recording, setup.scenario.motion, moves_at)
+    with pytest.raises(ValueError, match="neither 'kept' nor 'given'"):
+        semigeneral(recording, setup.scenario.motion, 5.0, camera="free")
+
+
+def test_a_first_stage_without_a_scale_says_so():
+    """The known velocity is told wrong in sign, so that d_s comes out negative."""
+    setup = scenarios.chwa2019_semigeneral("simulation")
+    recording = record_structure(setup, 3, depth=GivenDepth())
+    with pytest.raises(ValueError, match=r"in the last 0.5 s before 2.0 s there is no estimate of a positive d_s"):
+        semigeneral(recording, rigid((0, 0, 0), (-0.3, 0, 0), (0, 0, 0)), 2.0, COROLLARIES[0].choice(), **fine)
