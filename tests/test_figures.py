@@ -172,7 +172,7 @@ def test_signals_draws_the_innovation_where_there_is_no_truth(runs):
 
 def test_bold_errors_are_root_mean_squares():
     values = np.array([3.0, 4.0, np.nan, 0.0, 1e200])
-    root = figures.over_time._root_mean_square(values, 3)
+    root = figures.base._root_mean_square(values, 3)
     np.testing.assert_allclose(root, [np.sqrt(12.5), np.sqrt(12.5), np.nan, 1e200 / np.sqrt(2), 1e200 / np.sqrt(2)])
 
 
@@ -221,7 +221,7 @@ def test_labels_have_symbols_letters_and_units(runs):
 def bands(ax):
     """Times, lower and upper ends of the bands of two claimed standard deviations, clipped at the top of the axes."""
     for collection in ax.collections:
-        if collection.get_label() in (figures.over_time.CLAIM, "_claim"):
+        if collection.get_label() in (figures.base.CLAIM, "_claim"):
             ends = np.vstack([path.vertices for path in collection.get_paths()])
             time = np.unique(ends[:, 0])
             yield time, *(np.array([pick(ends[ends[:, 0] == t, 1]) for t in time]) for pick in (np.min, np.max))
@@ -251,7 +251,7 @@ def test_compare_draws_the_band_of_those_that_claim_one(runs):
     (_, low, high), again = bands(figure.axes[0])
     np.testing.assert_allclose((high - low) / 4, np.sqrt(run.covariance[:, 2, 2]))
     np.testing.assert_array_equal(again[2], high)
-    assert sum(name == figures.over_time.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
+    assert sum(name == figures.base.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
     assert figure.text.count("The band of two claimed standard deviations") == 2
     assert figure.text.index("extended Kalman") < figure.text.index("The band of")
 

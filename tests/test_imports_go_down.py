@@ -17,7 +17,7 @@ LAYERS = (
     ("labs",),
     ("figures", "exercises"),
     ("papers", "tuning", "structure_runs"),
-    ("chatter", "compare", "consistency", "points", "two_stage"),
+    ("captions", "chatter", "compare", "consistency", "points", "two_stage"),
     ("points.gramian", "points.tracking", "points.utias"),
     ("points.run",),
     ("least_squares", "observability", "tracking"),

@@ -3,8 +3,10 @@
 from percept_obs.figures.base import Figure
 from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
-from percept_obs.figures.over_time import compare, distance, signals
-from percept_obs.figures.spatial import image_plane, scene
+from percept_obs.figures.image_plane import image_plane
+from percept_obs.figures.over_time import compare, distance
+from percept_obs.figures.scene import scene
+from percept_obs.figures.signals import signals
 from percept_obs.figures.windows import consistency, excitation
 
 __all__ = [

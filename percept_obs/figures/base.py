@@ -17,9 +17,10 @@ import matplotlib.figure
 import numpy as np
 import sympy as sp
 from matplotlib.axes import Axes
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.recording import Recording
+from percept_obs.consistency import claimed_interval
 from percept_obs.surfaces import POINT, ImagingSurface
 from percept_obs.tracking import Run
 from percept_obs.views import View
@@ -50,6 +51,18 @@ SAMPLES: dict[str, Any] = {
     "alpha": 0.6,
     "label": "samples",
 }
+
+SMOOTHING = 160
+"""Noisy errors are averaged over the duration divided by this."""
+
+CLAIM = r"$\pm 2\sigma$ claimed"
+"""Name of the band that an observer's covariance claims."""
+
+NARROWEST = 0.4
+"""Least ratio of the two sides of the image that is shown."""
+
+START: dict[str, Any] = {"marker": "o", "linestyle": "", "markerfacecolor": "white", "label": "start"}
+END: dict[str, Any] = {"marker": "s", "linestyle": "", "label": "end"}
 
 DESCRIPTION = {".png": "Description", ".svg": "Description", ".pdf": "Subject"}
 
@@ -260,80 +273,6 @@ def _is_inverse_distance(name: str, surface: View) -> bool:
     return isinstance(surface, ImagingSurface) and name == surface.inverse_distance.name
 
 
-def recording_of(data: Run | Recording) -> Recording:
-    """The recording itself, or the one that a run followed.
-
-    Raises
-    ------
-    ValueError
-        If it is neither.
-    """
-    if not isinstance(data, Run | Recording):
-        raise ValueError(f"a Run or a Recording is needed, not {data!r}; record() or track() makes one")
-    return data.recording if isinstance(data, Run) else data
-
-
-def list_of_runs(runs: Run | Sequence[Run]) -> list[Run]:
-    """One run or several as a list.
-
-    Raises
-    ------
-    ValueError
-        If there is none, or something else among them.
-    """
-    found = list(runs) if isinstance(runs, Iterable) else [runs]
-    if not found:
-        raise ValueError("there are no runs to draw; give at least one, such as track(recording, observer)")
-    for run in found:
-        if not isinstance(run, Run):
-            raise ValueError(f"a Run is needed, not {run!r}; track(recording, observer) makes one")
-    return found
-
-
-def same_point(runs: Sequence[Run]) -> None:
-    """Refuse runs that did not follow the same point.
-
-    Raises
-    ------
-    ValueError
-        If times, surfaces or truths differ.
-    """
-    first = runs[0].recording
-    for number, run in enumerate(runs[1:], 2):
-        other = run.recording
-        same = {
-            "surfaces": other.surface.fits(first.surface),
-            "times": np.array_equal(other.time, first.time),
-            "truths": _equal(other.truth, first.truth),
-        }
-        differing = [what for what, alike in same.items() if not alike]
-        if differing:
-            raise ValueError(
-                f"run {number} followed another point than run 1: their {' and '.join(differing)} differ; draw runs on "
-                "one recording, or one figure for each"
-            )
-
-
-def _equal(one: Array | None, other: Array | None) -> bool:
-    return one is other if one is None or other is None else np.array_equal(one, other)
-
-
-def labels_for(items: Sequence[object], labels: Sequence[str] | None, otherwise: Sequence[str]) -> list[str]:
-    """The labels if they are given, else the others, numbered if they repeat.
-
-    Raises
-    ------
-    ValueError
-        If there is not one for each item.
-    """
-    if labels is None:
-        repeated = len(set(otherwise)) < len(otherwise)
-        return [f"{name} [{k}]" if repeated else name for k, name in enumerate(otherwise, 1)]
-    if isinstance(labels, str) or len(labels) != len(items):
-        raise ValueError(f"labels= is {labels!r}; a list of {len(items)} is needed, one for each curve")
-    return list(labels)
-
-
 def span(values: ArrayLike) -> str:
     """The range of values, in words."""
     seen = finite(values)
@@ -342,19 +281,73 @@ def span(values: ArrayLike) -> str:
     return f"from {seen.min():.3g} to {seen.max():.3g}" if seen.min() < seen.max() else f"{seen[0]:.3g}"
 
 
-def story(run: Run, tolerance: float = 0.05) -> str:
-    """What happened to a run, in sentences: its verdict, resets, divergence and lost samples."""
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance is {tolerance}; it must be positive")
-    verdict, diverged = run.verdict(tolerance), run.diverged_at is not None
-    resets = "once" if len(run.resets) == 1 else f"{len(run.resets)} times"
-    columns = [run.recording.names.index(name) for name in run.observer.form.measured]
-    lost = int(np.isnan(run.recording.outputs[:, columns]).any(axis=1).sum())
-    missing = int(np.isnan(run.estimate).any(axis=1).sum())
-    sentences = [
-        f"{verdict[0].upper()}{verdict[1:]}.",
-        f"Before that it was reset {resets}." if diverged and len(run.resets) else "",
-        f"From there on {missing} estimates are missing: the curve ends." if missing else "",
-        f"{lost} of {len(run.time)} samples were lost." if lost else "",
-    ]
-    return " ".join(filter(None, sentences))
+def draw_curves(ax: Axes, time: Array, curves: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+    """Curves with sparse markers, none of which lies on another."""
+    step = max(1, len(time) // 8)
+    for number, (curve, name, look) in enumerate(zip(curves, labels, looks, strict=True)):
+        every = (step * number // len(curves), step)
+        ax.plot(time, curve, label=name, linewidth=1.5, markersize=5, markevery=every, **look)
+    ax.set_xlim(time[0], time[-1])
+
+
+def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+    """Every error faintly, and over it the root mean square of its neighbourhood."""
+    width = 2 * (len(time) // (2 * SMOOTHING)) + 1
+    if width > 1:
+        for error, look in zip(errors, looks, strict=True):
+            ax.plot(time, error, color=look["color"], linewidth=0.5, alpha=0.25)
+        errors = np.array([_root_mean_square(error, width) for error in errors])
+        note(ax, f"bold: root mean square over {(time[-1] - time[0]) * width / len(time):.1g} s")
+    draw_curves(ax, time, errors, labels, looks)
+
+
+def _root_mean_square(values: Array, width: int) -> Array:
+    """Of the finite values in a window around each; NaN where the value itself is."""
+    windows = sliding_window_view(np.pad(values, width // 2, constant_values=np.nan), width)
+    largest = np.fmax(np.fmax.reduce(windows, axis=1), np.finfo(float).tiny)
+    parts = np.nan_to_num(windows / largest[:, None]) ** 2
+    count = np.maximum(np.isfinite(windows).sum(axis=1), 1)
+    return np.where(np.isnan(values), np.nan, largest * np.sqrt(parts.sum(axis=1) / count))
+
+
+def bulk(values: Array) -> Array:
+    """The values without the smallest and the largest twentieth, which may be a transient."""
+    seen = np.sort(finite(values))
+    return seen[len(seen) // 20 : len(seen) - len(seen) // 20]
+
+
+def claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
+    """Draw the interval that the observer claims for a coordinate, and say it; nothing if it claims none."""
+    if run.observer.covariance is None:
+        return ""
+    low, high = (end[:, column] for end in claimed_interval(run))
+    return draw_claim(ax, run, low, high, None if run.recording.truth is None else run.truth[:, column], colour)
+
+
+def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
+    """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
+    reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
+    named = CLAIM in ax.get_legend_handles_labels()[1]
+    name = "_claim" if named else CLAIM
+    ax.fill_between(run.time, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
+    claimed = ~np.isnan(low)
+    if not claimed.any():
+        return ""
+    last = np.flatnonzero(claimed)[-1]
+    words = f"The band of two claimed standard deviations is from {low[last]:.3g} to {high[last]:.3g} at the end"
+    if truth is None:
+        return f"{words}."
+    held = np.mean((low <= truth) & (truth <= high))
+    return f"{words} and holds the truth in {100 * held:.0f} % of the samples."
+
+
+def not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
+    """Limits, the nearer ones drawn apart until no side is much shorter than another."""
+    longest = max(high - low for low, high in ends)
+    missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
+    return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
+
+
+def complete(rows: Array) -> Array:
+    """The rows without a gap."""
+    return rows[np.isfinite(rows).all(axis=1)]

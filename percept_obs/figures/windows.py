@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from percept_obs.captions import labels_for
 from percept_obs.consistency import Consistency
 from percept_obs.figures.base import (
     BLACK,
@@ -18,7 +19,6 @@ from percept_obs.figures.base import (
     dots,
     drawn,
     finite,
-    labels_for,
     legend_above,
     linear_axis,
     new_axes,

@@ -1,4 +1,4 @@
-"""Figures in space: the point's path in the image, and in the scene in metres."""
+"""The figure of the image: the point's path, the focus of expansion, and where an instant tells little."""
 
 from __future__ import annotations
 
@@ -11,27 +11,28 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from percept_obs.captions import place_in_words, recording_of, story
 from percept_obs.compile import vectorised
 from percept_obs.figures.base import (
     BLACK,
     BLUE,
+    END,
     ESTIMATE,
-    GREY,
     SKY,
+    START,
     TRUTH,
     WIDTH,
     Array,
     Figure,
+    complete,
     dots,
     drawn,
-    finite,
     label,
     legend_above,
     limits,
     new_axes,
-    recording_of,
+    not_a_strip,
     span,
-    story,
     tidy,
 )
 from percept_obs.forms import NotAffine
@@ -40,20 +41,11 @@ from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Recording
 from percept_obs.tracking import Run
 
-NARROWEST = 0.4
-"""Least ratio of the two sides of the image that is shown."""
-
 NEARBY = 0.6
 """How far outside the path, in sides of its box, the focus of expansion may lie to be shown in its place."""
 
 KINDS = {"truth": "True", "samples": "Measured", "estimate": "Estimated"}
 
-START: dict[str, Any] = {"marker": "o", "linestyle": "", "markerfacecolor": "white", "label": "start"}
-END: dict[str, Any] = {"marker": "s", "linestyle": "", "label": "end"}
-_CORNERS = [(1, 0.75, 2), (-1, 0.75, 2), (-1, -0.75, 2), (1, -0.75, 2)]
-_EDGES = [edge for corner in _CORNERS for edge in ((0, 0, 0), corner)]
-CAMERA = np.array([*_EDGES, *_CORNERS]) / 2
-"""Edges of a pyramid of height 1 that opens along Z, in one stroke."""
 
 FOCUS: dict[str, Any] = {"marker": "x", "linestyle": "", "markersize": 9, "markeredgewidth": 2}
 
@@ -99,10 +91,10 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
         _fit_height(ax)
     _draw_path(ax, path, kind, estimate)
     ax.set(aspect="equal", xlabel=label("y1", recording.surface), ylabel=label("y2", recording.surface))
-    seen = _complete(path)
+    seen = complete(path)
     sentences = [
         f"{KINDS[kind]} path in the image of the {recording.surface.name} surface: y1 is {span(path[:, 0])}, y2 "
-        f"{span(path[:, 1])}, from the start at {_place(seen[0])} to the end at {_place(seen[-1])}.",
+        f"{span(path[:, 1])}, from the start at {place_in_words(seen[0])} to the end at {place_in_words(seen[-1])}.",
         _draw_focus(ax, focus, path, recording.time),
         _draw_disk(ax, focus, radius, threshold, seen) if np.isfinite(radius) else "",
         _draw_blind_lines(ax, system, *measured) if len(measured) == 1 else "",
@@ -111,62 +103,6 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
     ]
     legend_above(ax, centred=True, fitting=66)
     return drawn((ax,), sentences)
-
-
-def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Figure:
-    """The point's path in metres, with the camera at the origin and Z forward.
-
-    Parameters
-    ----------
-    data : Run or Recording
-        A recording alone must have its truth.
-    far : float
-        Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
-        Without the truth, the median of the estimated distances stands for it.
-    ax : three-dimensional axes, optional
-        New ones when left out.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    ValueError
-        If no place is known, `far` is not more than 1, or the axes are flat.
-    """
-    recording = recording_of(data)
-    run = data if isinstance(data, Run) else None
-    if recording.points is None and run is None:
-        raise ValueError("the recording has no truth, so no place is known; draw the run of an observer on it")
-    if not far > 1:
-        raise ValueError(f"far is {far}; it must be more than 1")
-    if ax is not None and ax.name != "3d":
-        raise ValueError("the axes are flat; make them with figure.add_subplot(projection='3d')")
-    ax = ax or new_axes(5.6, projection="3d")
-    truth = np.empty((0, 3)) if recording.points is None else recording.points
-    estimate = np.empty((0, 3)) if run is None else _believable(run, far)
-    path = _complete(truth if len(truth) else estimate)
-    camera = 0.1 * np.abs(path).max(initial=1e-3) * CAMERA
-    _draw_places(ax, truth, TRUTH)
-    _draw_places(ax, estimate, {**ESTIMATE, "linewidth": 0.9, "zorder": 1})
-    _draw_places(ax, camera, {"color": BLUE, "linewidth": 1, "label": "camera"})
-    if len(path):
-        _draw_places(ax, np.array([(0, 0, 0), path[-1]]), {"color": GREY, "linestyle": ":", "label": "viewing ray"})
-    _draw_places(ax, path[:1], {"color": BLACK, **START})
-    _draw_places(ax, path[-1:], {"color": BLACK, **END})
-    _set_equal_scales(ax, _complete(np.vstack([camera, truth, estimate])))
-    legend_above(ax, centred=True, fitting=66)
-    return drawn(
-        (ax,),
-        [
-            "Scene in metres, with the camera at the origin and Z forward.",
-            _approach(recording.time, truth) if len(truth) else "",
-            f"The point ends at X, Y, Z = {_place(path[-1])} m." if len(path) else "No place is known.",
-            "" if run is None else f"Estimate of the {run.observer.name} observer, dashed. {story(run)}",
-            _gaps(estimate, far),
-        ],
-    )
 
 
 def _path(recording: Recording, run: Run | None) -> tuple[Array, str]:
@@ -193,7 +129,7 @@ def _draw_path(ax: Axes, path: Array, kind: str, estimate: Array) -> None:
         ax.plot(*path.T, **(TRUTH if kind == "truth" else dots(path)))
     if len(estimate):
         ax.plot(*estimate.T, **ESTIMATE)
-    seen = _complete(path)
+    seen = complete(path)
     for look, place in ((START, seen[0]), (END, seen[-1])):
         ax.plot(*place, color=BLACK, zorder=3, **look)
 
@@ -225,7 +161,7 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, focus: Array, radius: fl
         around = radius if radius < size / 2 else 0.0
         shown = np.vstack([path, focus - around, focus + around])
     ends = [limits(firm, loose, 0.5) for firm, loose in zip(shown.T, estimate.T, strict=True)]
-    x, y = _not_a_strip(*ends)
+    x, y = not_a_strip(*ends)
     ax.set(xlim=x, ylim=y)
 
 
@@ -235,13 +171,6 @@ def _fit_height(ax: Axes) -> None:
     figure: Any = ax.get_figure(root=True)
     lettering = 1.2  # inches above and below the axes
     figure.set_figheight(min(figure.get_figheight(), WIDTH * height / width + lettering))
-
-
-def _not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
-    """Limits, the nearer ones drawn apart until no side is much shorter than another."""
-    longest = max(high - low for low, high in ends)
-    missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
-    return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
 
 
 def _inside(ax: Axes, places: Array) -> NDArray[np.bool_]:
@@ -266,7 +195,7 @@ def _draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
     else:
         look = FOCUS if visible else _pointer(ax, focus[0])
         ax.plot(*(focus[0] if visible else _edge(ax, focus[0])), color=BLUE, label=name, **look)
-        where = f"The focus of expansion is at {_place(focus[0])}; {closest}."
+        where = f"The focus of expansion is at {place_in_words(focus[0])}; {closest}."
     return where if visible else f"{where} It lies outside the picture."
 
 
@@ -317,56 +246,6 @@ def _draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str
 
 
 def _outside(ax: Axes, estimate: Array) -> str:
-    seen = _complete(estimate)
+    seen = complete(estimate)
     count = len(seen) - int(_inside(ax, seen).sum())
     return f"Outside the picture: {count} of {len(seen)} estimates." if count else ""
-
-
-def _complete(rows: Array) -> Array:
-    """The rows without a gap."""
-    return rows[np.isfinite(rows).all(axis=1)]
-
-
-def _place(coordinates: Array) -> str:
-    return f"({', '.join(f'{value:.3g}' for value in coordinates)})"
-
-
-def _draw_places(ax: Axes, points: Array, look: dict[str, Any]) -> None:
-    """Z to the right, X into the picture and Y upwards, which is right-handed."""
-    if len(points):
-        ax.plot(*points.T[[2, 0, 1]], **look)
-
-
-def _set_equal_scales(ax: Any, points: Array) -> None:
-    """One scale for the three directions, and few numbers along them."""
-    x, y, z = _not_a_strip(*(limits(column) for column in points.T[[2, 0, 1]]))
-    ax.set(xlim=x, ylim=y, zlim=z)
-    for set_label, axis in ((ax.set_xlabel, "Z"), (ax.set_ylabel, "X"), (ax.set_zlabel, "Y")):
-        set_label(f"${axis}$ (m)", labelpad=12)
-    ax.set_box_aspect(np.ptp([x, y, z], axis=1), zoom=0.76)
-    ax.locator_params(nbins=4)
-    ax.computed_zorder = False  # the truth stays above a noisy estimate
-
-
-def _believable(run: Run, far: float) -> Array:
-    """Estimated places, NaN where they are not in front of the camera or too far away."""
-    seen = finite(run.distance)
-    usual = np.median(seen) if seen.size else 0.0
-    expected = usual if run.recording.truth is None else 1 / run.recording.truth[:, -1]
-    return np.where((run.distance < far * expected)[:, None], run.points, np.nan)
-
-
-def _gaps(estimate: Array, far: float) -> str:
-    count = len(estimate) - len(_complete(estimate))
-    if not count:
-        return ""
-    return (
-        f"Left out: {count} of {len(estimate)} estimates, not in front of the camera or over {far:g} times as far away."
-    )
-
-
-def _approach(time: Array, points: Array) -> str:
-    ranges = np.linalg.norm(points, axis=1)
-    k = int(np.argmin(ranges))
-    extents = ", ".join(f"{axis} {span(column)}" for axis, column in zip("XYZ", points.T, strict=True))
-    return f"The true path: {extents} m; closest to the camera at {time[k]:.3g} s, within {ranges[k]:.3g} m."
