@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, ClassVar
 
 import sympy as sp
@@ -261,19 +261,28 @@ def vanishes(expression: sp.Expr) -> bool:
     # One point where it is not zero refutes the identity; only the algebra can prove it.
     if somewhere.is_number and abs(sp.N(somewhere, 30)) > 1e-20:
         return False
-    return bool(sp.cancel(sp.together(expanded)) == 0)
+    return bool(sp.expand(sp.fraction(sp.together(expanded))[0]) == 0)
+
+
+def filled_in(expression: sp.Basic, values: Values) -> Any:
+    """An expression worked out with values put in; None where a matrix is left without one or sizes do not fit."""
+    try:
+        result = expression.xreplace(values)
+        return None if result.atoms(sp.MatrixSymbol) else explicit(result)
+    except (ShapeError, TypeError):  # matrices that do not fit, or a matrix and a number
+        return None
 
 
 def is_identity(equation: sp.Basic, values: Values) -> bool:
     """Whether an equation's sides agree identically once values are put in."""
     if not isinstance(equation, sp.Eq):
         return False
+    left, right = (filled_in(side, values) for side in equation.args)
+    if left is None or right is None:
+        return False
     try:
-        left, right = (side.xreplace(values) for side in equation.args)
-        if left.atoms(sp.MatrixSymbol) | right.atoms(sp.MatrixSymbol):
-            return False
-        difference = explicit(left) - explicit(right)
-    except (ShapeError, TypeError):  # matrices that do not fit, or a matrix and a number
+        difference = left - right
+    except (ShapeError, TypeError):
         return False
     return all(map(vanishes, difference)) if isinstance(difference, sp.MatrixBase) else vanishes(difference)
 
@@ -281,8 +290,12 @@ def is_identity(equation: sp.Basic, values: Values) -> bool:
 def identities(*derivations: Callable[[], Values]) -> Check:
     """A check that holds when every printed equation is an identity in every derivation's values."""
 
+    @cache
+    def holds(equation: sp.Basic, derive: Callable[[], Values]) -> bool:
+        return is_identity(equation, derive())
+
     def check(printed: Printed) -> Finding:
-        return judged(all(is_identity(equation, derive()) for derive in derivations for equation in printed))
+        return judged(all(holds(equation, derive) for derive in derivations for equation in printed))
 
     return check
 

@@ -100,7 +100,7 @@ def state_is_bounded(printed: Printed) -> Finding:
     bound = identifier_based(FIRST).gain_values[M]
     truths = [s.coordinates(np.arange(0, s.duration, 0.01)) for s in EXAMPLES]
     largest = [float(np.linalg.norm(truth, axis=1).max()) for truth in truths]
-    holds = all(separates(line, Norm(x), norm, 2 * bound, {M: sp.Float(bound)}) for norm in largest)
+    holds = all(separates(line, Norm(x), norm, 1.01 * bound, {M: sp.Float(bound)}) for norm in largest)
     return judged(holds, Verdict.FALSE, {"largest |y| of (35)": largest[0], "of (36)": largest[1]})
 
 
