@@ -7,6 +7,14 @@ from collections import Counter
 from collections.abc import Iterable
 
 from percept_obs.papers import (
+    chwa2019_cases,
+    chwa2019_model,
+    chwa2019_observer,
+    chwa2019_results,
+    inaba2005_conditions,
+    inaba2005_observer,
+    inaba2005_proof,
+    inaba2005_theorem,
     ma2005_examples,
     ma2005_observability,
     ma2005_observers,
@@ -28,7 +36,27 @@ MA2005 = Ledger(
     ),
 )
 
-LEDGERS = (MA2005,)
+INABA2005 = Ledger(
+    "Inaba, Abdursul and Ghosh 2005 (pages counted from the first)",
+    (
+        *inaba2005_observer.ENTRIES,
+        *inaba2005_conditions.ENTRIES,
+        *inaba2005_proof.ENTRIES,
+        *inaba2005_theorem.ENTRIES,
+    ),
+)
+
+CHWA2019 = Ledger(
+    "Chwa 2019 (pages counted from the first)",
+    (
+        *chwa2019_model.ENTRIES,
+        *chwa2019_observer.ENTRIES,
+        *chwa2019_cases.ENTRIES,
+        *chwa2019_results.ENTRIES,
+    ),
+)
+
+LEDGERS = (MA2005, INABA2005, CHWA2019)
 """One ledger a paper."""
 
 WIDTHS = (16, 5, 30, 16, 49)
@@ -41,7 +69,7 @@ def all_hold() -> bool:
 
 def report() -> str:
     """All entries as a table, with the numbers that verdicts rest on, and a count of verdicts."""
-    return "\n\n".join(_table(ledger) for ledger in LEDGERS)
+    return "\n\n\n".join(_table(ledger) for ledger in LEDGERS)
 
 
 def _table(ledger: Ledger) -> str:

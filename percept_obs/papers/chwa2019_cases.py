@@ -1,0 +1,433 @@
+"""Chwa 2019, sections IV to VI: the seven corollaries, each for any order of the axes."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from itertools import permutations
+
+import sympy as sp
+
+from percept_obs.motion import rigid
+from percept_obs.papers.base import (
+    Check,
+    Entry,
+    Finding,
+    Printed,
+    Values,
+    Verdict,
+    column,
+    equal,
+    identities,
+    is_identity,
+    judged,
+    vanishes,
+    vectors,
+)
+from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
+from percept_obs.structure.base import OUTPUTS, d_s
+
+ORDERS = tuple(map("".join, permutations("123")))
+_, _, ybar3 = OUTPUTS
+MOTION = rigid().parameters
+TURNING, CAMERA, OBJECT = MOTION[:3], MOTION[3:6], MOTION[6:]
+
+# Numbers
+v_ci, v_cj, v_ck, v_pi, v_pj, v_pk = sp.symbols("v_ci v_cj v_ck v_pi v_pj v_pk", real=True)
+vhat_ci, vhat_cj, vhat_ck, vhat_pi, vhat_pj, vhat_pk = sp.symbols(
+    "vhat_ci vhat_cj vhat_ck vhat_pi vhat_pj vhat_pk", real=True
+)
+dhat_s, yhat3 = sp.symbols("dhat_s yhat3", real=True)
+first_unknown, second_unknown = sp.symbols("first_unknown second_unknown", real=True)
+
+# Vectors and matrices
+THREE = sp.Integer(3)
+Omega, Omega2, g, ghat, v_c, v_p, vhat_c, vhat_p, e_i = vectors("Omega Omega2 g ghat v_c v_p vhat_c vhat_p e_i", THREE)
+Omega1i, Omega1j, Omega1k, Omega3i, Omega3j, Omega3k = vectors("Omega1i Omega1j Omega1k Omega3i Omega3j Omega3k", THREE)
+Omega1, Omega3, Omega_g = (sp.MatrixSymbol(name, 3, 3) for name in ("Omega1", "Omega3", "Omega_g"))
+
+
+def side_by_side(*columns: sp.MatrixExpr) -> sp.BlockMatrix:
+    """Columns as a matrix."""
+    return sp.BlockMatrix([list(columns)])
+
+
+@cache
+def case(number: int, axes: str) -> Values:
+    """What a corollary's letters stand for, with the axes i, j, k in the given order.
+
+    The estimate of g has letters of its own, and what is estimated from it comes from the package.
+    """
+    corollary = COROLLARIES[number - 1]
+    choice = corollary.choice(axes)
+    form, dynamics = choice.form, scaled_dynamics()
+    order = [int(axis) - 1 for axis in axes]
+    absent = {symbol: sp.S.Zero for symbol in MOTION if symbol.name in choice.zero}
+    given = column(*sp.symbols("ghat1:4", real=True))
+    theta = form.w.T.adjugate() * given / choice.determinant
+    scale = theta[0] if d_s.name in choice.unknown else dhat_s if d_s.name in choice.earlier else sp.S.One
+    found = {name: theta[k] / scale for k, name in enumerate(choice.unknown) if name != d_s.name}
+    values: Values = {
+        Omega: form.phi,
+        g: form.w.T * column(*choice.theta),
+        ghat: given,
+        Omega_g: sp.ImmutableMatrix.hstack(*(form.w.T[:, choice.unknown.index(n)] for n in in_print(corollary, axes))),
+        Omega1: dynamics.camera,
+        Omega2: dynamics.rotation * column(*TURNING),
+        Omega3: dynamics.object,
+        e_i: sp.eye(3)[:, order[0]].as_immutable(),
+        dhat_s: scale,
+        yhat3: scale * ybar3,
+    }
+    for vector, estimate, part, letters in (
+        (v_c, vhat_c, CAMERA, ((v_ci, vhat_ci), (v_cj, vhat_cj), (v_ck, vhat_ck))),
+        (v_p, vhat_p, OBJECT, ((v_pi, vhat_pi), (v_pj, vhat_pj), (v_pk, vhat_pk))),
+    ):
+        values[vector] = column(*part).xreplace(absent)
+        estimates = {symbol: found[symbol.name] for symbol in part if symbol.name in found}
+        if estimates:
+            values[estimate] = column(*part).xreplace(estimates | absent)
+        for k, (component, hat) in zip(order, letters, strict=True):
+            values[component] = values[vector][k]
+            if part[k] in estimates:
+                values[hat] = estimates[part[k]]
+    for matrix, columns in (
+        (dynamics.camera, (Omega1i, Omega1j, Omega1k)),
+        (dynamics.object, (Omega3i, Omega3j, Omega3k)),
+    ):
+        values |= {letter: matrix[:, k].as_immutable() for letter, k in zip(columns, order, strict=True)}
+    # What is perpendicular to the object's line.
+    return values | dict(zip((first_unknown, second_unknown), (CAMERA[k] for k in order[1:]), strict=True))
+
+
+def in_print(corollary: Corollary, axes: str) -> list[str]:
+    """Names of the unknowns in the paper's order."""
+    turned = str.maketrans("ijk", axes)
+    return [name if name == d_s.name else name.translate(turned) for name in corollary.unknown]
+
+
+def holds_in(number: int) -> Check:
+    """A check that holds when every printed equation is an identity in a corollary, for any order of the axes."""
+    return identities(*(partial(case, number, axes) for axes in ORDERS))
+
+
+def scale_from_what_is_known(printed: Printed) -> Finding:
+    """(23), where the camera's velocity is to stand for its known component only, not for its estimate."""
+    without = [{letter: v for letter, v in case(1, axes).items() if letter != vhat_c} for axes in ORDERS]
+    return judged(all(is_identity(line, values) for values in without for line in printed))
+
+
+def nonsingular(number: int, *needed: str) -> Check:
+    """A check that a corollary's determinant is zero just where ybar3, or the named velocity on its axis, is.
+
+    The determinant must be, up to its sign and powers of d_s and ybar3, that velocity, or nothing where none is named.
+    """
+
+    def check(printed: Printed) -> Finding:
+        outcomes = []
+        for axes in ORDERS:
+            choice = COROLLARIES[number - 1].choice(axes)
+            velocities = [sp.Symbol(name.translate(str.maketrans("ijk", axes)), real=True) for name in needed]
+            scale = sp.S.One if d_s.name in (*choice.unknown, *choice.earlier) else d_s**3
+            rest = sp.cancel(choice.determinant / (scale * ybar3**4 * sp.Mul(*velocities)))
+            outcomes.append(rest in (1, -1))
+        return judged(all(outcomes), Verdict.FALSE, {"orders of the axes": len(outcomes)})
+
+    return check
+
+
+def cells(printed: Printed) -> Finding:
+    """Table 1: with a camera that stands still the cases of IV and V lose their determinant, those of VI keep it."""
+    still = dict.fromkeys(CAMERA, sp.S.Zero)
+    cells_ = {"IV": ("dynamic", "semigeneral"), "V": ("dynamic", "general"), "VI": ("general", "general")}
+    outcomes = []
+    for corollary in COROLLARIES:
+        section = corollary.section.split(".")[0]
+        outcomes.append((corollary.camera, corollary.object) == cells_[section])
+        lost = vanishes(corollary.choice().determinant.xreplace(still))
+        # The second step of IV takes d_s from the first one.
+        outcomes.append(lost == (section != "VI" and d_s.name in corollary.unknown))
+    return judged(all(outcomes), Verdict.FALSE, {"cases": len(COROLLARIES)})
+
+
+def one_more_dimension(printed: Printed) -> Finding:
+    """Remark 2: unknown components of v_p for as many unknown ones of v_c, with an unknown range and a known one."""
+
+    def unknown(number: int, letter: str) -> int:
+        return sum(name.startswith(letter) for name in COROLLARIES[number - 1].unknown)
+
+    numbers: dict[str, float] = {}
+    gains = []
+    for without, with_it in ((3, 5), (4, 6)):
+        camera = [unknown(number, "v_c") for number in (without, with_it)]
+        object_ = [unknown(number, "v_p") for number in (without, with_it)]
+        gains.append(camera[0] == camera[1] and object_[1] == object_[0] + 1)
+        names = (f"of v_p, {camera[0]} of v_c unknown, range {word}" for word in ("unknown", "known"))
+        numbers |= dict(zip(names, object_, strict=True))
+    return judged(all(gains), Verdict.FALSE, numbers)
+
+
+INVERSE_G = Omega_g.inv() * ghat
+AXES = "for any order of the axes"
+
+ENTRIES = (
+    Entry(
+        "Table 1",
+        "5",
+        "III",
+        "which section is for which motions",
+        (),
+        cells,
+        Verdict.HOLDS,
+        "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A",
+    ),
+    Entry(
+        "(22)",
+        "6",
+        "IV.A",
+        "static object",
+        (equal(Omega, Omega2), equal(g, Omega1 * v_c * d_s)),
+        holds_in(1),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(23)",
+        "6",
+        "IV.A",
+        "d_s from one known component of v_c",
+        (
+            equal(column(dhat_s), (e_i.T * v_c).inv() * e_i.T * Omega1.inv() * ghat),
+            equal(column(dhat_s), e_i.T * Omega1.inv() * ghat / v_ci),
+        ),
+        scale_from_what_is_known,
+        Verdict.HOLDS,
+        AXES,
+    ),
+    Entry("(24)", "6", "IV.A", "inverse depth", (equal(yhat3, dhat_s * ybar3),), holds_in(1), Verdict.HOLDS),
+    Entry(
+        "(25)",
+        "7",
+        "IV.A",
+        "the camera's velocity",
+        (equal(vhat_c, Omega1.inv() * ghat / dhat_s),),
+        holds_in(1),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 1",
+        "6",
+        "IV.A",
+        "solvable if v_ci is not 0",
+        (),
+        nonsingular(1, "v_ci"),
+        Verdict.HOLDS,
+        f"determinant +-ybar3^4 v_ci, {AXES}",
+    ),
+    Entry(
+        "(26)",
+        "7",
+        "IV.B",
+        "object in general motion",
+        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * v_p * d_s)),
+        holds_in(2),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(27)",
+        "7",
+        "IV.B",
+        "the object's velocity",
+        (equal(vhat_p, Omega3.inv() * ghat / dhat_s),),
+        holds_in(2),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 2",
+        "7",
+        "IV.B",
+        "always solvable",
+        (),
+        nonsingular(2),
+        Verdict.HOLDS,
+        "determinant -ybar3^4; it takes d_s > 0 and the camera's velocity of now",
+    ),
+    Entry(
+        "(28)",
+        "7",
+        "V.A",
+        "object on a plane, camera known",
+        (
+            equal(Omega, Omega2),
+            equal(g, Omega_g * column(d_s, v_pi * d_s, v_pj * d_s)),
+            equal(Omega_g, side_by_side(Omega1 * v_c, Omega3i, Omega3j)),
+        ),
+        holds_in(3),
+        Verdict.HOLDS,
+        AXES,
+    ),
+    Entry(
+        "(29)",
+        "7",
+        "V.A",
+        "d_s and the object's velocity",
+        (equal(column(dhat_s, vhat_pi * dhat_s, vhat_pj * dhat_s), INVERSE_G),),
+        holds_in(3),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 3",
+        "7",
+        "V.A",
+        "solvable if v_ck is not 0",
+        (),
+        nonsingular(3, "v_ck"),
+        Verdict.HOLDS,
+        f"determinant +-ybar3^4 v_ck, {AXES}",
+    ),
+    Entry(
+        "(30)",
+        "8",
+        "V.B",
+        "object on a line, camera partly known",
+        (
+            equal(Omega, Omega2),
+            equal(g, Omega_g * column(d_s, v_ck * d_s, v_pi * d_s)),
+            equal(Omega_g, side_by_side(Omega1i * v_ci + Omega1j * v_cj, Omega1k, Omega3i)),
+        ),
+        holds_in(4),
+        Verdict.HOLDS,
+        AXES,
+    ),
+    Entry(
+        "(31)",
+        "8",
+        "V.B",
+        "d_s and both unknown velocities",
+        (equal(column(dhat_s, vhat_ck * dhat_s, vhat_pi * dhat_s), INVERSE_G),),
+        holds_in(4),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 4",
+        "8",
+        "V.B",
+        "solvable if v_cj is not 0",
+        (),
+        nonsingular(4, "v_cj"),
+        Verdict.HOLDS,
+        f"determinant +-ybar3^4 v_cj, {AXES}; v_ci drops out of it",
+    ),
+    Entry(
+        "(32)",
+        "9",
+        "VI.A",
+        "range and camera known",
+        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * d_s * v_p)),
+        holds_in(5),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(33)",
+        "9",
+        "VI.A",
+        "the object's velocity",
+        (equal(vhat_p, Omega3.inv() * ghat / d_s),),
+        holds_in(5),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 5",
+        "9",
+        "VI.A",
+        "always solvable",
+        (),
+        nonsingular(5),
+        Verdict.HOLDS,
+        "determinant -d_s^3 ybar3^4",
+    ),
+    Entry(
+        "(34)",
+        "10",
+        "VI.B",
+        "range known, object on a plane",
+        (
+            equal(Omega, Omega1i * v_ci * d_s + Omega1j * v_cj * d_s + Omega2),
+            equal(g, Omega_g * column(v_ck, v_pi, v_pj)),
+            equal(Omega_g, side_by_side(Omega1k * d_s, Omega3i * d_s, Omega3j * d_s)),
+        ),
+        holds_in(6),
+        Verdict.HOLDS,
+        AXES,
+    ),
+    Entry(
+        "(35)",
+        "10",
+        "VI.B",
+        "the unknown velocities",
+        (equal(column(vhat_ck, vhat_pi, vhat_pj), INVERSE_G),),
+        holds_in(6),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 6",
+        "10",
+        "VI.B",
+        "always solvable",
+        (),
+        nonsingular(6),
+        Verdict.HOLDS,
+        f"determinant +-d_s^3 ybar3^4, {AXES}",
+    ),
+    Entry(
+        "Assumption 11",
+        "10",
+        "VI.C",
+        "which of v_c are unknown",
+        (equal(column(first_unknown, second_unknown), column(v_ci, v_ck)),),
+        holds_in(7),
+        Verdict.MISPRINT,
+        "v_cj in place of v_ci, which is known and along the object's line (as scanned)",
+        {v_ci: v_cj},
+    ),
+    Entry(
+        "(36)",
+        "11",
+        "VI.C",
+        "range known, object on a line",
+        (
+            equal(Omega, Omega1i * v_ci * d_s + Omega2),
+            equal(g, Omega_g * column(v_cj, v_ck, v_pi)),
+            equal(Omega_g, side_by_side(Omega1j * d_s, Omega1k * d_s, Omega3i * d_s)),
+        ),
+        holds_in(7),
+        Verdict.HOLDS,
+        AXES,
+    ),
+    Entry(
+        "(37)",
+        "11",
+        "VI.C",
+        "the unknown velocities",
+        (equal(column(vhat_cj, vhat_ck, vhat_pi), INVERSE_G),),
+        holds_in(7),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "corollary 7",
+        "11",
+        "VI.C",
+        "always solvable",
+        (),
+        nonsingular(7),
+        Verdict.HOLDS,
+        f"determinant +-d_s^3 ybar3^4, {AXES}",
+    ),
+    Entry(
+        "Remark 2",
+        "11",
+        "VI.C",
+        "a known range frees one more component of v_p",
+        (),
+        one_more_dimension,
+        Verdict.HOLDS,
+    ),
+)

@@ -1,0 +1,278 @@
+"""Inaba, Abdursul and Ghosh 2005, section 3: the lines of Theorem 3.4's proof that need no run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import sympy as sp
+
+from percept_obs.motion import linear
+from percept_obs.papers.base import (
+    Entry,
+    Finding,
+    Inner,
+    Norm,
+    Printed,
+    Values,
+    Verdict,
+    at_most,
+    column,
+    dot,
+    equal,
+    explicit,
+    filled_in,
+    identities,
+    is_identity,
+    judged,
+    not_checkable,
+    separates,
+    vanishes,
+    vectors,
+)
+from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block
+from percept_obs.surfaces import pinhole
+
+# Numbers
+t, t0, s, tau, T = sp.symbols("t t0 s tau T", real=True)
+delta, gamma, gamma1, ysup = sp.symbols("delta gamma gamma1 y_sup", positive=True)
+Q1, Vdot = sp.symbols("Q1 Vdot", real=True)
+rho_, theta_, seen_ = (sp.Function(name, real=True) for name in ("rho", "theta", "seen"))
+Phi_ = sp.Function("Phi", real=True)
+
+# Vectors and matrices
+n, p = sp.symbols("n p", integer=True, positive=True)
+rho, rho0, theta = vectors("rho rho0 theta", n)
+A, P, P0, Pdot = (sp.MatrixSymbol(name, n, n) for name in ("A", "P", "P0", "Pdot"))
+B, C = sp.MatrixSymbol("B", 2 * p, 3 * p), sp.MatrixSymbol("C", 3 * p, n)
+
+
+@cache
+def one_point() -> LuenbergerObserver:
+    """The package's observer of one point and two states, with letters for all coefficients."""
+    letters = sp.ImmutableMatrix(3, 2, lambda i, j: sp.Symbol(f"c{i + 1}{j + 1}", real=True))
+    return luenberger(PointsForm(linear(states=2), [letters]))
+
+
+def symmetric(name: str) -> sp.ImmutableMatrix:
+    """A symmetric matrix of letters."""
+    return sp.ImmutableMatrix(2, 2, lambda i, j: sp.Symbol(f"{name}{min(i, j) + 1}{max(i, j) + 1}", real=True))
+
+
+@cache
+def error_dynamics() -> Values:
+    """The package's error dynamics, with theta for what they have besides A rho, and letters for P and its rate."""
+    observer = one_point()
+    weight, rate = map(symmetric, ("P", "Pdot"))
+    inverse = dict(zip(observer.inverse, weight.inv(), strict=True))
+    error = column(*observer.error)
+    error_rate = observer.error_dynamics().xreplace(inverse)
+    motion = observer.form.motion.A
+    values = {rho: error, A: motion, B: observer.form.B, C: observer.form.stacked, P: weight, Pdot: rate}
+    values |= {dot(rho): error_rate, theta: motion * error - error_rate}
+    energy_rate = sum(sp.diff((error.T * weight * error)[0], e) * r for e, r in zip(error, error_rate, strict=True))
+    values[Vdot] = energy_rate + (error.T * rate * error)[0]
+    return {letter: sp.ImmutableMatrix(v) if isinstance(v, sp.MatrixBase) else v for letter, v in values.items()}
+
+
+def energy_does_not_grow(printed: Printed) -> Finding:
+    """(15): it is what the rate of rho^T P rho has besides what is seen."""
+    (line,) = printed
+    values = error_dynamics()
+    change = filled_in(Inner(rho, line.lhs * rho), values)
+    seen = explicit(Norm(B * C * rho), values) ** 2
+    sufficient = isinstance(line, sp.LessThan) and line.rhs == sp.ZeroMatrix(n, n)
+    return judged(sufficient and change is not None and vanishes(values[Vdot] - change + 2 * seen))
+
+
+def rate_of_energy(printed: Printed) -> Finding:
+    """The rate of rho^T P rho, and that (15) is just what the last step drops."""
+    balance, bound = printed
+    values = error_dynamics()
+    dropped = explicit(Inner(rho, (A.T * P + P * A + Pdot) * rho), values)
+    kept = filled_in(bound.rhs, values)
+    same = is_identity(balance, values) and isinstance(bound, sp.LessThan) and (balance.lhs, bound.lhs) == (Vdot, Vdot)
+    return judged(same and kept is not None and vanishes(values[Vdot] - dropped - kept))
+
+
+def norm_of_rows(printed: Printed) -> Finding:
+    """|B|^2 is the largest eigenvalue of B^T B, and (1 + y_sup)^2 exceeds it by 2 y_sup."""
+    (line,) = printed
+    block = point_block(pinhole())
+    at_the_edge = dict(zip(block.y, (ysup, sp.S.Zero), strict=True))
+    largest = max((value.xreplace(at_the_edge) for value in block.eigenvalues()), key=sp.count_ops)
+    exceeds = isinstance(line, sp.LessThan) and vanishes(line.rhs**2 - largest - 2 * ysup)
+    return judged(line.lhs == Norm(B) and exceeds)
+
+
+def one_state() -> Callable[[sp.Expr], sp.Expr]:
+    """One state with A = cos t and theta = t exp(sin t), solved: rho = exp(sin t) (1 - t^2 / 2)."""
+    solution = sp.Lambda(tau, sp.exp(sp.sin(tau)) * (1 - tau**2 / 2))
+    known = {
+        rho_: solution,
+        theta_: sp.Lambda(tau, tau * sp.exp(sp.sin(tau))),
+        Phi_: sp.Lambda((t, tau), sp.exp(sp.sin(t) - sp.sin(tau))),
+    }
+
+    def put_in(expression: sp.Expr) -> sp.Expr:
+        for function, value in known.items():
+            expression = expression.replace(function, value)
+        return sp.powsimp(expression, deep=True)
+
+    return put_in
+
+
+def variation_of_constants(printed: Printed) -> Finding:
+    """(22) for one state whose A varies."""
+    (line,) = printed
+    put_in = one_state()
+    rate_is_right = vanishes(put_in(rho_(t)).diff(t) - sp.cos(t) * put_in(rho_(t)) + put_in(theta_(t)))
+    left, right = (sp.expand(put_in(side).doit(), power_exp=False) for side in line.args)
+    return judged(isinstance(line, sp.Eq) and rate_is_right and vanishes(sp.powsimp(sp.expand(left - right))))
+
+
+@cache
+def worth(side: sp.Expr) -> float:
+    """A side of (23) for |B C rho|^2 = exp(-t), t0 = 1 and T = 2."""
+    number = side.replace(seen_, sp.Lambda(t, sp.exp(-t))).subs({t0: 1, T: 2}).doit()
+    return float(number) if number.is_number else math.nan
+
+
+def exchanged(printed: Printed) -> Finding:
+    """(23): the exchange of integrals for |B C rho|^2 = exp(-t), and what its bounds drop."""
+    definition, swap, bound, last = printed
+    whole = worth(definition.rhs)
+    exact = float((sp.exp(-1) * (1 - sp.exp(-2))).evalf())
+    dropped = float(sp.integrate((2 - (tau - 1)) * sp.exp(-tau), (tau, 1, 3)))
+    same = math.isclose(whole, exact) and math.isclose(worth(swap.rhs), exact)
+    same = same and math.isclose(worth(bound.rhs) - exact, dropped) and math.isclose(worth(last.lhs), worth(bound.rhs))
+    # With (19) the last line is an equality for gamma1 = T |P(t0)| / 2.
+    total = sp.Integral(seen_(t), (t, t0, sp.oo))
+    gap = (last.rhs - last.lhs).xreplace({total: Norm(P0) * Norm(rho0) ** 2 / 2, gamma1: T * Norm(P0) / 2})
+    kinds = [type(line) for line in printed] == [sp.Equality, sp.Equality, sp.LessThan, sp.LessThan]
+    names = all(line.lhs == Q1 for line in (definition, swap, bound))
+    return judged(same and kinds and names and vanishes(gap))
+
+
+def integral_is_not_enough(printed: Printed) -> Finding:
+    """Rho' = -rho / (1 + t): the integral of |rho|^2 is finite for every start, and the decay is no exponential."""
+    start, size = sp.symbols("start size", positive=True)
+    error = size * (1 + start) / (1 + t)
+    whole = sp.integrate(error**2, (t, start, sp.oo))
+    (line,) = printed
+    holds = separates(
+        line, RHO, float(whole.subs({start: 0, size: 3})), 10, {gamma: sp.Float(1.01), Norm(rho0): sp.Float(3)}
+    )
+    slow = sp.limit(-sp.diff(sp.log(error.subs({start: 0, size: 3})), t), t, sp.oo)
+    numbers = {f"gamma for a start at {k} s": float(whole.subs({start: k, size: 1})) for k in (0, 100)}
+    return judged(not (holds and slow == 0), Verdict.FALSE, numbers | {"rate in the end in 1/s": float(slow)})
+
+
+RHO = sp.Integral(Norm(rho) ** 2, (t, t0, sp.oo))
+SQUARE_INTEGRABLE = at_most(RHO, gamma * Norm(rho0) ** 2)
+FROM_T0 = (t, t0, sp.oo)
+
+ENTRIES = (
+    Entry(
+        "(15)",
+        "4",
+        "3",
+        "what P has to fulfil",
+        (at_most(A.T * P + P * A + Pdot, sp.ZeroMatrix(n, n)),),
+        energy_does_not_grow,
+        Verdict.HOLDS,
+        "sufficient; what is left of V's rate is -2 |B C rho|^2",
+    ),
+    Entry(
+        "P bounded below",
+        "4",
+        "3",
+        "P is at least delta I",
+        (sp.GreaterThan(P, delta * sp.Identity(n), evaluate=False),),
+        not_checkable,
+        Verdict.NOT_CHECKABLE,
+        "a choice; it leaves P free to grow, see the last entry",
+    ),
+    Entry(
+        "rate of V",
+        "5",
+        "3",
+        "rate of rho^T P rho",
+        (
+            equal(Vdot, Inner(rho, (A.T * P + P * A + Pdot) * rho) - 2 * Inner(rho, C.T * B.T * B * C * rho)),
+            at_most(Vdot, -2 * Norm(B * C * rho) ** 2),
+        ),
+        rate_of_energy,
+        Verdict.HOLDS,
+        "given (15)",
+    ),
+    Entry(
+        "norm of B",
+        "5",
+        "3",
+        "B is bounded",
+        (at_most(Norm(B), 1 + ysup),),
+        norm_of_rows,
+        Verdict.HOLDS,
+        "y_sup for the largest |y(k)|",
+    ),
+    Entry(
+        "(20)",
+        "5",
+        "3",
+        "(12) with theta",
+        (equal(dot(rho), A * rho - theta),),
+        identities(error_dynamics),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(21)",
+        "5",
+        "3",
+        "what theta is",
+        (equal(theta, P.inv() * C.T * B.T * B * C * rho),),
+        identities(error_dynamics),
+        Verdict.HOLDS,
+    ),
+    Entry(
+        "(22)",
+        "5",
+        "3",
+        "variation of constants",
+        (
+            equal(
+                rho_(t + s),
+                Phi_(t + s, t) * rho_(t) - sp.Integral(Phi_(t + s, tau) * theta_(tau), (tau, t, t + s)),
+            ),
+        ),
+        variation_of_constants,
+        Verdict.HOLDS,
+        "read for n = 1, with A = cos t",
+    ),
+    Entry(
+        "(23)",
+        "5",
+        "3",
+        "bound on Q1",
+        (
+            equal(Q1, sp.Integral(seen_(t + s), (s, 0, T), FROM_T0)),
+            equal(Q1, sp.Integral(seen_(tau) * sp.Integral(1, (t, sp.Max(t0, tau - T), tau)), (tau, t0, sp.oo))),
+            at_most(Q1, T * sp.Integral(seen_(t), FROM_T0)),
+            at_most(T * sp.Integral(seen_(t), FROM_T0), gamma1 * Norm(rho0) ** 2),
+        ),
+        exchanged,
+        Verdict.HOLDS,
+        "gamma1 = T |P(t0)| / 2 serves; seen is |B C rho|^2",
+    ),
+    Entry(
+        "(18) suffices",
+        "5",
+        "3",
+        "(18) gives exponential convergence",
+        (SQUARE_INTEGRABLE,),
+        integral_is_not_enough,
+        Verdict.FALSE,
+        "the lemma cited is on time-invariant systems; gamma must serve every t0, which takes a P bounded above",
+    ),
+)
