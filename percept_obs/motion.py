@@ -308,7 +308,9 @@ def bound(
 
 def _row(given: list[Coefficient], time: float) -> Values:
     """All coefficients at a time, one after the other."""
-    return np.hstack([_rows(value(time) if callable(value) else value, block, 1) for value, block in given])
+    return np.concatenate(
+        [_rows(value(time) if callable(value) else value, block, 1) for value, block in given], axis=1
+    )
 
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
@@ -320,7 +322,8 @@ def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
     if array.shape not in (shape, (count, *shape)):
         sampled = f" or {(count, *shape)}" if count > 1 else ""
         raise ValueError(f"a coefficient of the motion has shape {array.shape}; expected {shape}{sampled}")
-    return np.broadcast_to(array, (count, *shape)).reshape(count, -1)
+    rows = array.reshape(-1, len(block))
+    return rows if len(rows) == count else np.repeat(rows, count, axis=0)
 
 
 def _has_symbols(value: object) -> bool:

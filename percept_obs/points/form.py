@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import null_space
 
 from percept_obs.compile import vectorised
 from percept_obs.derivation import Derivation, Step, equals
 from percept_obs.motion import Motion
 from percept_obs.points.block import PointBlock, point_block
+from percept_obs.points.directions import in_words, unobservable
 from percept_obs.surfaces import POINT, ImagingSurface, pinhole
 
 Array = NDArray[np.float64]
@@ -24,9 +24,6 @@ Indices = NDArray[np.intp]
 
 DRAWS = 4
 """Values that a motion's symbols are given at random, to find what no motion lets a camera see."""
-
-NEGLIGIBLE = 1e-9
-"""A direction whose images change less than this, relatively, is not seen."""
 
 
 class UnseenDirection(UserWarning):
@@ -206,19 +203,11 @@ class PointsForm:
         else:
             known = np.random.default_rng(0).normal(size=(DRAWS, len(self.motion.parameters)))
         A = self._dense(self._evaluated(known))[:, :, :-1]
-        basis = null_space(self.blocks.reshape(-1, self.states), rcond=NEGLIGIBLE)
-        while basis.shape[1]:
-            leaving = A @ basis - basis @ (basis.T @ (A @ basis))
-            scale = max(1.0, float(np.abs(A).max(initial=0.0)))
-            kept = _kernel(leaving.reshape(-1, basis.shape[1]), NEGLIGIBLE * scale)
-            if kept.shape[1] == basis.shape[1]:
-                break
-            basis = basis @ kept
-        return _readonly(basis)
+        return _readonly(unobservable(A, self.blocks.reshape(-1, self.states)))
 
     def describe(self, directions: Array) -> tuple[str, ...]:
         """Directions of the state in words, one sum of states for each column of an array of shape (n, q)."""
-        return tuple(_sum(row, self.names) for row in _reduced(directions.T))
+        return in_words(directions, self.names)
 
     @cached_property
     def state(self) -> tuple[sp.Symbol, ...]:
@@ -316,40 +305,6 @@ def _matrix(block: Any) -> sp.ImmutableMatrix:
     array = np.asarray(block, dtype=object)
     entries = {(i, j): sp.sympify(array[i, j]) for i, j in zip(*np.nonzero(array), strict=True)}
     return sp.ImmutableSparseMatrix(*array.shape, entries)
-
-
-def _kernel(matrix: Array, tolerance: float) -> Array:
-    """An orthonormal basis of what the matrix maps to less than the tolerance."""
-    _, singular, right = np.linalg.svd(matrix)
-    return right[int((singular > tolerance).sum()) :].T
-
-
-def _reduced(rows: Array) -> Array:
-    """The same space, spanned by rows that hold as few entries as elimination gets them to."""
-    rows = np.array(rows, dtype=float)
-    for k in range(len(rows)):
-        # the earliest state whose entry is about the largest, so that directions read in the states' order
-        candidates = np.abs(rows[k:]).max(axis=0)
-        column = int(np.argmax(candidates > 0.5 * candidates.max()))
-        pivot = k + int(np.argmax(np.abs(rows[k:, column])))
-        rows[[k, pivot]] = rows[[pivot, k]]
-        rows[k] /= rows[k, column]
-        others = np.arange(len(rows)) != k
-        rows[others] -= rows[others][:, [column]] * rows[k]
-    return rows
-
-
-def _sum(row: Array, names: Sequence[str]) -> str:
-    """A row as a sum of names, such as "r_x - d2_x"."""
-    largest = np.abs(row).max()
-    terms: list[str] = []
-    for value, name in zip(row, names, strict=True):
-        if abs(value) < 1e-6 * largest:
-            continue
-        size = "" if abs(abs(value) - 1) < 1e-6 else f"{abs(value):.3g} "
-        sign = "-" if value < 0 else "+"
-        terms.append(f"{sign} {size}{name}" if terms else f"{'-' if value < 0 else ''}{size}{name}")
-    return " ".join(terms)
 
 
 def _readonly(array: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import threading
 from collections.abc import Callable
@@ -83,14 +84,25 @@ def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp])
     return Arrays(rows, columns, layout.which[within], begins, axes, used, blocks[owners, axes, used], N, l)
 
 
-def rate(solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-untyped-def]
+def combine(target, first, factor, second):  # type: ignore[no-untyped-def]
+    """Set the target to first + factor second; numba takes long to compile such a line, and each of them anew."""
+    for i in range(len(target)):
+        target[i] = first[i] + factor * second[i]
+
+
+def combine_by_numpy(target: Array, first: Array, factor: float, second: Array) -> None:
+    """The same with numpy, whose loops do not run in Python."""
+    target[:] = first + factor * second
+
+
+def rate(combine, solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-untyped-def]
     """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
     rows, columns, which, begins, axes, states, entries, N, l = form
-    computed, information, forgetting, decrease = law
+    computed, information, forgetting, pull = law
     n, m = len(x), len(N)
     dx[:] = 0.0
     for i in range(n if computed else 0):
-        dP[i] = -forgetting * P[i] - decrease[i]
+        combine(dP[i], pull[i], -forgetting, P[i])
     for e in range(len(rows)):
         i, j, a = rows[e], columns[e], coefficients[which[e]]
         if j == n:
@@ -98,8 +110,8 @@ def rate(solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-un
         else:
             dx[i] += a * x[j]
             if computed:
-                dP[:, j] -= a * P[i]
-                dP[j] -= a * P[i]
+                combine(dP[:, j], dP[:, j], -a, P[i])
+                combine(dP[j], dP[j], -a, P[i])
     correction = np.zeros(n)
     xi, c, S = np.zeros(3), np.zeros(3), np.zeros((3, 3))
     anything = False
@@ -111,12 +123,13 @@ def rate(solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-un
             continue
         anything = True
         first, last = begins[k], begins[k + 1]
-        xi[:] = 0.0
+        for i in range(3):
+            xi[i] = c[i] = 0.0
+            for h in range(3):
+                S[i, h] = 0.0
         for e in range(first, last):
             xi[axes[e]] += entries[e] * x[states[e]]
         distance = l[0] * xi[0] + l[1] * xi[1] + l[2] * xi[2]
-        c[:] = 0.0
-        S[:] = 0.0
         for j in range(m):
             innovation = y[k, j] * distance - N[j, 0] * xi[0] - N[j, 1] * xi[1] - N[j, 2] * xi[2]
             for i in range(3):
@@ -129,51 +142,49 @@ def rate(solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-un
             if computed:
                 for f in range(first, last):
                     dP[states[e], states[f]] += information * entries[e] * entries[f] * S[axes[e], axes[f]]
-    if anything:
-        moved = solve(P, correction) if computed else P @ correction
+    if anything and computed:
+        combine(dx, dx, 1.0, solve(P, correction))
+    elif anything:
         for i in range(n):
-            dx[i] += moved[i]
+            combine(dx, dx, correction[i], P[i])
 
 
-def run(rate, solve, form, law, start, P, steps, coefficients, inverses, outputs, path):  # type: ignore[no-untyped-def]
+def run(rate, combine, solve, form, law, x, P, steps, coefficients, inverses, outputs, path):  # type: ignore[no-untyped-def]
     """Step the estimate, and P where it is computed, by the classical Runge-Kutta method.
 
     The blocks `coefficients` and `inverses` have a row for each start, middle and end of a step, or one row if
-    constant; `outputs` has three rows a step.  The estimates go to `path`, the last P to `P`.  Returns the first row
-    of `path` at which the estimate was no longer finite, or -1.
+    constant; `outputs` has three rows a step.  The estimates go to `path`.  Returns the first row of `path` at which
+    the estimate was no longer finite, or -1, and the last P.
     """
-    computed, n = law[0], len(start)
-    x, x_stage, dx = start.copy(), start.copy(), np.zeros(n)
+    computed, n = law[0], len(x)
+    x_stage, dx = x.copy(), np.zeros(n)
     P_stage, dP = P.copy(), np.zeros(P.shape)
-    path[0] = start
+    path[0] = x
     for k in range(len(steps)):
         x_sum, P_sum = x.copy(), P.copy()
         for stage in range(4):
             place = (stage + 1) // 2
-            row = 2 * k + place
+            row, share = 2 * k + place, 0.5 * steps[k] * place
             if computed:
                 for i in range(n):
-                    P_stage[i] = P[i] + 0.5 * steps[k] * place * dP[i]
+                    combine(P_stage[i], P[i], share, dP[i])
             else:
                 P_stage = inverses[row if len(inverses) > 1 else 0]
-            for i in range(n):
-                x_stage[i] = x[i] + 0.5 * steps[k] * place * dx[i]
+            combine(x_stage, x, share, dx)
             known = coefficients[row if len(coefficients) > 1 else 0]
-            rate(solve, form, law, x_stage, P_stage, known, outputs[k, place], dx, dP)
+            rate(combine, solve, form, law, x_stage, P_stage, known, outputs[k, place], dx, dP)
             weight = steps[k] / (6.0 if stage % 3 == 0 else 3.0)
-            for i in range(n):
-                x_sum[i] += weight * dx[i]
-                if computed:
-                    P_sum[i] += weight * dP[i]
-        x[:] = x_sum
-        P[:] = P_sum
-        path[k + 1] = x_sum
+            combine(x_sum, x_sum, weight, dx)
+            for i in range(n if computed else 0):
+                combine(P_sum[i], P_sum[i], weight, dP[i])
+        x, P = x_sum, P_sum
+        path[k + 1] = x
         squared = 0.0
         for i in range(n):
             squared += x[i] * x[i]
         if not squared <= LARGEST_SQUARED_STATE:
-            return k + 1
-    return -1
+            return k + 1, P
+    return -1, P
 
 
 def solve_by_loops(P, right):  # type: ignore[no-untyped-def]
@@ -216,7 +227,7 @@ class _Compiled:
     """The loop in machine code, once it is there."""
 
     def __init__(self) -> None:
-        self.run: Callable[..., int] | None = None
+        self.run: Callable[..., tuple[int, Array]] | None = None
         self._lock = threading.Lock()
         self._beside: threading.Thread | None = None
 
@@ -226,20 +237,20 @@ class _Compiled:
             self._beside = threading.Thread(target=self.now)
             self._beside.start()
 
-    def now(self) -> Callable[..., int]:
+    def now(self) -> Callable[..., tuple[int, Array]]:
         """Compile, or wait until that is done."""
         with self._lock:
             if self.run is None:
                 import numba
 
-                compiled, solve, loop = (numba.njit(error_model="numpy")(text) for text in (rate, solve_by_loops, run))
+                texts = (rate, combine, solve_by_loops, run)
+                *parts, loop = (numba.njit(error_model="numpy")(text) for text in texts)
                 line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
                 shelf = numba.float64[:, :, :, ::1]
                 form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, sheet, line))
                 law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
-                functions = (numba.typeof(compiled), numba.typeof(solve))
-                loop.compile((*functions, form, law, line, sheet, line, sheet, book, shelf, sheet))
-                self.run = lambda *arguments: int(loop(compiled, solve, *arguments))
+                loop.compile((*map(numba.typeof, parts), form, law, line, sheet, line, sheet, book, shelf, sheet))
+                self.run = functools.partial(loop, *parts)
             return self.run
 
 
@@ -289,8 +300,8 @@ def advance(
     Parameters
     ----------
     form : Arrays
-    law : (computed, information, forgetting, decrease)
-        Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P - decrease.
+    law : (computed, information, forgetting, pull)
+        Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P + pull.
     start : array of shape (n,)
     P : array of shape (n, n)
         At the start, where it is computed.
@@ -318,15 +329,15 @@ def advance(
     ModuleNotFoundError
         If numba is asked for and is not installed.
     """
-    path, P = np.full((len(steps) + 1, len(start)), np.nan), np.array(P, dtype=float)
-    blocks = [np.array(block, dtype=float, order="C") for block in (steps, coefficients, inverses, outputs)]
+    path = np.full((len(steps) + 1, len(start)), np.nan)
+    blocks = (start, P, steps, coefficients, inverses, outputs)
     loop = _COMPILED.now() if language == "numba" else _in_python
-    diverged = loop(form.all, law, np.array(start, dtype=float), P, *blocks, path)
+    diverged, P = loop(form.all, law, *(np.array(block, dtype=float, order="C") for block in blocks), path)
     if diverged >= 0:
         path[diverged:] = np.nan
-    return path, P, None if diverged < 0 else diverged
+    return path, P, None if diverged < 0 else int(diverged)
 
 
-def _in_python(*arguments: Any) -> int:
+def _in_python(*arguments: Any) -> tuple[int, Array]:
     with np.errstate(all="ignore"):
-        return int(run(rate, solve_by_numpy, *arguments))
+        return run(rate, combine_by_numpy, solve_by_numpy, *arguments)  # type: ignore[no-any-return]

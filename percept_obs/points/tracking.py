@@ -151,9 +151,9 @@ def _follow(
     weight, time, grid, index = task.weight, task.recording.time, task.grid, task.index
     block = np.ix_(states, states)
     P, n = weight.start[block].copy(), len(states)
-    loss = weight.decrease[block] - weight.forgetting * P
+    pull = weight.forgetting * P - weight.decrease[block]
     loop = arrays(task.form, states, points)
-    law = (weight.computed, weight.information, weight.forgetting, loss)
+    law = (weight.computed, weight.information, weight.forgetting, pull)
     stops = np.union1d(task.kept, np.flatnonzero(task.began[:, points].any(axis=1)))
     inverses = np.zeros((1, 1, 1))
     state, at_kept = np.full((len(time), n), np.nan), np.full((len(task.kept), n, n), np.nan)

@@ -1,0 +1,82 @@
+"""Directions of a state: which of them no output can show, and what they are called in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import null_space
+
+Array = NDArray[np.float64]
+
+NEGLIGIBLE = 1e-9
+"""A direction that changes the outputs less than this, relatively, is not seen."""
+
+
+def unobservable(A: Array, C: Array) -> Array:
+    """The largest subspace that C maps to 0 and every A maps into itself.
+
+    Parameters
+    ----------
+    A : array of shape (K, n, n)
+    C : array of shape (q, n)
+
+    Returns
+    -------
+    array of shape (n, number of directions)
+        Orthonormal columns.
+    """
+    basis = null_space(C, rcond=NEGLIGIBLE)
+    tolerance = NEGLIGIBLE * max(1.0, float(np.abs(A).max(initial=0.0)))
+    while basis.shape[1]:
+        leaving = A @ basis - basis @ (basis.T @ (A @ basis))
+        _, singular, right = np.linalg.svd(leaving.reshape(-1, basis.shape[1]))
+        kept = right[int((singular > tolerance).sum()) :].T
+        if kept.shape[1] == basis.shape[1]:
+            break
+        basis = basis @ kept
+    return np.asarray(basis)
+
+
+def in_words(directions: Array, names: Sequence[str]) -> tuple[str, ...]:
+    """Directions as sums of named states, such as "r_x - d2_x".
+
+    Parameters
+    ----------
+    directions : array of shape (n, q)
+        Linearly independent columns.
+    names : sequence of n str
+
+    Returns
+    -------
+    tuple of q str
+        They span the same space, each by as few states as elimination gets it to.
+    """
+    return tuple(_sum(row, names) for row in _reduced(directions.T))
+
+
+def _reduced(rows: Array) -> Array:
+    rows = np.array(rows, dtype=float)
+    for k in range(len(rows)):
+        # the earliest state whose entry is about the largest, so that directions read in the states' order
+        candidates = np.abs(rows[k:]).max(axis=0)
+        column = int(np.argmax(candidates > 0.5 * candidates.max()))
+        pivot = k + int(np.argmax(np.abs(rows[k:, column])))
+        rows[[k, pivot]] = rows[[pivot, k]]
+        rows[k] /= rows[k, column]
+        others = np.arange(len(rows)) != k
+        rows[others] -= rows[others][:, [column]] * rows[k]
+    return rows
+
+
+def _sum(row: Array, names: Sequence[str]) -> str:
+    largest = np.abs(row).max()
+    words = ""
+    for value, name in zip(row, names, strict=True):
+        if abs(value) < 1e-6 * largest:
+            continue
+        size = "" if abs(abs(value) - 1) < 1e-6 else f"{abs(value):.3g} "
+        sign = "-" if value < 0 else "+"
+        words += f" {sign} {size}{name}" if words else f"{sign.strip('+')}{size}{name}"
+    return words

@@ -1,0 +1,122 @@
+"""One point's error across and along its ray: why a constant P has a best size, and how fast it can be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from percept_obs.derivation import Derivation, Step, equals
+from percept_obs.points.block import point_block
+from percept_obs.points.form import PointsForm
+from percept_obs.surfaces import pinhole
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RayError:
+    """The error of a point, z' = M z, in axes that turn with its ray: z = (across, along).
+
+    Parameters
+    ----------
+    gain : symbol
+        k, what corrects the error across the ray, in 1/s: (1 + |y|^2) / P.
+    turning : symbol
+        omega, how fast the ray turns against the known rotation, in rad/s.
+    matrix : matrix of shape (2, 2)
+        M.
+    """
+
+    gain: sp.Symbol
+    turning: sp.Symbol
+    matrix: sp.ImmutableMatrix
+
+    @cached_property
+    def eigenvalues(self) -> tuple[sp.Expr, sp.Expr]:
+        """Eigenvalues of M; of a large gain, the fast one and the slow one."""
+        fast, slow = sorted(
+            self.matrix.eigenvals(multiple=True), key=lambda value: sp.limit(value / self.gain, self.gain, sp.oo)
+        )
+        return fast, slow
+
+    @cached_property
+    def best_gain(self) -> sp.Expr:
+        """The gain at which the eigenvalues meet: critical damping."""
+        fast, slow = self.eigenvalues
+        (best,) = sp.solve((fast - slow) ** 2, self.gain)
+        return best
+
+    @property
+    def best_decay(self) -> sp.Expr:
+        """Rate at which errors decay at the best gain; no constant gain is faster."""
+        return -self.eigenvalues[1].subs(self.gain, self.best_gain)
+
+    @property
+    def over_gain(self) -> sp.Expr:
+        """What the rate comes close to for a gain that is far too large."""
+        return sp.limit(-self.eigenvalues[1] * self.gain, self.gain, sp.oo) / self.gain
+
+    def derivation(self) -> Derivation:
+        """From the error's rate to the best gain, step by step."""
+        k, omega = sp.latex(self.gain), sp.latex(self.turning)
+        return Derivation(
+            (
+                Step(
+                    "In axes across and along the ray, which turns, the error obeys:",
+                    equals(r"\dot z", sp.latex(self.matrix) + r"\, z"),
+                ),
+                Step("Its rates are:", r",\quad ".join(map(sp.latex, self.eigenvalues))),
+                Step("They meet, and the slow one is fastest, at:", equals(k, self.best_gain)),
+                Step("Errors then decay at the rate:", sp.latex(self.best_decay)),
+                Step(
+                    "A larger gain holds the estimate on the ray and lets nothing along it; the rate tends to:",
+                    rf"{sp.latex(self.over_gain)} \quad ({k} \gg {omega})",
+                ),
+            )
+        )
+
+
+@lru_cache(maxsize=1)
+def ray_error() -> RayError:
+    """Derive the error of a point from its block, in the plane in which its ray turns.
+
+    The point is seen at y(t) = (y1(t), 0) by a pinhole, the camera turns in the same plane at a known rate, and P is a
+    multiple of the identity.
+    """
+    block, t = point_block(pinhole()), sp.Symbol("t", real=True)
+    y1 = sp.Function(block.y[0].name, real=True)(t)
+    known, inverse, gain, turning = sp.symbols("a Q k omega", positive=True)
+    B = block.B.subs(dict(zip(block.y, (y1, 0), strict=True)))
+    (ray,) = B.nullspace()
+    turn = sp.Matrix([[0, 0, known], [0, 0, 0], [-known, 0, 0]])
+    axes = sp.Matrix.hstack(turn * ray, known * ray) / (known * sp.sqrt(ray.dot(ray)))  # across, along
+    M = (axes.T * (turn * axes - axes.diff(t) - inverse * B.T * B * axes)).applyfunc(sp.cancel)
+    corrected, against = -M[0, 0], M[1, 0]
+    named = sp.ImmutableMatrix([[-gain, -turning], [turning, 0]])
+    if (M - named.subs({gain: corrected, turning: against})).expand() != sp.zeros(2):
+        raise ArithmeticError("the error about the ray has another form; is the ray the kernel of B?")
+    return RayError(gain, turning, named)
+
+
+def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
+    """How fast the input v turns the ray of each point, in rad/s: what of v_k lies across the ray, over the range.
+
+    Parameters
+    ----------
+    form : PointsForm
+    times : array of shape (K,)
+        Seconds.
+    states : array of shape (K, n)
+        True states.
+
+    Returns
+    -------
+    array of shape (K, p)
+    """
+    points, velocities = form.positions(states), form.positions(form.coefficients(times)[1])
+    across = np.linalg.norm(np.cross(points, velocities), axis=-1)
+    return np.asarray(across / (points**2).sum(axis=-1))
