@@ -112,7 +112,7 @@ def test_beside_one_filter_a_landmark():
 
 @pytest.mark.slow
 def test_a_constant_p_learns_no_depth_here():
-    """In 2 s half of the rays turn by less than 0.36 rad, and then no constant gain takes a tenth off the depth's error."""
+    """Half of the rays turn by less than 0.36 rad in 2 s; no constant gain then takes a tenth off an error of depth."""
     recording, found = landmarks(), ray_error()
     turning = np.median(ray_turning(recording.form, recording.time, recording.truth)[recording.seen])
     assert turning == pytest.approx(0.179, abs=0.001)

@@ -4,6 +4,7 @@ from percept_obs.figures.base import Figure
 from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
 from percept_obs.figures.image_plane import image_plane
+from percept_obs.figures.many_points import depth_errors, error_norm, gramian, points_in_image
 from percept_obs.figures.over_time import compare, distance
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
@@ -15,9 +16,13 @@ __all__ = [
     "compare",
     "comparison",
     "consistency",
+    "depth_errors",
     "distance",
+    "error_norm",
     "excitation",
+    "gramian",
     "image_plane",
+    "points_in_image",
     "scene",
     "signals",
 ]

@@ -24,7 +24,7 @@ LARGEST_TABLE = 2e7
 UNSEEN = 1e-6
 """A direction whose eigenvalue is below this share of the largest one is not seen."""
 
-PARTS = 80
+PARTS = 40
 """Intervals into which a window is divided for the bound on the decay."""
 
 

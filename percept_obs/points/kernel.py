@@ -340,4 +340,4 @@ def advance(
 
 def _in_python(*arguments: Any) -> tuple[int, Array]:
     with np.errstate(all="ignore"):
-        return run(rate, combine_by_numpy, solve_by_numpy, *arguments)  # type: ignore[no-any-return]
+        return run(rate, combine_by_numpy, solve_by_numpy, *arguments)
