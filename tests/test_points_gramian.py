@@ -47,7 +47,7 @@ def test_the_decay_rates(points):
 
 @pytest.mark.parametrize("points", [1, 2])
 def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
-    whole = recording(points, 20.0, 0.05)
+    whole = recording(points, 12.0, 0.05)
     bounds = [decay_bound(whole, luenberger(whole.form, P), 4) for P in (*RATES[points], 300)]
     for bound, (P, measured) in zip(bounds, RATES[points].items(), strict=False):
         assert 0 < bound.rate < measured, P

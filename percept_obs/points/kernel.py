@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import functools
 import math
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 from importlib.util import find_spec
 from typing import Any, Literal
 
@@ -21,8 +20,8 @@ Language = Literal["python", "numba"]
 LARGEST_SQUARED_STATE = 1e300
 """A state whose squared norm exceeds this, or is not a number, has diverged."""
 
-SMALL_WORK = 2e5
-"""Steps times states up to which Python does not wait for numba to compile."""
+SMALL_WORK = 1e5
+"""Steps times states up to which Python is done before numba has compiled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,38 +222,18 @@ def solve_by_numpy(P: Array, right: Array) -> Array:
     return np.asarray(np.linalg.solve(P, right))
 
 
-class _Compiled:
-    """The loop in machine code, once it is there."""
+@cache
+def compiled() -> Callable[..., tuple[int, Array]]:
+    """The loop in machine code."""
+    import numba
 
-    def __init__(self) -> None:
-        self.run: Callable[..., tuple[int, Array]] | None = None
-        self._lock = threading.Lock()
-        self._beside: threading.Thread | None = None
-
-    def beside(self) -> None:
-        """Compile while Python goes on."""
-        if self._beside is None:
-            self._beside = threading.Thread(target=self.now)
-            self._beside.start()
-
-    def now(self) -> Callable[..., tuple[int, Array]]:
-        """Compile, or wait until that is done."""
-        with self._lock:
-            if self.run is None:
-                import numba
-
-                texts = (rate, combine, solve_by_loops, run)
-                *parts, loop = (numba.njit(error_model="numpy")(text) for text in texts)
-                line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
-                shelf = numba.float64[:, :, :, ::1]
-                form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, sheet, line))
-                law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
-                loop.compile((*map(numba.typeof, parts), form, law, line, sheet, line, sheet, book, shelf, sheet))
-                self.run = functools.partial(loop, *parts)
-            return self.run
-
-
-_COMPILED = _Compiled()
+    *parts, loop = (numba.njit(error_model="numpy")(text) for text in (rate, combine, solve_by_loops, run))
+    line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
+    shelf = numba.float64[:, :, :, ::1]
+    form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, sheet, line))
+    law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
+    loop.compile((*map(numba.typeof, parts), form, law, line, sheet, line, sheet, book, shelf, sheet))
+    return partial(loop, *parts)
 
 
 def choose(language: Language | None, work: float) -> Language:
@@ -278,10 +257,7 @@ def choose(language: Language | None, work: float) -> Language:
         return language
     if not find_spec("numba"):
         return "python"
-    if _COMPILED.run is None and work <= SMALL_WORK:
-        _COMPILED.beside()
-        return "python"
-    return "numba"
+    return "numba" if work > SMALL_WORK or compiled.cache_info().currsize else "python"
 
 
 def advance(
@@ -331,7 +307,7 @@ def advance(
     """
     path = np.full((len(steps) + 1, len(start)), np.nan)
     blocks = (start, P, steps, coefficients, inverses, outputs)
-    loop = _COMPILED.now() if language == "numba" else _in_python
+    loop = compiled() if language == "numba" else _in_python
     diverged, P = loop(form.all, law, *(np.array(block, dtype=float, order="C") for block in blocks), path)
     if diverged >= 0:
         path[diverged:] = np.nan
