@@ -320,8 +320,7 @@ ENTRIES = (
         (at_most(Q2, gamma2 * Norm(rho0) ** 2),),
         met(Q2, gamma2 * Norm(rho0) ** 2, "Q2"),
         Verdict.HOLDS,
-        "steps between lost by the scan; gamma2 = (1 + y_sup)^4 |C|^4 b^2 T^3 |P(t0)| / (6 delta^2) serves, T^2/2 in "
-        "place of T^3/3 would not",
+        "steps and constants lost by the scan; gamma2 = (1 + y_sup)^4 |C|^4 b^2 T^3 |P(t0)| / (6 delta^2) serves",
     ),
     Entry(
         "end of the proof",
