@@ -220,6 +220,7 @@ def best_setting(
 
     def score(observer: Observer) -> float:
         runs = [follow(recording, observer) for recording in recordings]
-        return float(sum(np.median(relative_distance_errors(runs, seconds)) for seconds in after))
+        total = float(sum(np.median(relative_distance_errors(runs, seconds)) for seconds in after))
+        return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
     return min(observers, key=score)

@@ -22,6 +22,7 @@ from percept_obs.observers import (
     extended_kalman,
     identifier_based,
     immersion_and_invariance,
+    integral_sliding_mode,
     linear_approximation,
     range_identification,
     sliding_mode,
@@ -82,6 +83,7 @@ HAND_HELD: Mapping[Make, tuple[Gains, ...]] = MappingProxyType(
         de_luca: grid(measured_gain=(2, 3.5, 6, 10, 17), hidden_gain=(60, 120, 250, 500, 1000)),
         spica: grid(hidden_gain=(20, 40, 60, 80, 110, 150, 200, 270, 370, 500, 700, 1000)),
         immersion_and_invariance: grid(gain=(5, 10, 20, 40, 80)),
+        integral_sliding_mode: grid(feedback=(1, 2, 4), switching_gain=(0.25, 0.5), sharpening=(0,)),
         range_identification: tuple(_range_identification()),
         # only the ratios to the measurement's weight matter, and a large one is stiff
         linear_approximation: grid(
@@ -124,7 +126,6 @@ def choose_and_report(
     Returns
     -------
     pandas.DataFrame
-        One row for an observer, a reference and a time, with relative errors of the distance over the reporting
         One row for an observer, a reference and a time, with relative errors of the distance over the reporting
         recordings: observer, gains (the chosen ones), reference, after (s), median, nine_in_ten (the 90 % quantile),
         behind (number of recordings whose estimate is not in front of the camera then), reset, diverged (numbers of

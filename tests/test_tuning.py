@@ -63,7 +63,7 @@ def test_a_refusal_is_told_in_words():
     assert refused["median"].isna().all()
     assert refused["refusal"].str.contains("y2, y3 are hidden; measure every image coordinate").all()
     line = side_by_side(table).loc["range identification"]
-    assert line["remark"].startswith("cannot: the range identification observer recovers one hidden coordinate")
+    assert line["remark"].startswith("cannot: y2, y3 are hidden; measure every image coordinate")
     assert set(line.drop("remark")) == {"–"}
 
 
