@@ -13,6 +13,7 @@ from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.recording import PointsRecording
+from percept_obs.recording import halves
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -275,10 +276,8 @@ def _check_window(recording: PointsRecording, window: float) -> None:
 def _transitions(form: PointsForm, time: Array) -> Array:
     """Transition matrices from each time to the next, shape (K - 1, n, n), by the Runge-Kutta method."""
     h = np.diff(time)[:, None, None]
-    both = np.empty(2 * len(time) - 1)
-    both[::2], both[1::2] = time, (time[:-1] + time[1:]) / 2
-    A, _ = form.coefficients(both)
-    A = np.broadcast_to(A, (len(both), *A.shape[1:]))
+    A, _ = form.coefficients(halves(time))
+    A = np.broadcast_to(A, (2 * len(time) - 1, *A.shape[1:]))
     unit = np.eye(form.states)
     k1 = A[:-1:2]
     k2 = A[1::2] @ (unit + h / 2 * k1)

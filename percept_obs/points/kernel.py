@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, partial
 from importlib.util import find_spec
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +23,8 @@ SMALL_WORK = 1e5
 """Steps times states up to which Python is done before numba has compiled."""
 
 
-@dataclass(frozen=True, eq=False)
-class Arrays:
-    """A form as the loop takes it: entries that are not 0, point by point for C.
+class Arrays(NamedTuple):
+    """A form as the loop takes it, in the order of its arguments: entries that are not 0, point by point for C.
 
     Parameters
     ----------
@@ -51,21 +49,6 @@ class Arrays:
     entries: Array
     N: Array
     l: Array
-
-    @property
-    def all(self) -> tuple[Any, ...]:
-        """The arrays in the order of the loop's arguments."""
-        return (
-            self.rows,
-            self.columns,
-            self.which,
-            self.begins,
-            self.axes,
-            self.states,
-            self.entries,
-            self.N,
-            self.l,
-        )
 
 
 def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp]) -> Arrays:
@@ -308,7 +291,7 @@ def advance(
     path = np.full((len(steps) + 1, len(start)), np.nan)
     blocks = (start, P, steps, coefficients, inverses, outputs)
     loop = compiled() if language == "numba" else _in_python
-    diverged, P = loop(form.all, law, *(np.array(block, dtype=float, order="C") for block in blocks), path)
+    diverged, P = loop(tuple(form), law, *(np.array(block, dtype=float, order="C") for block in blocks), path)
     if diverged >= 0:
         path[diverged:] = np.nan
     return path, P, None if diverged < 0 else int(diverged)
