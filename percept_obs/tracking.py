@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -23,6 +24,28 @@ Hold = Literal["zero", "first", "exact"]
 
 LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
+
+
+SETTLED_PART = 0.1
+"""Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
+
+VERDICTS = MappingProxyType(
+    {
+        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; choose smaller gains or shorter steps",
+        "followed": "followed {time} s; no truth to compare with",
+        "outside": "not converged: the error of {hidden} ends at {error}, outside {tolerance}",
+        "late": (
+            "not converged yet: the error of {hidden} is within {tolerance} only since {time} s, too short before the "
+            "end to be sure of"
+        ),
+        "converged": "converged: the error of {hidden} stays within {tolerance} after {time} s",
+        "reset once": "; driven to the bound and reset once, at {time} s",
+        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
+        "gap": "; no estimate from {begin} to {end} s, for {reason}",
+        "more gaps": ", and in {count} more gaps",
+    }
+)
+"""What a verdict says, by what happened; live labs use the same words."""
 
 
 class DoesNotFit(ValueError):
@@ -191,28 +214,36 @@ class Run:
         return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
 
     def verdict(self, tolerance: float = 0.05) -> str:
-        """What happened, in words."""
+        """What happened, in words.
+
+        An estimate has converged if its error stayed within the tolerance for at least the last tenth of the run.
+        """
         if self.diverged_at is not None:
-            return (
-                f"diverged at {self.diverged_at:.3g} s: the estimate grew beyond all bounds; "
-                "choose smaller gains or shorter steps"
-            )
-        resets = ""
+            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}")
+        besides = ""
         if len(self.resets):
-            times = "once" if len(self.resets) == 1 else f"{len(self.resets)} times"
-            resets = f"; driven to the bound and reset {times}, first at {self.resets[0]:.3g} s"
+            which = "reset once" if len(self.resets) == 1 else "reset often"
+            besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
         if self.gaps and self.observer.gap:
-            begin, end = self.gaps[0]
-            resets += f"; no estimate from {begin:.3g} to {end:.3g} s, for {self.observer.gap.reason}"
-            resets += f", and in {len(self.gaps) - 1} more gaps" * (len(self.gaps) > 1)
+            begin, end = (f"{time:.3g}" for time in self.gaps[0])
+            besides += VERDICTS["gap"].format(begin=begin, end=end, reason=self.observer.gap.reason)
+            if len(self.gaps) > 1:
+                besides += VERDICTS["more gaps"].format(count=len(self.gaps) - 1)
+        length = float(self.time[-1] - self.time[0])
         if self.recording.truth is None:
-            return f"followed {self.time[-1] - self.time[0]:.3g} s; no truth to compare with{resets}"
-        hidden = ", ".join(self.observer.form.hidden)
+            return VERDICTS["followed"].format(time=f"{length:.3g}") + besides
         settled = self.settling_time(tolerance)
         if math.isinf(settled):
-            worst = float(np.abs(self.error[-1, self._columns(())]).max())
-            return f"not converged: the error of {hidden} ends at {worst:.2g}, outside {tolerance:g}{resets}"
-        return f"converged: the error of {hidden} stays within {tolerance:g} after {settled:.3g} s{resets}"
+            which = "outside"
+        else:
+            which = "converged" if length - settled >= SETTLED_PART * length else "late"
+        words = VERDICTS[which].format(
+            hidden=", ".join(self.observer.form.hidden),
+            error=f"{float(np.abs(self.error[-1, self._columns(())]).max()):.2g}",
+            tolerance=f"{tolerance:g}",
+            time=f"{settled:.3g}",
+        )
+        return words + besides
 
     def _columns(self, names: Sequence[str]) -> list[int]:
         known = [symbol.name for symbol in self.observer.form.coordinates]

@@ -26,6 +26,9 @@ RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.pe
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
         && lab.link.waitingFor === null)"""
 
+HANDED_OVER = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
+    (lab) => lab.kernels.whole.size === lab.widget.get("parts").length)"""
+
 STATE = """(which) => {
     const lab = [...window.perceptObsLabs][which];
     const numbers = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
@@ -49,11 +52,17 @@ def write_notebook(folder, name, *cells):
 
 
 def open_lab(page, folder, name="lab.ipynb", arguments=""):
-    """Show a notebook with one lab, run it, and wait until page and Python have come to rest."""
+    """Show a notebook with one lab, run it, and wait until all is handed over and at rest."""
     write_notebook(folder, name, OPEN.format(arguments=arguments))
     open_notebook(page, name)
     run_all(page)
+    handed_over(page)
     rested(page)
+
+
+def handed_over(page, patience=120):
+    """Wait until every lab has all parts of its model."""
+    page.wait_for_function(HANDED_OVER, timeout=1000 * patience)
 
 
 def rested(page, patience=30):

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 import percept_obs.labs
+from percept_obs.labs.structures import BY_NAME, KEYS, texts_of
 
 FRONT = Path(percept_obs.labs.__file__).parent / "front"
 
 NOISY = {"kind": "uniform", "size": 0.01}
 SMOOTH = ["identifier_based", "extended_kalman"]
-ALL = ["identifier_based", "sliding_mode", "extended_kalman"]
+ALL = list(BY_NAME)
 B_AT_THE_SIDE = [0.4, 0.3, 0.3]
 PLANE = [0.2, -0.1, 0.9]
 
@@ -38,8 +39,9 @@ SMOOTH_CASES = {
 }
 
 
-def run_in_node(node, model, tasks):
-    """What the page's engine makes of each of the settings."""
+def run_in_node(node, lab, tasks):
+    """What the page's engine makes of each of the settings, once all parts of the model have come."""
+    model = {**lab.model, "structures": {key: texts_of(key) for key in KEYS}}
     task = json.dumps({"model": model, "tasks": tasks}, allow_nan=False)
     script = FRONT / "tests/run_settings.js"
     answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)

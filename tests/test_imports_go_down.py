@@ -15,6 +15,10 @@ PACKAGE = Path(percept_obs.__file__).parent
 LAYERS = (
     ("cli",),
     ("labs",),
+    ("labs.analysis", "labs.tracks"),
+    ("labs.structures",),
+    ("labs.lecture",),
+    ("labs.checks", "labs.markup", "labs.printing"),
     ("figures", "exercises"),
     ("papers", "tuning", "structure_runs"),
     ("captions", "chatter", "compare", "consistency", "points", "two_stage"),

@@ -21,7 +21,7 @@ def lab():
 def answers(lab, node):
     """What the page's engine says of each smooth case, with the settings as Python completed them."""
     settings = {name: observer_lab(**case).settings for name, case in SMOOTH_CASES.items()}
-    found = run_in_node(node, lab.model, list(settings.values()))
+    found = run_in_node(node, lab, list(settings.values()))
     return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
 
 
@@ -39,7 +39,7 @@ def test_smooth_observers_agree_to_1e_9(lab, answers, case):
 def test_the_sliding_mode_observer_agrees_over_the_first_second_and_in_its_verdict(lab, node):
     for outputs in (["y1", "y2"], ["y1"]):
         lab.settings = observer_lab(observers=["sliding_mode"], noise=NOISY, seed=2, outputs=outputs).settings
-        (answer,) = run_in_node(node, lab.model, [lab.settings])
+        (answer,) = run_in_node(node, lab, [lab.settings])
         run = lab.run()["sliding_mode"]
         early = run.time <= 1
         estimate = as_array(answer["runs"]["sliding_mode"]["estimate"], 3)
@@ -51,7 +51,7 @@ def test_the_bound_and_divergence_are_told_alike(lab, node):
     biased = {"outputs": ["y1"], "noise": NOISY, "start": {"mode": "zero", "values": [0.0] * 3}}
     wild = {"gains": {"identifier_based": {"lyapunov": 5, "bound": 1e200}}}
     tasks = [observer_lab(**biased).settings, observer_lab(**wild).settings]
-    for settings, answer in zip(tasks, run_in_node(node, lab.model, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         lab.settings = settings
         run = lab.run()["identifier_based"]
         assert answer["summary"]["verdicts"]["identifier_based"] == run.verdict()
@@ -64,7 +64,7 @@ def test_the_bound_and_divergence_are_told_alike(lab, node):
 def test_a_real_track_is_followed_alike(node, outputs):
     recording = load_utias(utias_folder())[5]
     lab = observer_lab(recording, outputs=outputs, observers=["identifier_based", "extended_kalman"])
-    (answer,) = run_in_node(node, lab.model, [lab.settings])
+    (answer,) = run_in_node(node, lab, [lab.settings])
     for name, run in lab.run().items():
         assert_same_recording(answer, recording)
         assert_same_run(answer["runs"][name], run, 1e-9)
@@ -95,12 +95,12 @@ def test_the_copied_code_makes_the_same_run(lab, answers, case):
 
 
 def test_a_point_behind_the_camera_is_told(lab, node):
-    (answer,) = run_in_node(node, lab.model, [{**lab.settings, "X0": [0.0, 0.0, -1.0]}])
+    (answer,) = run_in_node(node, lab, [{**lab.settings, "X0": [0.0, 0.0, -1.0]}])
     assert "behind the camera" in answer["problem"]
 
 
 def test_all_observers_at_once_leave_no_number_out(lab, node):
-    (answer,) = run_in_node(node, lab.model, [observer_lab(observers=ALL, noise=NOISY).settings])
+    (answer,) = run_in_node(node, lab, [observer_lab(observers=ALL, noise=NOISY).settings])
     assert all(None not in run["estimate"] for run in answer["runs"].values())
     assert None not in answer["runs"]["extended_kalman"]["deviation"]
 

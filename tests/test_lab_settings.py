@@ -8,8 +8,8 @@ from utias_folder import utias_folder
 
 from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
 from percept_obs.datasets import load_utias
-from percept_obs.labs.base import BY_NAME, OUTPUTS, SURFACES
 from percept_obs.labs.observer_lab import PICTURES, observer_lab
+from percept_obs.labs.structures import BY_NAME, KEYS, OWN_SWITCH, SURFACES, texts_of
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.surfaces import BehindCamera, pinhole
 
@@ -39,20 +39,48 @@ def test_settings_survive_json_and_come_back_complete(lab):
 def test_the_model_is_complete_and_is_json(lab):
     model = json.loads(json.dumps(lab.model, allow_nan=False))
     assert set(model["surfaces"]) == set(SURFACES)
-    for surface in model["surfaces"].values():
-        assert set(surface["structures"]) == {"+".join(outputs) for outputs in OUTPUTS}
-        for structure in surface["structures"].values():
-            assert set(structure["observers"]) == set(BY_NAME)
+    assert set(model["observers"]) == set(BY_NAME)
     assert model["opening"] == observer_lab().settings
     assert model["pictures"] == list(PICTURES)
+    assert set(lab.parts) == set(KEYS)
+
+
+def test_the_model_opens_with_what_is_shown_first_and_the_kept_run():
+    lab = observer_lab(outputs=["y1"], observers=["spica"], kept={**observer_lab().settings, "observers": ["de_luca"]})
+    structures = lab.model["structures"]
+    assert set(structures) == {"pinhole y1", "pinhole y1+y2"}
+    assert {"spica", "de_luca"} == set(structures["pinhole y1"]["observers"])
+    assert lab.parts[0] == "pinhole y1"
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_every_structure_has_every_observer_or_a_reason(key):
+    texts = texts_of(key)
+    assert set(texts["observers"]) | set(texts["refused"]) == set(BY_NAME)
+    assert set(texts["refused"]) == (set() if "+" in key else {"range_identification"})
+    for name, kernels in texts["observers"].items():
+        assert len(kernels) == (3 if name in OWN_SWITCH else 1)
+
+
+# a sign has no width to smooth it over, and no slope that would turn noise into a bias
+WITHOUT_USE = {("range_identification", "sign", "boundary_layer"), ("sliding_mode", "sign", "noise_variance")}
 
 
 def test_every_gain_is_linked_to_a_letter_of_the_equations(lab):
     for name, observer in lab.model["observers"].items():
-        text = "".join(observer["formulas"])
-        for gain in observer["gains"]:
-            only_at_the_start = gain["name"] in ("switching_gain", "measured_variance", "hidden_variance")
-            assert (f'data-letter="{gain["name"]}"' in text) != only_at_the_start, (name, gain["name"])
+        for switch, variants in observer["equations"].items():
+            text = "".join(variants[-1]["lines"])
+            assert variants[-1]["zero"] is None
+            for gain in observer["gains"]:
+                unused = (name, switch, gain["name"]) in WITHOUT_USE
+                assert (f'data-letter="{gain["name"]}"' in text) != unused, (name, switch, gain["name"])
+
+
+def test_terms_of_a_gain_that_is_zero_are_left_out_of_the_equations(lab):
+    for name, gain in (("identifier_based", "noise_variance"), ("extended_kalman", "process_noise")):
+        ((_, variants),) = lab.model["observers"][name]["equations"].items()
+        assert [variant["zero"] for variant in variants] == [gain, None]
+        assert f'data-letter="{gain}"' not in "".join(variants[0]["lines"])
 
 
 @pytest.mark.parametrize(
@@ -69,6 +97,9 @@ def test_every_gain_is_linked_to_a_letter_of_the_equations(lab):
         ({"gains": {"luck": {}}}, "there is no observer luck"),
         ({"gains": {"identifier_based": {"gain": -1.0}}}, "G > 0 is needed"),
         ({"gains": {"identifier_based": {"strength": 1.0}}}, "has no gain strength"),
+        ({"observers": ["range_identification"], "outputs": ["y1"]}, "measure every image coordinate"),
+        ({"switches": {"spica": "sign"}}, "spica does not switch"),
+        ({"switches": {"sliding_mode": "never"}}, "it must be one of sign, hyperbolic tangent, fraction"),
         ({"A": [1, 2, 3]}, "numbers between"),
         ({"b": ["one", 2, 3]}, "numbers between"),
         ({"X0": [0.0, float("nan"), 1.0]}, "numbers between"),
@@ -145,6 +176,9 @@ def _rigid(motion):
         ({"observers": ["extended_kalman"]}, "claims to know the inverse distance"),
         ({"outputs": ["y1"], "noise": NOISY}, "noise pushes the estimate of y2"),
         ({}, "a small error shrinks to"),
+        ({"observers": ["extended_kalman"], "noise": NOISY}, "It is honest"),
+        ({"observers": ["extended_kalman"], "noise": {"kind": "uniform", "size": 0.03}}, "It is overconfident"),
+        ({"observers": ["extended_kalman"]}, "It is too modest"),
     ],
 )
 def test_the_analysis_says_what_python_found(settings, words):

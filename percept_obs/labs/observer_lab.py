@@ -3,42 +3,41 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
-from functools import lru_cache, partial, reduce
+from collections.abc import Mapping
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
-import sympy as sp
-from scipy.linalg import expm
 
 from percept_obs import scenarios
-from percept_obs.compile import vectorised
-from percept_obs.labs.base import (
+from percept_obs.labs.analysis import excitation_in_words, run_in_words
+from percept_obs.labs.base import Lab, Settings
+from percept_obs.labs.checks import number, numbers, one_of, some_of
+from percept_obs.labs.printing import Printing
+from percept_obs.labs.structures import (
     BY_NAME,
+    KEYS,
     OUTPUTS,
+    OWN_SWITCH,
     SURFACES,
-    Lab,
-    Settings,
-    Structure,
+    key_of,
     model_for_the_page,
-    number,
-    numbers,
     observer_of,
-    one_of,
-    track_for_the_page,
-    with_affine_motion,
+    structure_for_the_page,
 )
+from percept_obs.labs.tracks import track_for_the_page, with_affine_motion
 from percept_obs.motion import affine
-from percept_obs.observability import windowed
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.surfaces import BehindCamera, plane
-from percept_obs.tracking import Run, track
+from percept_obs.switching import SWITCHES
+from percept_obs.tracking import SETTLED_PART, VERDICTS, Run, track
 
-SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36)}
+SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 HOLDS = ("zero", "first", "exact")
 STARTS = ("own", "zero", "chosen")
 RANGES = {"dropout": (0, 0.95), "period": (1e-3, 1), "duration": (0.1, 200), "window": (0.1, 200), "threshold": (0, 10)}
+PRINTING = Printing("percept_obs.labs.structures")
 PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
 
 
@@ -58,6 +57,7 @@ class ObserverLab(Lab):
     surface, normal : "pinhole", "chained" or "plane", and the plane's normal vector
     outputs, observers : lists of names
     gains : for each observer, its gains by name
+    switches : for each observer that switches, how
     A, b, X0 : the true motion X' = A X + b and the point at time 0
     believed : None, or a mapping with the A and the b that the observers believe
     noise, dropout, seed, period : the camera; noise is a mapping of kind and size
@@ -98,7 +98,10 @@ class ObserverLab(Lab):
         fit.pop("title", None)
         self._opening: Settings = {**_opening_settings(), **fit, "scenario": scenario}
         self._opening = self.check(self._opening | settings)
-        super().__init__("observer_lab", self._model(), self._opening)
+        near = sorted(KEYS, key=lambda key: key.split()[0] != self._opening["surface"])
+        here = key_of(self._opening["surface"], self._opening["outputs"])
+        parts = sorted(near, key=lambda key: key != here)
+        super().__init__("observer_lab", self._model(), self._opening, PRINTING, parts)
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
@@ -112,6 +115,7 @@ class ObserverLab(Lab):
         whole = self._opening | settings
         recording = self._recordings.get(one_of(whole, "scenario", [*self._scenarios, *self._recordings]))
         whole["gains"] = _checked_gains(whole["gains"])
+        whole["switches"] = _checked_switches(whole["switches"])
         _check_choices(whole, recording)
         _check_numbers(whole)
         if whole["kept"] is not None:
@@ -126,19 +130,33 @@ class ObserverLab(Lab):
             return {"sentences": [str(error)]}
         first = next(iter(found.values()))
         window = min(self.settings["window"], float(np.ptp(first.time)))
-        sentences = [_excitation_in_words(first, window)]
+        sentences = [excitation_in_words(first, window)]
         for name, run in found.items():
-            sentences += _error_in_words((self.settings["surface"], tuple(self.settings["outputs"]), name), run, window)
+            structure = (self.settings["surface"], tuple(self.settings["outputs"]), name, _switch(self.settings, name))
+            sentences += run_in_words(structure, run, window)
         return {"sentences": sentences, "verdicts": {name: run.verdict() for name, run in found.items()}}
 
     def _model(self) -> Settings:
         return {
             **model_for_the_page(),
+            "structures": self._structures_of_the_opening(),
             "scenarios": self._scenarios,
             "recordings": self._tracks,
             "opening": self._opening,
             "pictures": PICTURES,
+            "verdicts": dict(VERDICTS),
+            "settledPart": SETTLED_PART,
         }
+
+    def _structures_of_the_opening(self) -> Settings:
+        """Structures with the observers that are shown first; the whole ones follow as parts."""
+        shown = [self._opening, *filter(None, [self._opening["kept"]])]
+        structures: Settings = {}
+        for settings in shown:
+            place = (settings["surface"], tuple(settings["outputs"]))
+            chosen = [(name, _switch(s, name) or "") for s in shown for name in s["observers"]]
+            structures[key_of(*place)] = structure_for_the_page(*place, tuple(dict.fromkeys(chosen)))
+        return structures
 
 
 observer_lab = ObserverLab
@@ -151,10 +169,15 @@ def runs(settings: Settings, recordings: Mapping[str, Recording]) -> dict[str, R
     start: Any = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
     found = {}
     for name in settings["observers"]:
-        observer = observer_of(settings["surface"], tuple(settings["outputs"]), name)
+        observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _switch(settings, name))
         observer = observer.with_gains(**settings["gains"][name])
         found[name] = track(recording, observer, start, settings["hold"], believed or None)
     return found
+
+
+def _switch(settings: Settings, name: str) -> str | None:
+    """How an observer switches, if it does."""
+    return settings["switches"].get(name)
 
 
 def _simulated(settings: Settings) -> Recording:
@@ -224,6 +247,7 @@ def _opening_settings() -> Settings:
         "outputs": ["y1", "y2"],
         "observers": ["identifier_based"],
         "gains": {},
+        "switches": {},
         "believed": None,
         "noise": {"kind": "uniform", "size": 0.0},
         "dropout": 0.0,
@@ -246,6 +270,16 @@ def _checked_gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, dict[s
     return {name: {gain.name: gain.value for gain in observer.gains} for name, observer in observers.items()}
 
 
+def _checked_switches(given: Mapping[str, str]) -> dict[str, str]:
+    unknown = sorted(set(given) - set(OWN_SWITCH))
+    if unknown:
+        raise ValueError(f"{', '.join(unknown)} does not switch; {', '.join(OWN_SWITCH)} do")
+    whole = {**OWN_SWITCH, **given}
+    return {
+        name: one_of({f"switch of {name}": switch}, f"switch of {name}", SWITCHES) for name, switch in whole.items()
+    }
+
+
 def _check_choices(settings: Settings, recording: Recording | None) -> None:
     surface = one_of(settings, "surface", SURFACES)
     offered = [o for o in OUTPUTS if recording is None or set(o) <= set(recording.names)]
@@ -253,10 +287,9 @@ def _check_choices(settings: Settings, recording: Recording | None) -> None:
         raise ValueError(
             f"outputs is {settings['outputs']!r}; it must be one of {', '.join(map(str, map(list, offered)))}"
         )
-    for key, known in (("observers", BY_NAME), ("pictures", PICTURES)):
-        wrong = [name for name in settings[key] if name not in known]
-        if wrong or not settings[key] or len(set(settings[key])) != len(settings[key]):
-            raise ValueError(f"{key} is {settings[key]!r}; name at least one of {', '.join(known)}, each once")
+    some_of(settings, "pictures", PICTURES)
+    for name in some_of(settings, "observers", BY_NAME):
+        observer_of(surface, tuple(settings["outputs"]), name, _switch(settings, name))
     one_of({"noise kind": settings["noise"].get("kind")}, "noise kind", NOISES)
     one_of({"start mode": settings["start"].get("mode")}, "start mode", STARTS)
     one_of(settings, "hold", HOLDS if recording is None else HOLDS[:2])
@@ -280,67 +313,3 @@ def _check_numbers(settings: Settings) -> None:
     seed = settings["seed"]
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**32:
         raise ValueError(f"seed is {seed!r}; it must be a whole number from 0 to 2^32 - 1")
-
-
-def _excitation_in_words(run: Run, window: float) -> str:
-    least = windowed(run.observer.form, run.recording, window).least
-    start = f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}"
-    if least > 1e-6:
-        return f"{start}: persistently excited, so the outputs alone tell the hidden part."
-    return f"{start}: not excited; one direction is seen only through the dynamics g, or not at all."
-
-
-@lru_cache
-def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
-    """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
-    observer = observer_of(*structure)
-    form, equations = observer.form, observer.equations
-    truth = (*form.x1, *form.x2)
-    hats = equations.state[: len(truth)]
-    flow = sp.ImmutableMatrix(equations.flow[: len(truth)])
-    variance = next((gain.symbol for gain in observer.gains if gain.name == "noise_variance"), sp.Dummy())
-    found = [*flow.jacobian(hats), *flow.diff(variance)]
-    there = dict(zip(hats, truth, strict=True))
-    symbols = (*truth, *equations.state[len(truth) :], *form.parameters, *equations.gains)
-    return vectorised(symbols, [entry.subs(there, simultaneous=True) for entry in found])
-
-
-def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
-    """How a small error grows or shrinks, and where noise pushes it, from the flow linearised at the truth."""
-    observer, recording = run.observer, run.recording
-    if run.diverged_at is not None:
-        return []
-    if observer.covariance is not None:
-        spread = 2 * float(np.sqrt(max(0.0, run.covariance[-1, -1, -1])))
-        return [f"{observer.name}: it claims to know the inverse distance to within {spread:.2g} (2σ) at the end."]
-    if recording.truth is None:
-        return []
-    names = [s.name for s in observer.form.coordinates]
-    order = [names.index(name) for name in (*observer.form.measured, *observer.form.hidden)]
-    size = len(names)
-    part = run.time >= run.time[-1] - window
-    known = np.broadcast_to(recording.motion.known(run.time[part]), (int(part.sum()), 12))
-    shape = [recording.surface.values[s] for s in recording.surface.parameters]
-    gains = {gain.name: gain.value for gain in observer.gains}
-    others = run.state[part, size:]
-    entries = _at_the_truth(structure)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
-    J = np.stack(entries[: size**2], axis=-1).reshape(-1, size, size)
-    with np.errstate(all="ignore"):  # what grows beyond all numbers is said so below
-        steps = expm(J[:-1] * np.diff(run.time[part])[:, None, None])
-        carried = np.eye(size) if not len(steps) else reduce(lambda before, step: step @ before, steps)
-    factor = float(np.linalg.norm(carried, 2)) if np.isfinite(carried).all() else np.inf
-    roots = ", ".join(f"{root:.3g}" for root in np.linalg.eigvals(J[-1]))
-    does = "shrinks to" if factor < 1 else "may grow to"
-    sentences = [
-        f"{observer.name}: its error dynamics end with the eigenvalues {roots} per second; over the last {window:g} s "
-        f"a small error {does} {factor:.2g} of its size."
-    ]
-    left = gains["noise_variance"] - (recording.noise_variance or 0.0)
-    push = left * np.array([entry[-1] for entry in entries[size**2 :]])
-    if np.abs(push).max() > 0:
-        name, size_of = names[order[int(np.abs(push).argmax())]], push[np.abs(push).argmax()]
-        sentences.append(
-            f"{observer.name}: at the end noise pushes the estimate of {name} by {size_of:.2g} per second on average; "
-            f"noise_variance takes it out where it equals the noise's variance, {recording.noise_variance or 0.0:.3g}."
-        )
-    return sentences

@@ -1,6 +1,10 @@
 // The bundle's entrance: anywidget calls render() for each view of a lab.
+//
+// To add a lab: a folder beside observer/ with a class that extends Live (common/live.js) and says how settings become
+// pictures and words; name it below, as its Python side names it in `kind`. Charts, controls, groups of controls, the
+// layout, modules made from printed texts, and the line to Python are in common/ and know nothing of observers.
 
-import { ObserverLab } from "./lab.js";
+import { ObserverLab } from "./observer/lab.js";
 
 const LABS = { observer_lab: ObserverLab };
 

@@ -1,10 +1,10 @@
 // Runs lab settings given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { pythonOf } from "../src/code.js";
-import { Engine } from "../src/engine.js";
+import { pythonOf } from "../src/observer/code.js";
+import { Engine } from "../src/observer/engine.js";
 import { loadHere } from "./load_here.js";
-import { Kernels } from "../src/kernels.js";
-import { summaryOf } from "../src/text.js";
+import { Kernels } from "../src/observer/kernels.js";
+import { summaryOf } from "../src/observer/text.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
 const kernels = new Kernels(model, loadHere);
@@ -14,7 +14,7 @@ const answers = [];
 for (const settings of tasks) {
   await kernels.prepare(settings);
   const shown = engine.run(settings, kernels.of(settings));
-  const answer = { problem: shown.problem ?? null, summary: summaryOf(shown, 1) };
+  const answer = { problem: shown.problem ?? null, summary: summaryOf(shown, 1, model) };
   if (!shown.problem) {
     answer.code = pythonOf(shown, model);
     answer.time = numbers(shown.time);

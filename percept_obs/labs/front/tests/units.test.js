@@ -1,12 +1,12 @@
 // The parts of the page that need no browser: random numbers, tables, scales, measures, words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { same } from "../src/equal.js";
-import { Kernels, moduleText } from "../src/kernels.js";
-import { settlingTime, smallestEigenvalue, windowed } from "../src/measures.js";
-import { uniformFrom } from "../src/random.js";
-import { linearScale, logScale, readable, short, spread } from "../src/scales.js";
-import { held, interpolate, lastSamples, stepGrid } from "../src/tables.js";
+import { same } from "../src/common/equal.js";
+import { moduleText, Modules } from "../src/common/modules.js";
+import { settlingTime, smallestEigenvalue, windowed } from "../src/observer/measures.js";
+import { uniformFrom } from "../src/common/random.js";
+import { linearScale, logScale, readable, short, spread } from "../src/common/scales.js";
+import { held, interpolate, lastSamples, stepGrid } from "../src/common/tables.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {
@@ -72,16 +72,9 @@ test("settings are the same whatever the order of their keys", () => {
 });
 
 test("a text that fails to load says which, and may be loaded once mended", async () => {
-  const observer = { run: "function run( {", start: "function evaluate() {}", estimate: "function evaluate() {}" };
-  const structure = { w: "function evaluate() {}", observers: { one: observer } };
-  const evaluate = "function evaluate() {}";
-  const chart = { project: evaluate, ray: evaluate, foe: evaluate, structures: { y1: structure } };
-  const model = { plant: "function run() {}", surfaces: { flat: chart }, observers: { one: { gains: [] } } };
-  const kernels = new Kernels(model, loadHere);
-  const settings = { surface: "flat", outputs: ["y1"], observers: ["one"] };
-  await assert.rejects(kernels.prepare(settings), /"flat y1 one" could not be loaded/);
-  observer.run = "function run() { return 1; }";
-  await kernels.prepare(settings);
-  assert.equal(kernels.of(settings).observers.one.run(), 1);
-  assert.match(moduleText({ run: observer.run }), /^export const run/);
+  const modules = new Modules(loadHere);
+  await assert.rejects(modules.prepare("flat y1 one", { run: "function run( {" }), /"flat y1 one" could not be loaded/);
+  await modules.prepare("flat y1 one", { run: "function run() { return 1; }" });
+  assert.equal(modules.get("flat y1 one").run(), 1);
+  assert.match(moduleText({ run: "function run() {}" }), /^export const run/);
 });

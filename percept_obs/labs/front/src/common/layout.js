@@ -1,14 +1,19 @@
 // Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
 
 import { button, element } from "./controls.js";
+import { swatch } from "./lines.js";
 import style from "./style.css";
 
 /** Build the lab's page inside an element. */
 export function build(lab, place, presets) {
-  const { widget: _widget, plane, charts, panel, formulas } = lab;
+  const { plane, charts, panel, formulas } = lab;
   const problem = element("p", { class: "problem", role: "alert", hidden: true });
   const pythonError = element("p", { class: "problem percept-obs-error", role: "alert", hidden: true });
   const silence = element("p", { class: "silence", role: "status", hidden: true });
+  const notice = element("p", { class: "notice", role: "status", hidden: true });
+  const progress = element("progress", { "aria-label": "Equations that have come from Python" });
+  const awaited = element("span");
+  const waiting = element("div", { class: "waiting", role: "status", hidden: true }, progress, awaited);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
   const verdicts = element("ul", { class: "verdicts" });
   const why = element("ul", { class: "why" });
@@ -103,6 +108,8 @@ export function build(lab, place, presets) {
     code,
     problem,
     pythonError,
+    notice,
+    waiting,
     element(
       "div",
       { class: "stage" },
@@ -128,31 +135,38 @@ export function build(lab, place, presets) {
     chart.canvas.addEventListener("pointerleave", () => lab.point(null));
   }
 
+  let spoken = "";
   const view = {
     root,
     forgetPreset,
     words(found) {
-      fill(verdicts, found.verdicts.map(([run, text]) => `${run.title}: ${text}`));
+      fillVerdicts(verdicts, found.verdicts);
       fill(why, found.reasons);
       put(reading, found.reading);
-    },
-    controls({ settings, shown, model }) {
-      keep.textContent = settings.kept ? "Forget the kept run" : "Keep this run";
+      spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
+      const { settings } = lab;
+      put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
       keep.setAttribute("aria-pressed", String(Boolean(settings.kept)));
       code.hidden ||= code.textContent !== lab.copy();
-      const lines = [["truth", shown.truth ? "truth" : null], ...Object.keys(model.observers).map((name, k) => [k, settings.observers.includes(name) ? model.observers[name].title : null]), ["kept", settings.kept ? "kept run" : null]];
-      const key = JSON.stringify(lines);
+      const key = JSON.stringify(found.legend);
       if (legend.dataset.key === key) return;
       legend.dataset.key = key;
-      legend.replaceChildren(
-        ...lines
-          .filter(([, text]) => text)
-          .map(([which, text]) => element("li", {}, element("span", { class: `swatch swatch-${which}`, "aria-hidden": "true" }), text)),
-      );
+      legend.replaceChildren(...found.legend.map(([which, text]) => element("li", {}, swatch(which), text)));
     },
-    rested({ shown }) {
-      const texts = shown.problem ? [shown.problem] : [...verdicts.children].map((item) => item.textContent);
-      put(live, texts.join(". "));
+    rested() {
+      put(live, spoken);
+    },
+    notice(text) {
+      put(notice, text);
+      notice.hidden = !text;
+    },
+    waiting(found) {
+      waiting.hidden = !found;
+      if (!found) return;
+      const { done, of, reason } = found;
+      progress.max = of;
+      progress.value = done;
+      put(awaited, reason || `Python is still printing these equations: ${done} of ${of} parts are here.`);
     },
     analysis(sentences) {
       fill(analysis, sentences);
@@ -180,6 +194,16 @@ export function build(lab, place, presets) {
 
 function put(node, text) {
   if (node.textContent !== text) node.textContent = text;
+}
+
+/** What happened in each run, beside a piece of its line. */
+function fillVerdicts(list, found) {
+  const key = JSON.stringify(found);
+  if (list.dataset.key === key) return;
+  list.dataset.key = key;
+  list.replaceChildren(
+    ...found.map(({ which, title, text }) => element("li", {}, swatch(which), element("strong", {}, `${title}:`), ` ${text}`)),
+  );
 }
 
 function fill(list, texts) {

@@ -1,32 +1,29 @@
-// What happened, and why, in words. Verdicts use the same words as Run.verdict() in Python.
+// What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
 
-import { TOLERANCE } from "./measures.js";
-import { readable, short } from "./scales.js";
+import { readable, short } from "../common/scales.js";
 import { sampleAt } from "./image_plane.js";
+import { TOLERANCE } from "./measures.js";
 
 const UNEXCITED = 1e-4;
 
-/** What happened to one observer. */
-export function verdict(run, shown) {
-  if (run.divergedAt !== null) {
-    return (
-      `diverged at ${short(run.divergedAt)} s: the estimate grew beyond all bounds; ` +
-      "choose smaller gains or shorter steps"
-    );
-  }
-  let resets = "";
-  if (run.resets.length) {
-    const times = run.resets.length === 1 ? "once" : `${run.resets.length} times`;
-    resets = `; driven to the bound and reset ${times}, first at ${short(run.resets[0])} s`;
-  }
-  const { time } = shown;
-  if (!shown.truth) return `followed ${short(time.at(-1) - time[0])} s; no truth to compare with${resets}`;
-  const hidden = shown.hiddenNames.join(", ");
-  if (run.settling === Infinity) {
-    const worst = short(run.error.at(-1), 2);
-    return `not converged: the error of ${hidden} ends at ${worst}, outside ${TOLERANCE}${resets}`;
-  }
-  return `converged: the error of ${hidden} stays within ${TOLERANCE} after ${short(run.settling)} s${resets}`;
+/** What happened to one observer, as Run.verdict() in Python. */
+export function verdict(run, shown, { verdicts, settledPart }) {
+  const say = (which, values) => verdicts[which].replace(/{(\w+)}/g, (_, name) => values[name]);
+  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
+  const count = run.resets.length;
+  const resets = count
+    ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) })
+    : "";
+  const length = shown.time.at(-1) - shown.time[0];
+  if (!shown.truth) return say("followed", { time: short(length) }) + resets;
+  const inside = length - run.settling >= settledPart * length ? "converged" : "late";
+  const words = say(run.settling === Infinity ? "outside" : inside, {
+    hidden: shown.hiddenNames.join(", "),
+    error: short(run.error.at(-1), 2),
+    tolerance: TOLERANCE,
+    time: short(run.settling),
+  });
+  return words + resets;
 }
 
 /** Why: what the settings and the path of the point have to do with it. */
@@ -121,7 +118,7 @@ export function readingAt(shown, cursor) {
 }
 
 /** Numbers that Python is told: verdicts, final estimates, resets, and estimates at some times. */
-export function summaryOf(shown, serial) {
+export function summaryOf(shown, serial, model) {
   if (shown.problem) return { serial, problem: shown.problem };
   const number = (value) => (Number.isFinite(value) ? value : null);
   const last = shown.time.length - 1;
@@ -131,7 +128,7 @@ export function summaryOf(shown, serial) {
   return {
     serial,
     samples: shown.time.length,
-    verdicts: by((run) => verdict(run, shown)),
+    verdicts: by((run) => verdict(run, shown, model)),
     settling: by((run) => number(run.settling)),
     resets: by((run) => run.resets.length),
     final: by((run) => row(run, last)),

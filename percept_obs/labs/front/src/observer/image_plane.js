@@ -1,7 +1,8 @@
 // The image plane: the point's path, the estimates, and the focus of expansion as a handle.
 
-import { DASHES, describe, fit, OBSERVER_DASHES, picture, underlay } from "./canvas.js";
-import { linearScale, readable, spread, tickLabel } from "./scales.js";
+import { describe, fit, picture, underlay } from "../common/canvas.js";
+import { DASHES, KEPT, SOLID } from "../common/lines.js";
+import { linearScale, readable, spread, tickLabel } from "../common/scales.js";
 
 const EDGE = 34;
 const NUDGE = 0.01;
@@ -82,9 +83,9 @@ export class ImagePlane {
     pen.clip();
     if (shown.circle) drawCircle(pen, shown.circle, x, y, this.scale, theme);
     const trace = (rows, colour, dash) => drawPath(pen, rows, shown.width, x, y, colour, dash);
-    ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, DASHES.kept));
-    if (shown.truth?.length) trace(shown.truth, theme.ink, DASHES.truth);
-    shown.runs.forEach((run) => trace(run.estimate, theme.observers[run.order], OBSERVER_DASHES[run.order]));
+    ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
+    if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
+    shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
     drawEnds(pen, shown, x, y, theme);
     if (cursor !== null) drawAt(pen, shown, cursor, x, y, theme);
     pen.restore();
@@ -241,7 +242,7 @@ function drawAt(pen, shown, cursor, x, y, theme) {
     pen.fillStyle = colour;
     pen.fill();
   };
-  shown.runs.forEach((run) => dot(run.estimate, theme.observers[run.order]));
+  shown.runs.forEach((run) => dot(run.estimate, theme.lines[run.order]));
   if (shown.truth) dot(shown.truth, theme.ink);
 }
 

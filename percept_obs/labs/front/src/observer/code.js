@@ -1,5 +1,7 @@
 // The few lines of Python that make the same run.
 
+import { switchOf } from "./kernels.js";
+
 const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
 
 /** Python text for settings that are shown. */
@@ -24,7 +26,8 @@ export function pythonOf(shown, model) {
   }
   for (const name of settings.observers) {
     const changed = model.observers[name].gains.filter((gain) => settings.gains[name][gain.name] !== gain.value);
-    const gains = changed.map((gain) => `, ${gain.name}=${number(settings.gains[name][gain.name])}`).join("");
+    const way = switchOf(settings, name);
+    const gains = (way === model.observers[name].switch ? "" : `, switch="${way}"`) + changed.map((gain) => `, ${gain.name}=${number(settings.gains[name][gain.name])}`).join("");
     const result = settings.observers.length > 1 ? `run_${name}` : "run";
     lines.push(`${result} = track(${["recording", `${name}(form${gains})`, ...options].join(", ")})`);
     lines.push(`print(${result}.verdict())`);

@@ -1,9 +1,8 @@
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
-import { DASHES, OBSERVER_DASHES } from "./canvas.js";
+import { DASHES, KEPT, SOLID } from "../common/lines.js";
+import { linearScale, logScale, readable, spread } from "../common/scales.js";
 import { TOLERANCE } from "./measures.js";
-import { linearScale, logScale, readable, spread } from "./scales.js";
-import { column } from "./tables.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
 
@@ -26,23 +25,22 @@ const BUILD = {
     for (const c of [0, 1]) {
       const label = shown.names[c];
       if (shown.measured.includes(c)) {
-        lines.push(line(`${label} sampled`, shown.time, column(shown.outputs, 2, c), theme.sample, DASHES.samples));
+        lines.push(line(`${label} sampled`, shown.time, shown.sampleOf(c), theme.sample, SOLID));
       }
-      lines.push(...linesOf(shown, ghost, theme, label, (rows) => column(rows, shown.width, c)));
+      lines.push(...linesOf(shown, ghost, theme, label, (rows) => rows.columnOf(c)));
     }
     return { title: "Image coordinates y1, y2", lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
   inverse(shown, ghost, theme) {
     const c = shown.width - 1;
-    const lines = linesOf(shown, ghost, theme, shown.names[c], (rows) => column(rows, shown.width, c));
-    const claims = shown.runs.findIndex((run) => run.deviation);
-    const band = claims < 0 ? undefined : bandOf(shown, claims, c, theme);
+    const lines = linesOf(shown, ghost, theme, shown.names[c], (rows) => rows.columnOf(c));
+    const claiming = shown.runs.find((run) => run.deviation);
+    const band = claiming && bandOf(shown, claiming, c, theme);
     const title = `Inverse distance ${shown.names[c]} in 1/m${band ? ", with ±2σ that the filter claims" : ""}`;
     return { title, lines, band, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
   distance(shown, ghost, theme) {
-    const far = (rows) => inverseOf(rows, shown.width);
-    const lines = linesOf(shown, ghost, theme, "distance", far);
+    const lines = linesOf(shown, ghost, theme, "distance", (rows) => inverseOf(rows, shown.width - 1));
     const title = `${NAMES[shown.settings.surface]} in m`;
     return { title, lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
@@ -51,16 +49,16 @@ const BUILD = {
     const add = (run, time, colour, dash, who) => {
       if (run.error) lines.push(line(`${who} error`, time, run.error, colour, dash));
     };
-    ghost?.runs.forEach((run) => add(run, ghost.time, theme.kept, DASHES.kept, `kept ${run.title}`));
-    shown.runs.forEach((run) => add(run, shown.time, theme.observers[run.order], OBSERVER_DASHES[run.order], run.title));
+    ghost?.runs.forEach((run) => add(run, ghost.time, theme.kept, KEPT, `kept ${run.title}`));
+    shown.runs.forEach((run) => add(run, shown.time, theme.lines[run.order], DASHES[run.order], run.title));
     const title = `Largest |error| of ${shown.hiddenNames.join(", ")}, with the tolerance ${TOLERANCE}`;
     return { title, lines, scale: decades(lines, 1e-6, 1e2), level: TOLERANCE, marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {
     const { excitation } = shown;
-    const lines = [line("excitation", excitation.time, excitation.smallest, theme.ink, DASHES.truth)];
+    const lines = [line("excitation", excitation.time, excitation.smallest, theme.ink, SOLID)];
     if (ghost?.excitation) {
-      lines.unshift(line("kept excitation", ghost.excitation.time, ghost.excitation.smallest, theme.kept, DASHES.kept));
+      lines.unshift(line("kept excitation", ghost.excitation.time, ghost.excitation.smallest, theme.kept, KEPT));
     }
     const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(excitation.window)} s`;
     return { title, lines, scale: decades(lines, 1e-12, 1e4) };
@@ -71,42 +69,42 @@ function line(name, time, values, colour, dash) {
   return { name, time, values, colour, dash };
 }
 
+/** Lines of the kept run, the truth and the runs, by what is picked of each. */
 function linesOf(shown, ghost, theme, label, pick) {
-  const lines = [];
-  ghost?.runs.forEach((run) =>
-    lines.push(line(`kept ${run.title} ${label}`, ghost.time, pick(run.estimate), theme.kept, DASHES.kept)),
+  const lines = (ghost?.runs ?? []).map((run) =>
+    line(`kept ${run.title} ${label}`, ghost.time, pick(run), theme.kept, KEPT),
   );
-  if (shown.truth) lines.push(line(`true ${label}`, shown.time, pick(shown.truth), theme.ink, DASHES.truth));
-  shown.runs.forEach((run) =>
-    lines.push(line(`${run.title} ${label}`, shown.time, pick(run.estimate), theme.observers[run.order], OBSERVER_DASHES[run.order])),
-  );
+  if (shown.truth) lines.push(line(`true ${label}`, shown.time, pick(shown), theme.ink, SOLID));
+  for (const run of shown.runs) {
+    lines.push(line(`${run.title} ${label}`, shown.time, pick(run), theme.lines[run.order], DASHES[run.order]));
+  }
   return lines;
 }
 
-/** Distances of estimates; none where the inverse distance is not positive. */
-function inverseOf(rows, width) {
-  const result = new Float64Array(rows.length / width);
-  for (let k = 0; k < result.length; k++) {
-    const inverse = rows[(k + 1) * width - 1];
-    result[k] = inverse > 0 ? 1 / inverse : NaN;
-  }
-  return result;
+/** Distances; none where the inverse distance is not positive. */
+function inverseOf(rows, c) {
+  if (rows.distances) return rows.distances;
+  const inverse = rows.columnOf(c);
+  const distances = new Float64Array(inverse.length);
+  for (let k = 0; k < distances.length; k++) distances[k] = inverse[k] > 0 ? 1 / inverse[k] : NaN;
+  return (rows.distances = distances);
 }
 
-function bandOf(shown, which, c, theme) {
-  const { estimate, deviation } = shown.runs[which];
-  const middle = column(estimate, shown.width, c);
-  const spreadOf = column(deviation, shown.width, c);
-  return {
-    time: shown.time,
-    low: middle.map((value, k) => value - 2 * spreadOf[k]),
-    high: middle.map((value, k) => value + 2 * spreadOf[k]),
-    colour: theme.observers[shown.runs[which].order],
-  };
+function bandOf(shown, run, c, theme) {
+  const { width } = shown;
+  const middle = run.columnOf(c);
+  const low = new Float64Array(middle.length);
+  const high = new Float64Array(middle.length);
+  for (let k = 0; k < middle.length; k++) {
+    const deviation = 2 * run.deviation[k * width + c];
+    low[k] = middle[k] - deviation;
+    high[k] = middle[k] + deviation;
+  }
+  return { time: shown.time, low, high, colour: theme.lines[run.order] };
 }
 
 function marksOf(shown, theme) {
-  return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.observers[run.order] })));
+  return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
 }
 
 /** A range around the truth that lets an estimate leave it by as much as the truth is high, and no further. */

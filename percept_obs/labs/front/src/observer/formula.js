@@ -1,7 +1,8 @@
 // Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
 
-import { element } from "./controls.js";
-import { readable } from "./scales.js";
+import { element } from "../common/controls.js";
+import { readable } from "../common/scales.js";
+import { keyOf, switchOf } from "./kernels.js";
 
 /** The panel of equations: of the form, and of each observer. */
 export class Formulas {
@@ -13,10 +14,11 @@ export class Formulas {
 
   /** Show the equations of these settings, with their numbers. */
   show(settings) {
-    const key = JSON.stringify([settings.surface, settings.outputs, settings.observers]);
+    const chosen = settings.observers.map((name) => [name, this.linesOf(settings, name)]);
+    const key = JSON.stringify([keyOf(settings), chosen]);
     if (key !== this.shownFor) {
       this.shownFor = key;
-      this.build(settings);
+      this.build(settings, chosen);
     }
     const motion = Object.fromEntries([
       ...settings.A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])),
@@ -38,15 +40,17 @@ export class Formulas {
     }
   }
 
-  build(settings) {
+  /** An observer's equations, without the terms of a gain that is 0. */
+  linesOf(settings, name) {
+    const equations = this.model.observers[name].equations[switchOf(settings, name)];
+    return equations.find(({ zero }) => zero === null || settings.gains[name][zero] === 0).lines;
+  }
+
+  build(settings, chosen) {
     this.body.replaceChildren();
     this.numbers = [];
-    const structure = this.model.surfaces[settings.surface].structures[settings.outputs.join("+")];
-    this.section("What is measured and what is hidden", "motion", structure.formulas);
-    for (const name of settings.observers) {
-      const { title, formulas } = this.model.observers[name];
-      this.section(`The ${title} observer`, name, formulas);
-    }
+    this.section("What is measured and what is hidden", "motion", this.model.structures[keyOf(settings)].formulas);
+    for (const [name, lines] of chosen) this.section(`The ${this.model.observers[name].title} observer`, name, lines);
   }
 
   section(title, owner, formulas) {

@@ -1,7 +1,8 @@
 // The controls of the observer lab: each reads from the settings and changes them.
 
-import { checkbox, element, radios, select, slider } from "./controls.js";
-import { Fieldsets, linkToFormula } from "./fieldsets.js";
+import { checkbox, element, radios, select, slider } from "../common/controls.js";
+import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
+import { ObserverList } from "./observer_list.js";
 
 const OUTPUT_NAMES = { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only" };
 const PICTURE_NAMES = {
@@ -17,8 +18,16 @@ export class Panel extends Fieldsets {
   constructor(model, lab) {
     super(lab);
     this.model = model;
+    this.list = new ObserverList(this);
     this.body = element("div", { class: "panel" });
-    this.body.append(this.observing(), this.gains(), this.point(), this.camera(), this.belief(), this.showing());
+    this.body.append(
+      element("div", { class: "observe" }, this.measuring(), this.fieldset("Observe with", {}, ...this.list.rows)),
+      this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
+      this.point(),
+      this.camera(),
+      this.belief(),
+      this.showing(),
+    );
     this.simulated = this.body.querySelectorAll("[data-simulated]");
   }
 
@@ -27,14 +36,13 @@ export class Panel extends Fieldsets {
     if (this.shownFor === lab.settings) return;
     this.shownFor = lab.settings;
     for (const control of this.controls) control.show();
-    for (const [name, block] of this.gainBlocks) block.hidden = !lab.settings.observers.includes(name);
+    this.list.show();
     const recorded = lab.settings.scenario in model.recordings;
     for (const node of this.simulated) node.hidden = recorded;
   }
 
-  observing() {
+  measuring() {
     const { lab, model } = this;
-    const offered = () => Object.keys(model.surfaces[lab.settings.surface].structures);
     const outputs = radios({
       name: "outputs",
       label: "Measured outputs",
@@ -48,59 +56,10 @@ export class Panel extends Fieldsets {
       const track = model.recordings[lab.settings.scenario];
       for (const input of outputs.parts) {
         const missing = track && !input.value.split("+").every((name) => track.names.includes(name));
-        input.disabled = Boolean(missing) || !offered().includes(input.value);
+        input.disabled = Boolean(missing);
       }
     };
-    const observers = Object.entries(model.observers).map(([name, { title }], k) =>
-      this.add(
-        checkbox({
-          name: `observer ${name}`,
-          label: title,
-          swatch: element("span", { class: `swatch swatch-${k}`, "aria-hidden": "true" }),
-          get: () => lab.settings.observers.includes(name),
-          set: (on) => {
-            const all = Object.keys(model.observers);
-            const chosen = all.filter((n) => (n === name ? on : lab.settings.observers.includes(n)));
-            if (chosen.length) lab.change({ observers: chosen }, true);
-            else this.refuse("At least one observer stays.");
-          },
-        }),
-      ),
-    );
-    return this.fieldset(
-      "Measure and observe",
-      {},
-      this.add(outputs),
-      element("div", { class: "choices", role: "group", "aria-label": "Observers" }, ...observers),
-    );
-  }
-
-  gains() {
-    const { lab, model } = this;
-    this.gainBlocks = Object.entries(model.observers).map(([observer, { title, gains }]) => {
-      const rows = gains.map((gain) => {
-        const log = gain.low > 0 && gain.high / gain.low >= 50;
-        const control = slider({
-          ...gain,
-          name: `${observer} ${gain.name}`,
-          label: gain.name.replaceAll("_", " "),
-          hint: gain.condition ? `${gain.meaning}; needs ${gain.condition}` : gain.meaning,
-          log,
-          step: (gain.high - gain.low) / 1000,
-          allowed: (value) => lab.allows(observer, gain.name, value),
-          get: () => lab.settings.gains[observer][gain.name],
-          set: (value) => {
-            const all = lab.settings.gains;
-            lab.change({ gains: { ...all, [observer]: { ...all[observer], [gain.name]: value } } });
-          },
-          rest: () => lab.rest(),
-        });
-        linkToFormula(control, () => lab.formulas, observer, gain.name);
-        return this.add(control);
-      });
-      return [observer, element("div", {}, element("h4", {}, title), ...rows)];
-    });
-    return this.fieldset("Gains", { class: "gains" }, ...this.gainBlocks.map(([, block]) => block));
+    return this.fieldset("Measure", {}, this.add(outputs));
   }
 
   point() {
@@ -147,7 +106,7 @@ export class Panel extends Fieldsets {
       label: "duration", unit: "s", low: 2, high: 120, step: 1, least: 0.1, most: 200,
     });
     const own = element("div", { "data-simulated": true }, this.add(surface), ...normal, duration, ...b, A, ...X0);
-    return this.fieldset("The point and its motion", {}, this.add(scenario), own);
+    return this.fieldset("The point and its motion", { class: "point" }, this.add(scenario), own);
   }
 
   camera() {
@@ -192,7 +151,7 @@ export class Panel extends Fieldsets {
     };
     return this.fieldset(
       "Camera",
-      {},
+      { class: "camera" },
       element(
         "div",
         { "data-simulated": true },
@@ -210,11 +169,11 @@ export class Panel extends Fieldsets {
     const { lab } = this;
     const mode = select({
       name: "start",
-      label: "Estimate",
+      label: "The estimate starts at",
       options: [
-        ["own", "first sample, hidden 0"],
-        ["zero", "all zero"],
-        ["chosen", "chosen below"],
+        ["own", "first sample and 0"],
+        ["zero", "zero"],
+        ["chosen", "chosen values"],
       ],
       get: () => lab.settings.start.mode,
       set: (value) => lab.change({ start: { ...lab.settings.start, mode: value } }, true),
@@ -261,7 +220,7 @@ export class Panel extends Fieldsets {
     );
     const A = this.matrix("believed A", "Believed A", () => lab.settings.believed?.A, (value) => believed({ A: value }));
     const simulated = element("div", { "data-simulated": true }, this.add(wrong), ...b, A);
-    return this.fieldset("Start and belief", {}, this.add(mode), ...values, simulated);
+    return this.fieldset("Start and belief", { class: "start" }, this.add(mode), ...values, simulated);
   }
 
   showing() {
@@ -282,7 +241,7 @@ export class Panel extends Fieldsets {
     );
     return this.fieldset(
       "Pictures",
-      {},
+      { class: "pictures" },
       element("div", { class: "choices", role: "group", "aria-label": "Time charts" }, ...pictures),
       this.number("window", { label: "window", unit: "s", low: 0.5, high: 30, step: 0.5, least: 0.1, most: 200 }),
       this.number("threshold", { label: "threshold of |w|", low: 0, high: 0.5, step: 0.005, least: 0, most: 10 }),

@@ -1,5 +1,7 @@
 // A canvas that is as sharp as the screen and as wide as its place, with a name for those who do not see it.
 
+import { DASHES } from "./lines.js";
+
 /** Make a picture: a canvas with role, label and a text that tells what it shows. */
 export function picture(className, label) {
   const figure = document.createElement("figure");
@@ -69,11 +71,7 @@ export function themeOf(element) {
     sample: colour("sample"),
     warning: colour("warning"),
     kept: colour("kept"),
-    observers: [colour("first"), colour("second"), colour("third")],
+    lines: DASHES.map((_, k) => colour(`line-${k}`)),
     font: `11px ${colour("font") || "sans-serif"}`,
   };
 }
-
-/** How each line is drawn: told apart by its dashes as well as by its colour. */
-export const DASHES = { truth: [], first: [7, 4], second: [2, 3], third: [10, 3, 2, 3], kept: [1, 3], samples: [] };
-export const OBSERVER_DASHES = [DASHES.first, DASHES.second, DASHES.third];

@@ -54,14 +54,15 @@ export function windowed(time, w, hidden, measured, window) {
 }
 
 /** Largest absolute error of the hidden coordinates at each sample. */
-export function hiddenError(truth, estimate, width, hidden) {
-  const error = new Float64Array(truth.length / width);
+export function hiddenError(truth, estimate, width, hidden, error = new Float64Array(truth.length / width)) {
   for (let k = 0; k < error.length; k++) {
-    for (const c of hidden) {
-      const size = Math.abs(truth[k * width + c] - estimate[k * width + c]);
+    let largest = 0;
+    for (let i = 0; i < hidden.length; i++) {
+      const size = Math.abs(truth[k * width + hidden[i]] - estimate[k * width + hidden[i]]);
       // Not Math.max alone: what is not a number must stay so.
-      if (!(size <= error[k])) error[k] = size;
+      if (!(size <= largest)) largest = size;
     }
+    error[k] = largest;
   }
   return error;
 }

@@ -16,7 +16,7 @@ export function element(tag, attributes = {}, ...children) {
 
 /** The digits of a value that a field shows. */
 function shown(value) {
-  if (value && Math.abs(value) < 1e-3) return value.toExponential(3).replace(/\.?0+e/, "e");
+  if (value && Math.abs(value) < 1e-3) return value.toExponential(2).replace(/\.?0+e/, "e");
   return String(Number(value?.toPrecision(6)));
 }
 

@@ -50,32 +50,38 @@ export function interpolate(places, times, values) {
   return result;
 }
 
-/** One column of a table of rows. */
-export function column(rows, width, which) {
-  const result = new Float64Array(rows.length / width);
+const fresh = (length) => new Float64Array(length);
+
+/** One column of a table of rows; `room` gives an array to put it into. */
+export function column(rows, width, which, room = fresh) {
+  const result = room(rows.length / width);
   for (let k = 0; k < result.length; k++) result[k] = rows[k * width + which];
   return result;
 }
 
 /** Each sample, or where it was lost (NaN) the last one before it. */
-export function lastSamples(values) {
-  const result = values.slice();
-  for (let k = 1; k < result.length; k++) if (Number.isNaN(result[k])) result[k] = result[k - 1];
+export function lastSamples(values, room = fresh) {
+  const result = room(values.length);
+  let last = NaN;
+  for (let k = 0; k < values.length; k++) {
+    if (values[k] === values[k]) last = values[k];
+    result[k] = last;
+  }
   return result;
 }
 
 /** Measured outputs as held at the start, the middle and the end of each step: rows of 3 x outputs. */
-export function held(columns, times, grid, index, hold, exact, room = (length) => new Float64Array(length)) {
+export function held(columns, times, grid, index, hold, exact, room = fresh) {
   const outputs = columns.length;
   const steps = grid.length - 1;
   const table = room(steps * 3 * outputs);
+  const row = 3 * outputs;
   columns.forEach((values, m) => {
     if (hold === "zero") {
-      const last = lastSamples(values);
+      let last = NaN;
       for (let k = 0; k + 1 < index.length; k++) {
-        for (let j = index[k]; j < index[k + 1]; j++) {
-          for (let stage = 0; stage < 3; stage++) table[(3 * j + stage) * outputs + m] = last[k];
-        }
+        if (values[k] === values[k]) last = values[k];
+        for (let at = index[k] * row + m; at < index[k + 1] * row; at += outputs) table[at] = last;
       }
       return;
     }
@@ -93,7 +99,7 @@ function lineThrough(values, times, places) {
 }
 
 /** Samples at the steps' ends at which they arrive, NaN at the others. */
-export function arriving(columns, index, count, room = (length) => new Float64Array(length)) {
+export function arriving(columns, index, count, room = fresh) {
   const outputs = columns.length;
   const table = room(count * outputs).fill(NaN);
   for (let k = 0; k < index.length; k++) {
@@ -109,8 +115,8 @@ export function known(motion, shape, grid) {
 
 /** Rows of known numbers at some times. */
 export function knownAt(motion, shape, places) {
-  if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), varying: false };
   const width = motion.rows[0].length + shape.length;
+  if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
   const rows = new Float64Array(places.length * width);
   motion.rows[0].forEach((_, p) => {
     const line = interpolate(places, motion.times, motion.columns[p]);
@@ -119,5 +125,5 @@ export function knownAt(motion, shape, places) {
   shape.forEach((value, p) => {
     for (let k = 0; k < places.length; k++) rows[k * width + motion.rows[0].length + p] = value;
   });
-  return { rows, varying: true };
+  return { rows, width, varying: true };
 }

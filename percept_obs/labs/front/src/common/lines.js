@@ -1,0 +1,31 @@
+// How lines are told apart: by their dashes as well as by their colours.
+
+/** Dashes of the lines that are compared, in their order. */
+export const DASHES = [
+  [7, 4],
+  [2, 3],
+  [10, 3, 2, 3],
+  [16, 4],
+  [9, 3, 2, 3, 2, 3],
+  [4, 2, 4, 7],
+  [2, 7],
+  [16, 3, 5, 3],
+];
+
+export const SOLID = [];
+export const KEPT = [1, 3];
+
+/** A piece of a line, for legends: which is "truth", "kept" or the line's place in the order. */
+export function swatch(which) {
+  const space = "http://www.w3.org/2000/svg";
+  const picture = document.createElementNS(space, "svg");
+  const line = document.createElementNS(space, "line");
+  const dash = which === "truth" ? SOLID : which === "kept" ? KEPT : DASHES[which];
+  for (const [key, value] of Object.entries({ x1: 0, y1: 4, x2: 36, y2: 4, "stroke-dasharray": dash.join(" ") })) {
+    line.setAttribute(key, value);
+  }
+  picture.setAttribute("class", `swatch swatch-${which}`);
+  picture.setAttribute("aria-hidden", "true");
+  picture.append(line);
+  return picture;
+}

@@ -1,0 +1,32 @@
+// What a computation keeps from one frame to the next.
+
+/** Values that are made once for the same inputs, and arrays that are used again. */
+export class Memory {
+  constructor() {
+    this.kept = new Map();
+    this.rooms = new Map();
+  }
+
+  /** Room for numbers that only one run needs: taken again by the next, so that a drag leaves no litter. */
+  room(part, length) {
+    if (this.rooms.get(part)?.length !== length) this.rooms.set(part, new Float64Array(length));
+    return this.rooms.get(part);
+  }
+
+  /** The value made for these inputs; made anew when they change, and then the one before is gone. */
+  once(part, inputs, make) {
+    const key = JSON.stringify(inputs);
+    const kept = this.kept.get(part);
+    if (kept && kept.key === key) return kept.value;
+    const value = make();
+    if (value && typeof value === "object" && !ArrayBuffer.isView(value)) value.key ??= `${part} ${key}`;
+    this.kept.set(part, { key, value });
+    return value;
+  }
+}
+
+/** A property that is computed when it is first asked for. */
+export function lazily(owner, name, make) {
+  let value;
+  Object.defineProperty(owner, name, { get: () => (value ??= make()), enumerable: true });
+}

@@ -1,0 +1,47 @@
+// Texts that sympy printed become functions: each group is one module, imported once and kept.
+
+/** Import a module's text; a Blob's address works in JupyterLab, in Voila and from a file. */
+export async function importText(text) {
+  const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+  try {
+    return await import(/* @vite-ignore */ address);
+  } finally {
+    URL.revokeObjectURL(address);
+  }
+}
+
+/** Text of a module that exports each function under its key. */
+export function moduleText(functions) {
+  return Object.entries(functions)
+    .map(([key, text]) => `export const ${key} = (() => {\n${text}\nreturn ${text.match(/^function (\w+)/)?.[1]};\n})();`)
+    .join("\n");
+}
+
+/** Groups of functions by name. */
+export class Modules {
+  constructor(load = importText) {
+    this.load = load;
+    this.groups = new Map();
+    this.waiting = new Map();
+  }
+
+  /** A group's functions, or undefined while they are not loaded. */
+  get(key) {
+    return this.groups.get(key);
+  }
+
+  /** Load a group from its texts, unless it is there. */
+  prepare(key, texts) {
+    if (!this.waiting.has(key)) {
+      const loaded = this.load(moduleText(texts)).then(
+        (module) => this.groups.set(key, module),
+        (error) => {
+          this.waiting.delete(key);
+          throw new Error(`the functions of "${key}" could not be loaded: ${error.message}`);
+        },
+      );
+      this.waiting.set(key, loaded);
+    }
+    return this.waiting.get(key);
+  }
+}

@@ -1,0 +1,106 @@
+"""Texts for the page, printed once for every lab by a process of its own, so that no cell waits for sympy."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from typing import Any
+
+Texts = dict[str, Any]
+Take = Callable[[str, Texts], None]
+Complain = Callable[[str], None]
+
+
+class Printing:
+    """What has been printed so far, and who waits for the rest.
+
+    Parameters
+    ----------
+    module : str
+        Name of a module whose ``texts_of(key)`` gives the texts of a part of the page's model, by its name.
+    """
+
+    def __init__(self, module: str) -> None:
+        self.module = module
+        self.texts: dict[str, Texts] = {}
+        self._waiting: list[tuple[Take, Complain]] = []
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+
+    def ask(self, keys: Sequence[str], take: Take, complain: Complain) -> None:
+        """Hand over what is there, and the rest from another thread as soon as it is printed, in this order.
+
+        Parameters
+        ----------
+        keys : sequence of str
+            The same names for every lab.
+        take : function of a key and its texts
+        complain : function of a text
+            Called if printing fails.
+        """
+        with self._lock:
+            there = {key: self.texts[key] for key in keys if key in self.texts}
+            left = [key for key in keys if key not in there]
+            if left:
+                self._waiting.append((take, complain))
+            if left and self._thread is None:
+                self._thread = threading.Thread(target=self._read, args=(left,), daemon=True)
+                self._thread.start()
+        for key, texts in there.items():
+            take(key, texts)
+
+    def _read(self, keys: Sequence[str]) -> None:
+        try:
+            for key, texts in _printed_beside(self.module, keys):
+                with self._lock:
+                    self.texts[key] = texts
+                    waiting = list(self._waiting)
+                for take, _ in waiting:
+                    take(key, texts)
+        except (OSError, RuntimeError) as error:
+            for _, complain in self._waiting:
+                complain(f"the equations could not be printed: {error}")
+        finally:
+            with self._lock:
+                self._waiting, self._thread = [], None
+
+
+def _printed_beside(module: str, keys: Sequence[str]) -> Iterator[tuple[str, Texts]]:
+    """Texts by their keys, from a process that does not hear the interrupts that a cell is stopped with."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", __name__, module, *keys],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "PYTHONIOENCODING": "utf-8"},
+        start_new_session=True,
+    )
+    atexit.register(process.kill)
+    with process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        yield from map(json.loads, process.stdout)
+        complaint = process.stderr.read()
+    atexit.unregister(process.kill)
+    if process.returncode:
+        raise RuntimeError(complaint.strip().rpartition("\n")[2])
+
+
+def main(module: str, *keys: str) -> None:
+    """Print a line of JSON for each key: the key and its texts."""
+    texts_of = import_module(module).texts_of
+    for key in keys:
+        print(json.dumps([key, texts_of(key)]), flush=True)
+
+
+if __name__ == "__main__":
+    if hasattr(os, "nice"):
+        os.nice(10)
+    main(*sys.argv[1:])

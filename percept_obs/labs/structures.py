@@ -1,0 +1,199 @@
+"""What the page needs to simulate and to observe: texts and formulas of the point, the surfaces, the observers.
+
+Kept apart from the widgets, so that another process can print it: see printing.py.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.compile import function_source, source
+from percept_obs.equations import Equations
+from percept_obs.forms import CanonicalForm
+from percept_obs.labs.lecture import equations_of
+from percept_obs.labs.markup import formula, markup
+from percept_obs.motion import affine
+from percept_obs.observability import instantaneous
+from percept_obs.observers import OBSERVERS, Gain, Observer
+from percept_obs.observers.base import hats
+from percept_obs.perspective import PerspectiveSystem
+from percept_obs.surfaces import POINT, chained, pinhole, plane
+from percept_obs.switching import SWITCHES
+
+Texts = dict[str, Any]
+
+SURFACES = {"pinhole": pinhole, "chained": chained, "plane": plane}
+OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
+BY_NAME: dict[str, Callable[..., Observer]] = {make.__name__: make for make in OBSERVERS}
+OWN_SWITCH = MappingProxyType(
+    {
+        name: parameters["switch"].default
+        for name, make in BY_NAME.items()
+        if "switch" in (parameters := inspect.signature(make).parameters)
+    }
+)
+"""Observers that switch, with the switch that each has unless another is chosen."""
+
+MOTION = affine()
+
+
+def key_of(surface: str, outputs: Iterable[str]) -> str:
+    """Name of a structure: what is seen, and what of it is measured."""
+    return f"{surface} {'+'.join(outputs)}"
+
+
+KEYS = tuple(key_of(surface, outputs) for surface in SURFACES for outputs in OUTPUTS)
+"""Names of all structures that a lab offers."""
+
+
+@lru_cache
+def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
+    """The canonical form of affine motion on a surface."""
+    return PerspectiveSystem(MOTION, SURFACES[surface]()).measure(*outputs)
+
+
+@lru_cache(maxsize=256)
+def observer_of(surface: str, outputs: tuple[str, ...], name: str, switch: str | None = None) -> Observer:
+    """An observer with its default gains.
+
+    Raises
+    ------
+    ValueError
+        If it does not exist for this structure.
+    """
+    chosen = {"switch": switch or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
+    return BY_NAME[name](form_of(surface, outputs), **chosen)
+
+
+@lru_cache
+def model_for_the_page() -> Texts:
+    """What does not depend on the structure: the point's loop, the surfaces, the observers."""
+    rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
+    return {
+        "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
+        "surfaces": {name: _surface_for_the_page(name) for name in SURFACES},
+        "observers": {name: _observer_for_the_page(name) for name in BY_NAME},
+    }
+
+
+def _surface_for_the_page(name: str) -> Texts:
+    surface = SURFACES[name]()
+    system = PerspectiveSystem(MOTION, surface)
+    shape = surface.parameters
+    return {
+        "coordinates": [s.name for s in surface.coordinates],
+        "shape": [s.name for s in shape],
+        "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
+        "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
+        "foe": function_source((*system.parameters,), tuple(system.foe)),
+    }
+
+
+def _observer_for_the_page(name: str) -> Texts:
+    """What is known about an observer, its gains, and its equations in the lecture's letters."""
+    observer = observer_of("pinhole", OUTPUTS[0], name)
+    about = observer.about
+    return {
+        "title": observer.name,
+        "about": about and {"title": about.title, "source": about.source, "needs": about.needs, "claim": about.claim},
+        "gains": [_gain_for_the_page(gain) for gain in observer.gains],
+        "switch": OWN_SWITCH.get(name, ""),
+        "switches": list(SWITCHES) if name in OWN_SWITCH else [],
+        "equations": (
+            {switch: equations_of(BY_NAME[name], switch=switch) for switch in SWITCHES}
+            if name in OWN_SWITCH
+            else {"": equations_of(BY_NAME[name])}
+        ),
+    }
+
+
+def _gain_for_the_page(gain: Gain) -> Texts:
+    return {
+        "name": gain.name,
+        "letter": markup(gain.symbol),
+        "value": gain.value,
+        "low": gain.low,
+        "high": gain.high,
+        "meaning": gain.meaning,
+        "allowed": function_source((gain.symbol,), (sp.Piecewise((1, gain.condition), (0, True)),)),
+        "condition": "" if gain.condition == sp.true else str(gain.condition),
+        "reason": gain.reason,
+    }
+
+
+@lru_cache
+def structure_for_the_page(
+    surface: str, outputs: tuple[str, ...], observers: tuple[tuple[str, str], ...] | None = None
+) -> Texts:
+    """What depends on the structure: its form, and the loops of observers of it.
+
+    Parameters
+    ----------
+    surface : str
+    outputs : tuple of str
+    observers : tuple of pairs of an observer's name and its switch ("" if it has none), optional
+        All of them when left out.
+
+    Returns
+    -------
+    dict
+        An observer that does not exist for this structure is among the `refused`, with the reason.
+    """
+    form = form_of(surface, outputs)
+    names = [s.name for s in form.coordinates]
+    letters = {s.name: s for s in form.parameters}
+    threshold = sp.Symbol("threshold", real=True)
+    try:
+        centre, radius = instantaneous(form).circle(threshold)
+        circle = function_source((*form.parameters, threshold), (*centre, radius))
+    except ValueError:
+        circle = None
+    if observers is None:
+        observers = tuple((name, switch) for name in BY_NAME for switch in (SWITCHES if name in OWN_SWITCH else ("",)))
+    kernels: dict[str, Texts] = {}
+    refused: dict[str, str] = {}
+    for name, switch in observers:
+        try:
+            observer = observer_of(surface, outputs, name, switch)
+        except ValueError as error:
+            refused[name] = str(error)
+        else:
+            kernels.setdefault(name, {})[switch] = _kernel_for_the_page(observer)
+    return {
+        "measured": [names.index(s.name) for s in form.x1],
+        "hidden": [names.index(s.name) for s in form.x2],
+        "w": function_source((*form.x1, *form.parameters), tuple(form.w)),
+        "circle": circle,
+        "formulas": [
+            formula(f"<msup>{markup(sp.Symbol('w'))}<mi>T</mi></msup>", form.w.T, letters),
+            formula(sp.Symbol("phi"), form.phi, letters),
+            formula(sp.Symbol("g"), form.g, letters),
+        ],
+        "observers": kernels,
+        "refused": refused,
+    }
+
+
+def texts_of(key: str) -> Texts:
+    """Texts of the structure with this name, for all observers."""
+    surface, outputs = key.split(" ")
+    return structure_for_the_page(surface, tuple(outputs.split("+")))
+
+
+def _kernel_for_the_page(observer: Observer) -> Texts:
+    form, equations = observer.form, observer.equations
+    known = (*form.x1, *form.parameters, *equations.gains)
+    claimed = observer.covariance
+    return {
+        "run": source(equations, "javascript"),
+        "states": len(equations.state),
+        "start": function_source((*known, *hats(form.coordinates)), observer.start),
+        "estimate": function_source((*known, *equations.state), observer.estimate),
+        "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
+    }
