@@ -35,11 +35,14 @@ STATE = """(which) => {
     return {
         settings: lab.settings,
         runs: Object.fromEntries(lab.shown.runs.map((run) => [run.name, numbers(run.estimate)])),
+        divergedAt: Object.fromEntries(lab.shown.runs.map((run) => [run.name, run.divergedAt])),
         drawn: Object.fromEntries(Object.entries(lab.drawn).map(([name, { lines }]) =>
             [name, lines.map((line) => ({ name: line.name, values: numbers(line.values) }))])),
         verdicts: [...lab.view.root.querySelectorAll(".verdicts li")].map((item) => item.textContent),
         labels: [...lab.view.root.querySelectorAll("figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
         problems: [...lab.view.root.querySelectorAll(".problem:not([hidden])")].map((p) => p.textContent),
+        waiting: !lab.view.root.querySelector(".waiting").hidden,
+        notice: lab.view.root.querySelector(".notice").textContent,
         silent: !lab.view.root.querySelector(".silence").hidden,
     };
 }"""
@@ -52,11 +55,10 @@ def write_notebook(folder, name, *cells):
 
 
 def open_lab(page, folder, name="lab.ipynb", arguments=""):
-    """Show a notebook with one lab, run it, and wait until all is handed over and at rest."""
+    """Show a notebook with one lab, run it, and wait until page and Python have come to rest."""
     write_notebook(folder, name, OPEN.format(arguments=arguments))
     open_notebook(page, name)
     run_all(page)
-    handed_over(page)
     rested(page)
 
 

@@ -2,12 +2,17 @@
 
 import json
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import percept_obs.labs
-from percept_obs.labs.structures import BY_NAME, KEYS, texts_of
+from percept_obs.labs.observer_lab import runs
+from percept_obs.labs.structures import BY_NAME, KEYS, OUTPUTS, OWN_SWITCH, SURFACES, texts_of
+from percept_obs.motion import affine
+from percept_obs.switching import SWITCHES
+from percept_obs.tracking import track
 
 FRONT = Path(percept_obs.labs.__file__).parent / "front"
 
@@ -32,6 +37,12 @@ SMOOTH_CASES = {
     "the point leaves": {"b": [0.5, 0.25, -0.9], "observers": SMOOTH, "noise": NOISY, "dropout": 0.1},
     "chained": {"surface": "chained", "observers": SMOOTH},
     "plane": {"surface": "plane", "normal": PLANE, "observers": SMOOTH, "outputs": ["y1"]},
+    "switches": {
+        "observers": ALL,
+        "switches": {"sliding_mode": "sign", "range_identification": "fraction"},
+        "duration": 9.0,
+    },
+    "planar motion": {"scenario": "planar", "observers": SMOOTH},
     "gains": {"gains": {"identifier_based": {"gain": 3.7, "noise_variance": 2e-5}}, "noise": NOISY},
     "a motion that is not the true one": {"believed": {"A": np.eye(3).tolist(), "b": [0.1, 0.2, 0.3]}},
     "(36)": {"scenario": "ma2005_eq36", "observers": SMOOTH, "outputs": ["y1"]},
@@ -51,4 +62,76 @@ def run_in_node(node, lab, tasks):
 
 def as_array(numbers, width):
     """Numbers that came as JSON, where null stands for what is not finite, in rows."""
-    return np.array([np.nan if v is None else v for v in numbers]).reshape(-1, width)
+    return np.array([np.nan if v is None else v for v in numbers], dtype=float).reshape(-1, width)
+
+
+NUDGE = 1e-12
+"""How far samples are moved, relative to 1 or their size, to see how far a run carries a rounding error."""
+
+
+def assert_follows_python(settings, told, tolerance=1e-9):
+    """The page's runs of any settings are Python's, as far as numbers of 16 digits decide them.
+
+    Random gains make observers unstable, stiff or switching without end; such a run multiplies the last digit, which
+    two languages need not share.  So a run may differ by the tolerance, relative to 1 or its value, and by as much
+    as Python's own run does when its samples move by 1e-12; over the first second by 1e-6 and no more.
+
+    Parameters
+    ----------
+    settings : dict
+    told : dict
+        For each observer its "estimate", a list of numbers in which None is not finite, and its time "divergedAt".
+    """
+    believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
+    start = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
+    for name, run in runs(settings, {}).items():
+        outputs = run.recording.outputs
+        signs = np.sign(np.random.default_rng(0).uniform(-1, 1, outputs.shape))
+        nudged = replace(run.recording, outputs=outputs + NUDGE * signs * np.fmax(1, np.abs(outputs)))
+        moved = track(nudged, run.observer, start, run.hold, believed or None).estimate
+        found = as_array(told[name]["estimate"], 3)
+        assert found.shape == run.estimate.shape
+        assert (told[name]["divergedAt"] is None) == (run.diverged_at is None)
+        with np.errstate(all="ignore"):  # what grows without bounds is compared as far as it is finite
+            size = np.fmax(1, np.abs(run.estimate))
+            own = np.maximum.accumulate(np.nan_to_num(np.abs(moved - run.estimate) / size, nan=np.inf))
+            off = np.abs(found - run.estimate) / size
+        both = np.isfinite(found) & np.isfinite(run.estimate)
+        assert (np.isfinite(found) == np.isfinite(run.estimate))[own < 1].all()
+        assert (off <= tolerance + own)[both].all(), (name, off[both].max())
+        early = both & (run.time <= run.time[0] + 1)[:, None]
+        assert (off[early] <= 1e-6).all(), (name, off[early].max())
+
+
+def random_settings(lab, seed):
+    """Settings that make sense, drawn over every control of the lab."""
+    rng = np.random.default_rng(seed)
+
+    def one(*values):
+        return values[rng.integers(len(values))]
+
+    outputs = list(one(*OUTPUTS))
+    refused = ["range_identification"] if len(outputs) == 1 else []
+    chosen = [name for name in BY_NAME if rng.random() < 0.4 and name not in refused]
+    gains = {
+        name: {g["name"]: float(rng.uniform(g["low"], g["high"])) if rng.random() < 0.7 else g["value"] for g in known}
+        for name, known in ((name, lab.model["observers"][name]["gains"]) for name in BY_NAME)
+    }
+    return {
+        "surface": one(*SURFACES),
+        "normal": PLANE,
+        "outputs": outputs,
+        "observers": chosen or ["identifier_based"],
+        "gains": gains,
+        "switches": {name: one(*SWITCHES) for name in OWN_SWITCH},
+        "b": rng.uniform(-1, 1, 3).tolist(),
+        "X0": [*rng.uniform(-2, 2, 2).tolist(), float(rng.uniform(3, 8))],
+        "noise": {"kind": one("uniform", "gaussian"), "size": float(one(0, rng.uniform(0, 0.05)))},
+        "dropout": float(one(0, rng.uniform(0, 0.9))),
+        "seed": int(rng.integers(100)),
+        "period": float(one(0.01, 0.02, 0.1, rng.uniform(0.005, 0.2))),
+        "duration": float(rng.uniform(2, 20)),
+        "hold": one("zero", "first", "exact"),
+        "start": {"mode": one("own", "zero", "chosen"), "values": rng.uniform(-2, 2, 3).tolist()},
+        "believed": one(None, None, {"A": np.eye(3).tolist(), "b": [0.1, 0.2, 0.3]}),
+    }

@@ -187,7 +187,13 @@ def test_the_analysis_says_what_python_found(settings, words):
     lab.summary = {"serial": 7}
     assert lab.analysis["of"] == 7
     assert any(words in sentence for sentence in lab.analysis["sentences"])
-    assert lab.analysis["verdicts"] == {name: run.verdict() for name, run in lab.run().items()}
+
+
+def test_an_observer_of_which_python_has_nothing_to_say_is_not_run(monkeypatch):
+    lab = observer_lab(observers=["linear_approximation", "range_identification", "immersion_and_invariance"])
+    monkeypatch.setattr("percept_obs.labs.observer_lab.track", lambda *_: pytest.fail("it was run"))
+    lab.summary = {"serial": 1}
+    assert len(lab.analysis["sentences"]) == 1
 
 
 def scenario_motion(settings):

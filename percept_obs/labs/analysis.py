@@ -11,22 +11,29 @@ from scipy.linalg import expm
 from scipy.stats import chi2
 
 from percept_obs.compile import vectorised
+from percept_obs.forms import CanonicalForm
 from percept_obs.labs.structures import observer_of
 from percept_obs.observability import windowed
 from percept_obs.observers.base import hats
+from percept_obs.recording import Recording
 from percept_obs.tracking import Run
 
 Structure = tuple[str, tuple[str, ...], str, str | None]
 """Names of a surface, of the measured outputs, of an observer, and of its switch."""
 
 
-def excitation_in_words(run: Run, window: float) -> str:
+def excitation_in_words(form: CanonicalForm, recording: Recording, window: float) -> str:
     """What the outputs alone tell over any window of this length, in seconds."""
-    least = windowed(run.observer.form, run.recording, window).least
+    least = windowed(form, recording, window).least
     start = f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}"
     if least > 1e-6:
         return f"{start}: persistently excited, so the outputs alone tell the hidden part."
     return f"{start}: not excited; one direction is seen only through the dynamics g, or not at all."
+
+
+def has_words(structure: Structure) -> bool:
+    """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
+    return observer_of(*structure).covariance is not None or _can_be_linearised(structure)
 
 
 def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
@@ -35,9 +42,7 @@ def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
         return []
     if run.observer.covariance is not None:
         return [_claim_in_words(run), _honesty_in_words(run)]
-    if run.recording.truth is None or not _can_be_linearised(structure):
-        return []
-    return _error_in_words(structure, run, window)
+    return [] if run.recording.truth is None else _error_in_words(structure, run, window)
 
 
 def _claim_in_words(run: Run) -> str:

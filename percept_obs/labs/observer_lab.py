@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs import scenarios
-from percept_obs.labs.analysis import excitation_in_words, run_in_words
+from percept_obs.labs.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.base import Lab, Settings
 from percept_obs.labs.checks import number, numbers, one_of, some_of
 from percept_obs.labs.printing import Printing
@@ -20,6 +20,7 @@ from percept_obs.labs.structures import (
     OUTPUTS,
     OWN_SWITCH,
     SURFACES,
+    form_of,
     key_of,
     model_for_the_page,
     observer_of,
@@ -90,7 +91,7 @@ class ObserverLab(Lab):
         self._scenarios = {name: {"title": s.name, **_as_settings(s)} for name, s in offered.items()}
         self._recordings = {name: with_affine_motion(name, r) for name, r in tracks.items()}
         self._tracks = {
-            name: {**track_for_the_page(r), **_fitting(r), "kind": tracks[name].motion.name}
+            name: {**track_for_the_page(r), **_fitting(r), "kind": tracks[name].motion.name, "refused": _refused(r)}
             for name, r in self._recordings.items()
         }
         one_of({"scenario": scenario}, "scenario", [*self._scenarios, *self._recordings])
@@ -124,17 +125,19 @@ class ObserverLab(Lab):
 
     def analyse(self, summary: Settings) -> Settings:
         """Sentences on excitation, error dynamics and the bias of noise for the present settings."""
+        settings = self.settings
+        place = (settings["surface"], tuple(settings["outputs"]))
+        structures = {name: (*place, name, _switch(settings, name)) for name in settings["observers"]}
+        told = [name for name, structure in structures.items() if has_words(structure)]
         try:
-            found = runs(self.settings, self._recordings)
+            recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
         except BehindCamera as error:
             return {"sentences": [str(error)]}
-        first = next(iter(found.values()))
-        window = min(self.settings["window"], float(np.ptp(first.time)))
-        sentences = [excitation_in_words(first, window)]
-        for name, run in found.items():
-            structure = (self.settings["surface"], tuple(self.settings["outputs"]), name, _switch(self.settings, name))
-            sentences += run_in_words(structure, run, window)
-        return {"sentences": sentences, "verdicts": {name: run.verdict() for name, run in found.items()}}
+        window = min(settings["window"], float(np.ptp(recording.time)))
+        sentences = [excitation_in_words(form_of(*place), recording, window)]
+        for name, run in runs({**settings, "observers": told}, self._recordings).items():
+            sentences += run_in_words(structures[name], run, window)
+        return {"sentences": sentences}
 
     def _model(self) -> Settings:
         return {
@@ -225,6 +228,15 @@ def _fitting(recording: Recording) -> Settings:
     return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
 
 
+def _refused(recording: Recording) -> dict[str, str]:
+    """Observers that cannot follow this recording, with the reasons."""
+    signal = recording.motion.signal
+    if signal is None or signal.constant:
+        return {}
+    reason = "it needs a motion with constant coefficients, but the recording's varies"
+    return {name: reason for name in BY_NAME if observer_of("pinhole", OUTPUTS[0], name).constant_motion}
+
+
 def _as_settings(scenario: Scenario) -> Settings:
     values = scenario.motion.values
     if not values:
@@ -288,7 +300,10 @@ def _check_choices(settings: Settings, recording: Recording | None) -> None:
             f"outputs is {settings['outputs']!r}; it must be one of {', '.join(map(str, map(list, offered)))}"
         )
     some_of(settings, "pictures", PICTURES)
+    refused = {} if recording is None else _refused(recording)
     for name in some_of(settings, "observers", BY_NAME):
+        if name in refused:
+            raise ValueError(f"{name} cannot follow this recording: {refused[name]}")
         observer_of(surface, tuple(settings["outputs"]), name, _switch(settings, name))
     one_of({"noise kind": settings["noise"].get("kind")}, "noise kind", NOISES)
     one_of({"start mode": settings["start"].get("mode")}, "start mode", STARTS)

@@ -115,23 +115,24 @@ function tracePath(pen, place, time, values) {
   let least = 0;
   let greatest = 0;
   let last = 0;
-  let begun = false;
+  let before = NaN;
   const flush = () => {
     if (column < 0) return;
     const x = column + 0.5;
-    if (begun) pen.lineTo(x, place.y(first));
-    else pen.moveTo(x, place.y(first));
-    begun = true;
+    if (Number.isNaN(before)) pen.moveTo(x, place.y(first));
+    // A line that only rises, or only falls, from column to column needs no more than its ends.
+    else if (!((before <= first && first <= last) || (before >= first && first >= last))) pen.lineTo(x, place.y(first));
     if (least < first && least < last) pen.lineTo(x, place.y(least));
     if (greatest > first && greatest > last) pen.lineTo(x, place.y(greatest));
     pen.lineTo(last === first ? x + 0.01 : x, place.y(last));
+    before = last;
     column = -1;
   };
   for (let k = 0; k < values.length; k++) {
     const value = values[k];
-    if (!Number.isFinite(value)) {
+    if (!(value - value === 0)) {
       flush();
-      begun = false;
+      before = NaN;
       continue;
     }
     // Heights grow with values, so that only those of a column's four need the scale.
@@ -149,13 +150,16 @@ function tracePath(pen, place, time, values) {
   flush();
 }
 
+/** A band between functions of the sample. */
 function fillBand(pen, place, { time, low, high, colour }) {
   const every = Math.max(1, Math.floor(time.length / (place.width * 2)));
   pen.beginPath();
-  for (let k = 0; k < time.length; k += every) if (Number.isFinite(high[k])) pen.lineTo(place.x(time[k]), place.y(high[k]));
-  for (let k = time.length - 1 - ((time.length - 1) % every); k >= 0; k -= every) {
-    if (Number.isFinite(low[k])) pen.lineTo(place.x(time[k]), place.y(low[k]));
-  }
+  const along = (k, bound) => {
+    const value = bound(k);
+    if (Number.isFinite(value)) pen.lineTo(place.x(time[k]), place.y(value));
+  };
+  for (let k = 0; k < time.length; k += every) along(k, high);
+  for (let k = time.length - 1 - ((time.length - 1) % every); k >= 0; k -= every) along(k, low);
   pen.globalAlpha = 0.16;
   pen.fillStyle = colour;
   pen.fill();

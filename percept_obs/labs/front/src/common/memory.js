@@ -9,8 +9,9 @@ export class Memory {
 
   /** Room for numbers that only one run needs: taken again by the next, so that a drag leaves no litter. */
   room(part, length) {
-    if (this.rooms.get(part)?.length !== length) this.rooms.set(part, new Float64Array(length));
-    return this.rooms.get(part);
+    let room = this.rooms.get(part);
+    if (room?.length !== length) this.rooms.set(part, (room = new Float64Array(length)));
+    return room;
   }
 
   /** The value made for these inputs; made anew when they change, and then the one before is gone. */

@@ -52,16 +52,20 @@ export function logScale(low, high) {
   return { low: 10 ** bottom, high: 10 ** top, ticks, log: true };
 }
 
+const SOME = 400;
+const some = new Float64Array(2 * SOME);
+
 /** Bounds between which the given parts of the finite values above a least lie, from about 400 of them. */
-export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infinity } = {}) {
-  const every = Math.max(1, Math.floor(values.length / 400));
-  let some = [];
-  for (let k = 0; k < values.length; k += every) {
-    if (Number.isFinite(values[k]) && values[k] > above) some.push(values[k]);
+export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infinity, first = 0, width = 1 } = {}) {
+  const every = width * Math.max(1, Math.floor(values.length / width / SOME));
+  let count = 0;
+  for (let k = first; k < values.length; k += every) {
+    const value = values[k];
+    if (value > above && value < Infinity) some[count++] = value;
   }
-  if (!some.length) return null;
-  some = Float64Array.from(some).sort();
-  const at = (part) => some[Math.min(some.length - 1, Math.max(0, Math.round(part * (some.length - 1))))];
+  if (!count) return null;
+  const sorted = some.subarray(0, count).sort();
+  const at = (part) => sorted[Math.round(part * (count - 1))];
   return [at(lowPart), at(highPart)];
 }
 

@@ -77,9 +77,11 @@ export function constantMotion(A, b) {
 }
 
 function move(settings, kernels, motion, { index, steps }, room) {
-  const states = room("plant states", 3 * steps.length + 3).fill(NaN);
+  const states = room("plant states", 3 * steps.length + 3);
   const resets = room("plant resets", steps.length + 1);
-  kernels.plant.run(settings.X0, steps, NOTHING, motion.rows[0], NOTHING, NOTHING, false, states, resets);
+  const { rows } = motion;
+  const diverged = kernels.plant.run(settings.X0, steps, NOTHING, rows[0], NOTHING, NOTHING, false, states, resets);
+  if (diverged >= 0) states.fill(NaN, 3 * diverged);
   const points = room("points", 3 * index.length - 3);
   for (let k = 1; k < index.length; k++) {
     for (let c = 0; c < 3; c++) points[3 * k - 3 + c] = states[3 * index[k] + c];

@@ -7,7 +7,7 @@ const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
 /** Python text for settings that are shown. */
 export function pythonOf(shown, model) {
   const { settings } = shown;
-  const names = new Set(["PerspectiveSystem", "track", ...settings.observers]);
+  const names = new Set(["PerspectiveSystem", "track"]);
   const lines = model.recordings[settings.scenario] ? [] : simulation(shown, names);
   const recorded = model.recordings[settings.scenario];
   const motion = recorded ? recorded.kind : "affine";
@@ -32,7 +32,9 @@ export function pythonOf(shown, model) {
     lines.push(`${result} = track(${["recording", `${name}(form${gains})`, ...options].join(", ")})`);
     lines.push(`print(${result}.verdict())`);
   }
-  return `${imports(names)}\n\n${lines.join("\n")}\n`;
+  const from = (place, wanted) => `from ${place} import ${[...wanted].sort().join(", ")}\n`;
+  const imports = from("percept_obs", names) + from("percept_obs.observers", settings.observers);
+  return `${imports}\n${lines.join("\n")}\n`;
 }
 
 function simulation({ settings, time, leavesAt }, names) {
@@ -47,10 +49,6 @@ function simulation({ settings, time, leavesAt }, names) {
     `camera = Camera(period=${number(settings.period)}, noise=${noise}, dropout=${number(settings.dropout)})`,
     `recording = record(scenario, camera=camera, seed=${settings.seed})`,
   ];
-}
-
-function imports(names) {
-  return `from percept_obs import ${[...names].sort().join(", ")}`;
 }
 
 function number(value) {

@@ -27,8 +27,8 @@ export class Engine {
     Object.assign(shown, { measured: structure.measured, hidden: structure.hidden, hiddenNames });
     Object.assign(shown, this.geometry(settings, kernels, structure));
     if (recording.problem) return shown;
-    shown.columnOf = this.columns("truth", shown.truth, shown.width);
-    shown.sampleOf = this.columns("samples", shown.outputs, 2);
+    Object.assign(shown, this.columns("truth", shown.truth, shown.width));
+    shown.sampleOf = this.columns("samples", shown.outputs, 2).columnOf;
     lazily(shown, "excitation", () => this.excitation(settings, shown, structure, kernels));
     const inputs = this.inputs(settings, shown);
     shown.runs = settings.observers.map((name) => {
@@ -68,11 +68,12 @@ export class Engine {
     const { width, time } = shown;
     const { grid, known: table } = inputs;
     const gains = Float64Array.from(this.model.observers[name].gains, (gain) => settings.gains[name][gain.name]);
-    const states = memory.room("states", grid.length * kernel.states).fill(NaN);
+    const states = memory.room(`states of ${name}`, grid.length * kernel.states);
     const resets = memory.room("resets", grid.length).fill(0);
     const start = startState(settings, shown, inputs, kernel, functions, gains);
     const { steps, held: outputs, arriving: samples } = inputs;
     const diverged = functions.run(start, steps, outputs, table.rows, samples, gains, table.varying, states, resets);
+    if (diverged >= 0) states.fill(NaN, diverged * kernel.states);
     const estimate = memory.room(`estimate ${name}`, time.length * width);
     readEstimates(functions, kernel, states, inputs, gains, width, estimate);
     const result = {
@@ -81,7 +82,7 @@ export class Engine {
       order: this.order.indexOf(name),
       estimate,
       deviation: null,
-      columnOf: this.columns(`estimate ${name}`, estimate, width),
+      ...this.columns(`estimate ${name}`, estimate, width),
       resets: timesOf(resets, grid),
       divergedAt: diverged < 0 ? null : grid[diverged],
     };
@@ -97,10 +98,19 @@ export class Engine {
     return result;
   }
 
-  /** A function that gives a column of these rows; each is copied out once. */
+  /** Functions that give a column of these rows, and the distances: none where the inverse one is not positive. */
   columns(part, rows, width) {
     const found = [];
-    return (c) => (found[c] ??= column(rows, width, c, (length) => this.memory.room(`${part} column ${c}`, length)));
+    const room = (which) => (length) => this.memory.room(`${part} ${which}`, length);
+    const columnOf = (c) => (found[c] ??= column(rows, width, c, room(c)));
+    const distances = () => {
+      if (found[width]) return found[width];
+      const inverse = columnOf(width - 1);
+      const far = (found[width] = room("distances")(inverse.length));
+      for (let k = 0; k < far.length; k++) far[k] = inverse[k] > 0 ? 1 / inverse[k] : NaN;
+      return far;
+    };
+    return { columnOf, distances };
   }
 
   exact(shown, grid) {

@@ -8,7 +8,7 @@ import { keyOf, switchOf } from "./kernels.js";
 export class Formulas {
   constructor(model) {
     this.model = model;
-    this.body = element("div", { class: "formulas", role: "region", tabindex: 0, "aria-label": "Equations" });
+    this.body = element("div", { class: "formulas" });
     this.shownFor = "";
   }
 
@@ -60,7 +60,9 @@ export class Formulas {
       this.putNumbers(withNumbers, owner);
       return withNumbers.querySelector("[data-letter]") ? [inLetters, withNumbers] : [inLetters];
     });
-    this.body.append(element("section", { "data-owner": owner }, element("h4", {}, title), ...lines));
+    // A wide line scrolls inside its section, which a keyboard must reach for that.
+    const attributes = { "data-owner": owner, role: "group", "aria-label": title, tabindex: 0 };
+    this.body.append(element("section", attributes, element("h4", {}, title), ...lines));
   }
 
   putNumbers(line, owner) {

@@ -71,8 +71,10 @@ export class ImagePlane {
     const side = Math.min(width, height) - 2 * EDGE;
     const { centre, half, ticks } = this.frame;
     this.scale = side / (2 * half);
-    const x = (y1) => width / 2 + clamp((y1 - centre[0]) * this.scale, 4 * width);
-    const y = (y2) => height / 2 - clamp((y2 - centre[1]) * this.scale, 4 * height);
+    const far = 4 * Math.max(width, height);
+    const x = (y1) => width / 2 + clamp((y1 - centre[0]) * this.scale, far);
+    const y = (y2) => height / 2 - clamp((y2 - centre[1]) * this.scale, far);
+    const frame = { scale: this.scale, centre, left: width / 2, top: height / 2, far };
     const box = { left: width / 2 - side / 2, top: height / 2 - side / 2, side };
     const pen = this.context;
     underlay(this, [this.frame, theme], (below) => drawAxes(below, box, ticks, x, y, theme));
@@ -82,7 +84,7 @@ export class ImagePlane {
     pen.rect(box.left, box.top, box.side, box.side);
     pen.clip();
     if (shown.circle) drawCircle(pen, shown.circle, x, y, this.scale, theme);
-    const trace = (rows, colour, dash) => drawPath(pen, rows, shown.width, x, y, colour, dash);
+    const trace = (rows, colour, dash) => drawPath(pen, rows, shown.width, frame, colour, dash);
     ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
     if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
@@ -98,14 +100,17 @@ export class ImagePlane {
     if (!foe) return;
     const inside = (value, low) => Math.min(Math.max(value, low), low + box.side);
     const [left, top] = [inside(x(foe[0]), box.left), inside(y(foe[1]), box.top)];
-    handle.classList.toggle("outside", Math.abs(left - x(foe[0])) + Math.abs(top - y(foe[1])) > 1);
+    const outside = Math.abs(left - x(foe[0])) + Math.abs(top - y(foe[1])) > 1;
+    if (outside !== handle.classList.contains("outside")) handle.classList.toggle("outside");
     handle.style.transform = `translate(${left}px, ${top}px)`;
-    handle.setAttribute("aria-valuenow", foe[0].toFixed(3));
-    handle.setAttribute("aria-valuetext", `y1 ${readable(foe[0])}, y2 ${readable(foe[1])}`);
   }
 
+  /** Say what the picture shows, and where the handle is. */
   describe(text) {
     describe(this, text);
+    if (!this.foe) return;
+    this.handle.setAttribute("aria-valuenow", this.foe[0].toFixed(3));
+    this.handle.setAttribute("aria-valuetext", `y1 ${readable(this.foe[0])}, y2 ${readable(this.foe[1])}`);
   }
 }
 
@@ -133,10 +138,7 @@ function frameOf(shown, ghost) {
 }
 
 function bound([rows, width], c) {
-  const values = [];
-  const every = Math.max(1, Math.floor(rows.length / width / 400));
-  for (let k = c; k < rows.length; k += width * every) values.push(rows[k]);
-  return spread(values, { lowPart: 0.005, highPart: 0.995 });
+  return spread(rows, { lowPart: 0.005, highPart: 0.995, first: c, width });
 }
 
 function widen(range, other) {
@@ -180,25 +182,29 @@ function stroke(pen, from, to) {
   pen.stroke();
 }
 
-function drawPath(pen, rows, width, x, y, colour, dash) {
+function drawPath(pen, rows, width, { scale, centre, left, top, far }, colour, dash) {
+  const [middle1, middle2] = centre;
+  // Points closer than a pixel do not show.
+  const near = 1.2 / scale;
   pen.beginPath();
   let begun = false;
-  let beforeX = 0;
-  let beforeY = 0;
+  let before1 = 0;
+  let before2 = 0;
   for (let k = 0; k < rows.length; k += width) {
-    const atX = x(rows[k]);
-    const atY = y(rows[k + 1]);
-    if (Number.isNaN(atX + atY)) {
+    const y1 = rows[k];
+    const y2 = rows[k + 1];
+    if (begun && Math.abs(y1 - before1) + Math.abs(y2 - before2) <= near) continue;
+    const x = left + clamp((y1 - middle1) * scale, far);
+    const y = top - clamp((y2 - middle2) * scale, far);
+    if (Number.isNaN(x + y)) {
       begun = false;
       continue;
     }
-    if (!begun) pen.moveTo(atX, atY);
-    // Points closer than a pixel do not show.
-    else if (Math.abs(atX - beforeX) + Math.abs(atY - beforeY) > 1.2) pen.lineTo(atX, atY);
-    else continue;
+    if (begun) pen.lineTo(x, y);
+    else pen.moveTo(x, y);
     begun = true;
-    beforeX = atX;
-    beforeY = atY;
+    before1 = y1;
+    before2 = y2;
   }
   pen.strokeStyle = colour;
   pen.setLineDash(dash);

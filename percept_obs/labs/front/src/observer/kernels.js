@@ -35,9 +35,10 @@ export class Kernels {
     return Boolean(structure) && settings.observers.every(there);
   }
 
-  /** The observers that do not exist for these settings' structure, with the reasons. */
+  /** The observers that do not exist for these settings' structure or recording, with the reasons. */
   refused(settings) {
-    return this.model.structures[keyOf(settings)]?.refused ?? {};
+    const { structures, recordings } = this.model;
+    return { ...structures[keyOf(settings)]?.refused, ...recordings[settings.scenario]?.refused };
   }
 
   /** The functions that settings need, or undefined while one of them has to be waited for. */

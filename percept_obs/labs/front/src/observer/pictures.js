@@ -40,7 +40,7 @@ const BUILD = {
     return { title, lines, band, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
   distance(shown, ghost, theme) {
-    const lines = linesOf(shown, ghost, theme, "distance", (rows) => inverseOf(rows, shown.width - 1));
+    const lines = linesOf(shown, ghost, theme, "distance", (rows) => rows.distances());
     const title = `${NAMES[shown.settings.surface]} in m`;
     return { title, lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
@@ -81,26 +81,15 @@ function linesOf(shown, ghost, theme, label, pick) {
   return lines;
 }
 
-/** Distances; none where the inverse distance is not positive. */
-function inverseOf(rows, c) {
-  if (rows.distances) return rows.distances;
-  const inverse = rows.columnOf(c);
-  const distances = new Float64Array(inverse.length);
-  for (let k = 0; k < distances.length; k++) distances[k] = inverse[k] > 0 ? 1 / inverse[k] : NaN;
-  return (rows.distances = distances);
-}
-
 function bandOf(shown, run, c, theme) {
-  const { width } = shown;
   const middle = run.columnOf(c);
-  const low = new Float64Array(middle.length);
-  const high = new Float64Array(middle.length);
-  for (let k = 0; k < middle.length; k++) {
-    const deviation = 2 * run.deviation[k * width + c];
-    low[k] = middle[k] - deviation;
-    high[k] = middle[k] + deviation;
-  }
-  return { time: shown.time, low, high, colour: theme.lines[run.order] };
+  const deviation = (k) => run.deviation[k * shown.width + c];
+  return {
+    time: shown.time,
+    low: (k) => middle[k] - 2 * deviation(k),
+    high: (k) => middle[k] + 2 * deviation(k),
+    colour: theme.lines[run.order],
+  };
 }
 
 function marksOf(shown, theme) {
