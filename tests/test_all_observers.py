@@ -29,6 +29,7 @@ from percept_obs.compile import vectorised
 from percept_obs.observers import (
     OBSERVERS,
     de_luca,
+    integral_sliding_mode,
     linear_approximation,
     range_identification,
     sliding_mode,
@@ -40,19 +41,22 @@ FORMS = {"y1": ONE, "y2": OTHER, "y1+y2": BOTH}
 EVERY = {make.__name__: make for make in OBSERVERS} | {
     "linear_approximation": partial(linear_approximation, iterates=2)
 }
-ONE_OUTPUT = {name: make for name, make in EVERY.items() if make is not range_identification}
+NEED_BOTH = (range_identification, integral_sliding_mode)
+ONE_OUTPUT = {name: make for name, make in EVERY.items() if make not in NEED_BOTH}
 SMOOTH = EVERY | {
     # a wide layer, so that the steps resolve it, and switching gains that do not switch themselves
     "range_identification": partial(range_identification, boundary_layer=2.0),
     "sliding_mode": partial(sliding_mode, switch="hyperbolic tangent", boundary_layer=0.5, adaptation=0),
 }
-COPIES = [name for name in EVERY if name not in ("range_identification", "linear_approximation")]
+COPIES = [
+    name for name in EVERY if name not in ("range_identification", "integral_sliding_mode", "linear_approximation")
+]
 """Those whose equations hold the observed system as it is."""
 
 
 def each(names, forms=FORMS):
     """Every one of these observers on every form that it can observe."""
-    pairs = [(n, f) for n in names for f in forms if n != "range_identification" or f == "y1+y2"]
+    pairs = [(n, f) for n in names for f in forms if n in ONE_OUTPUT or f == "y1+y2"]
     return pytest.mark.parametrize(("name", "form"), pairs)
 
 
@@ -186,11 +190,7 @@ def test_only_immersion_and_invariance_needs_a_constant_motion():
 
 def settling_times(form, recording):
     """Settling times of the inverse distance, of all observers that one output is enough for, from zero."""
-    runs = {
-        make.__name__: track(recording, make(form), ZERO, "exact")
-        for make in OBSERVERS
-        if make is not range_identification
-    }
+    runs = {make.__name__: track(recording, make(form), ZERO, "exact") for make in OBSERVERS if make not in NEED_BOTH}
     return {name: run.settling_time(0.05, recording.surface.inverse_distance.name) for name, run in runs.items()}
 
 
