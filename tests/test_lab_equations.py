@@ -35,12 +35,14 @@ def test_the_extended_kalman_filter_in_matrices_is_the_observer(form):
     estimate = sp.ImmutableMatrix(hats(x))
     P = sp.ImmutableMatrix(observer.covariance.extract(*2 * [[form.coordinates.index(s) for s in x]]))
     rate = sp.ImmutableMatrix(form.rate.xreplace(dict(zip(x, estimate, strict=True))))
+    hidden_only = [*(0 for _ in form.x1), *(gains["hidden_process_noise"] for _ in form.x2)]
+    doubt = sp.ImmutableMatrix(gains["process_noise"] * sp.eye(size) + sp.diag(*hidden_only))
     for j, y in enumerate(form.x1):
         c = sp.ImmutableMatrix(sp.eye(size)[:, j])
         R = sp.ImmutableMatrix([[gains["noise_variance"]]])
         rows = kalman_equations(
-            *(estimate, P, rate.jacobian(list(estimate)), rate, c, sp.ImmutableMatrix([[y]]), sp.eye(size)),
-            *(gains["process_noise"], R),
+            *(estimate, P, rate.jacobian(list(estimate)), rate, c, sp.ImmutableMatrix([[y]])),
+            *(doubt, R),
         )
         k, e, s = (sp.MatrixSymbol(n, *shape) for n, shape in (("k", (size, 1)), ("e", (1, 1)), ("s", (1, 1))))
         found = {e: sp.ImmutableMatrix(rows["e"]), s: sp.ImmutableMatrix(rows["s"])}

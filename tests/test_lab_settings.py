@@ -9,7 +9,7 @@ from utias_folder import utias_folder
 from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
 from percept_obs.datasets import load_utias
 from percept_obs.labs.observer_lab import PICTURES, observer_lab
-from percept_obs.labs.structures import BY_NAME, KEYS, OWN_SWITCH, SURFACES, texts_of
+from percept_obs.labs.structures import BY_NAME, KEYS, SURFACES, WAYS, texts_of
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.surfaces import BehindCamera, pinhole
 
@@ -57,30 +57,36 @@ def test_the_model_opens_with_what_is_shown_first_and_the_kept_run():
 def test_every_structure_has_every_observer_or_a_reason(key):
     texts = texts_of(key)
     assert set(texts["observers"]) | set(texts["refused"]) == set(BY_NAME)
-    assert set(texts["refused"]) == (set() if "+" in key else {"range_identification"})
+    assert set(texts["refused"]) == (set() if "+" in key else {"range_identification", "integral_sliding_mode"})
     for name, kernels in texts["observers"].items():
-        assert len(kernels) == (3 if name in OWN_SWITCH else 1)
+        assert set(kernels) == set(WAYS[name])
 
 
 # a sign has no width to smooth it over, and no slope that would turn noise into a bias
-WITHOUT_USE = {("range_identification", "sign", "boundary_layer"), ("sliding_mode", "sign", "noise_variance")}
+WITHOUT_USE = {
+    ("range_identification", "sign", "boundary_layer"),
+    ("integral_sliding_mode", "sign", "boundary_layer"),
+    ("sliding_mode", "sign", "noise_variance"),
+}
 
 
 def test_every_gain_is_linked_to_a_letter_of_the_equations(lab):
     for name, observer in lab.model["observers"].items():
         for switch, variants in observer["equations"].items():
             text = "".join(variants[-1]["lines"])
-            assert variants[-1]["zero"] is None
-            for gain in observer["gains"]:
-                unused = (name, switch, gain["name"]) in WITHOUT_USE
-                assert (f'data-letter="{gain["name"]}"' in text) != unused, (name, switch, gain["name"])
+            assert variants[-1]["zero"] == []
+            for gain in observer["ways"][switch]:
+                unused = (name, switch, gain) in WITHOUT_USE
+                assert (f'data-letter="{gain}"' in text) != unused, (name, switch, gain)
 
 
 def test_terms_of_a_gain_that_is_zero_are_left_out_of_the_equations(lab):
-    for name, gain in (("identifier_based", "noise_variance"), ("extended_kalman", "process_noise")):
-        ((_, variants),) = lab.model["observers"][name]["equations"].items()
-        assert [variant["zero"] for variant in variants] == [gain, None]
-        assert f'data-letter="{gain}"' not in "".join(variants[0]["lines"])
+    for observer in lab.model["observers"].values():
+        for variant in (variant for variants in observer["equations"].values() for variant in variants):
+            text = "".join(variant["lines"])
+            assert not [gain for gain in variant["zero"] if f'data-letter="{gain}"' in text]
+    filtered = lab.model["observers"]["extended_kalman"]["equations"][""]
+    assert [len(variant["zero"]) for variant in filtered] == [2, 1, 1, 0]
 
 
 @pytest.mark.parametrize(
@@ -99,7 +105,7 @@ def test_terms_of_a_gain_that_is_zero_are_left_out_of_the_equations(lab):
         ({"gains": {"identifier_based": {"strength": 1.0}}}, "has no gain strength"),
         ({"observers": ["range_identification"], "outputs": ["y1"]}, "measure every image coordinate"),
         ({"switches": {"spica": "sign"}}, "spica does not switch"),
-        ({"switches": {"sliding_mode": "never"}}, "it must be one of sign, hyperbolic tangent, fraction"),
+        ({"switches": {"sliding_mode": "never"}}, "it must be one of fraction, sign, hyperbolic tangent"),
         ({"A": [1, 2, 3]}, "numbers between"),
         ({"b": ["one", 2, 3]}, "numbers between"),
         ({"X0": [0.0, float("nan"), 1.0]}, "numbers between"),
@@ -179,6 +185,10 @@ def _rigid(motion):
         ({"observers": ["extended_kalman"], "noise": NOISY}, "It is honest"),
         ({"observers": ["extended_kalman"], "noise": {"kind": "uniform", "size": 0.03}}, "It is overconfident"),
         ({"observers": ["extended_kalman"]}, "It is too modest"),
+        (
+            {"observers": ["integral_sliding_mode"], "switches": {"integral_sliding_mode": "hyperbolic tangent"}},
+            "too fast",
+        ),
     ],
 )
 def test_the_analysis_says_what_python_found(settings, words):

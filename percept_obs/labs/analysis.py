@@ -18,8 +18,11 @@ from percept_obs.observers.base import hats
 from percept_obs.recording import Recording
 from percept_obs.tracking import Run
 
-Structure = tuple[str, tuple[str, ...], str, str | None]
-"""Names of a surface, of the measured outputs, of an observer, and of its switch."""
+INSTANTS = 200
+"""At how many instants of the window the error dynamics are linearised, at most."""
+
+Structure = tuple[str, tuple[str, ...], str, str]
+"""Names of a surface, of the measured outputs, of an observer, and of its way to switch."""
 
 
 def excitation_in_words(form: CanonicalForm, recording: Recording, window: float) -> str:
@@ -33,7 +36,8 @@ def excitation_in_words(form: CanonicalForm, recording: Recording, window: float
 
 def has_words(structure: Structure) -> bool:
     """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
-    return observer_of(*structure).covariance is not None or _can_be_linearised(structure)
+    observer = observer_of(*structure)
+    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(structure)
 
 
 def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
@@ -42,7 +46,9 @@ def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
         return []
     if run.observer.covariance is not None:
         return [_claim_in_words(run), _honesty_in_words(run)]
-    return [] if run.recording.truth is None else _error_in_words(structure, run, window)
+    if run.recording.truth is None or not _can_be_linearised(structure):
+        return []
+    return _error_in_words(structure, run, window)
 
 
 def _claim_in_words(run: Run) -> str:
@@ -104,8 +110,9 @@ def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
     names = [s.name for s in observer.form.coordinates]
     order = [names.index(name) for name in (*observer.form.measured, *observer.form.hidden)]
     size = len(names)
-    part = run.time >= run.time[-1] - window
-    known = np.broadcast_to(recording.motion.known(run.time[part]), (int(part.sum()), 12))
+    late = np.flatnonzero(run.time >= run.time[-1] - window)
+    part = late[np.unique(np.linspace(0, len(late) - 1, INSTANTS).astype(int))]
+    known = np.broadcast_to(recording.motion.known(run.time[part]), (len(part), 12))
     shape = [recording.surface.values[s] for s in recording.surface.parameters]
     gains = {gain.name: gain.value for gain in observer.gains}
     others = run.state[part, size:]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import combinations
 from typing import Any
 
 import sympy as sp
@@ -21,7 +22,7 @@ Matrices = dict[str, Any]
 
 
 def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str, Any]]:
-    """An observer's equations as MathML: a line each, once with all terms and once for each gain that may be 0.
+    """An observer's equations as MathML, a line each: with all terms, and without those of gains that may be 0.
 
     Parameters
     ----------
@@ -31,8 +32,8 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
 
     Returns
     -------
-    list of {"zero": name of a gain or None, "lines": MathML}
-        In the order in which they are to be tried.
+    list of {"zero": names of gains, "lines": MathML}
+        In the order in which they are to be tried: the last one is without zeros.
     """
     if make in IN_MATRICES:
         observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
@@ -40,10 +41,9 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
     else:
         observer = make(lecture_form(), **switch)
         lines = partial(in_scalars, observer)
-    optional = [gain for gain in observer.gains if gain.value == 0]
-    return [{"zero": gain.name, "lines": lines(zero=gain.symbol)} for gain in optional] + [
-        {"zero": None, "lines": lines()}
-    ]
+    optional = {gain.name: gain.symbol for gain in observer.gains if gain.value == 0}
+    subsets = [names for size in range(len(optional), -1, -1) for names in combinations(optional, size)]
+    return [{"zero": list(names), "lines": lines(zero=[optional[name] for name in names])} for names in subsets]
 
 
 def lecture_form() -> CanonicalForm:
@@ -54,14 +54,14 @@ def lecture_form() -> CanonicalForm:
     return CanonicalForm((x1,), (x2,), w, phi, g, (), (x1, x2))
 
 
-def in_scalars(observer: Observer, zero: sp.Symbol | None = None) -> list[str]:
+def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     """A line for each of an observer's equations.
 
     Parameters
     ----------
     observer : Observer
-    zero : sympy symbol, optional
-        A gain that is 0, so that its terms are left out.
+    zero : sequence of sympy symbols
+        Gains that are 0, so that their terms are left out.
     """
     form, equations = observer.form, observer.equations
     letters = {gain.name: gain.symbol for gain in observer.gains}
@@ -71,13 +71,15 @@ def in_scalars(observer: Observer, zero: sp.Symbol | None = None) -> list[str]:
         if hat not in equations.state
     }
     short = {estimate: hat for hat, estimate in derived.items() if estimate not in form.x1}
-    flow = [rate.subs({} if zero is None else {zero: 0}).subs(short) for rate in equations.flow]
+    flow = [rate.subs(dict.fromkeys(zero, 0)).subs(short) for rate in equations.flow]
     lines = [formula(dotted(s), rate, letters) for s, rate in zip(equations.state, flow, strict=True)]
     lines += [formula(hat, estimate, letters) for hat, estimate in derived.items()]
     starts = zip(equations.state, observer.start, strict=True)
     begun = [formula(s, value, letters) for s, value in starts if value in letters.values()]
     if begun:
         lines.append(row("at the start", *_listed(begun)))
+    if observer.gap:
+        lines.append(row("no estimate where", markup(observer.gap.condition, letters)))
     if equations.reset:
         changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
         after_it = [formula(after(s), new, letters) for s, new in changed]
@@ -85,12 +87,12 @@ def in_scalars(observer: Observer, zero: sp.Symbol | None = None) -> list[str]:
     return lines
 
 
-def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, one: Any, Q: Any, R: Any) -> Matrices:
+def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, doubt: Any, R: Any) -> Matrices:
     """The extended Kalman filter for an output y = c^T x: flow, innovation, its variance s, gain k, update."""
     k, e, s = (sp.MatrixSymbol(letter, *shape) for letter, shape in (("k", x.shape), ("e", (1, 1)), ("s", (1, 1))))
     return {
         "x'": f,
-        "P'": F * P + P * F.T + Q * one,
+        "P'": F * P + P * F.T + doubt,
         "e": y - c.T * x,
         "s": c.T * P * c + R,
         "k": P * c * s**-1,
@@ -114,19 +116,20 @@ def _listed(formulas: list[str]) -> list[str]:
     return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]
 
 
-def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: sp.Symbol | None = None) -> list[str]:
+def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
     n = sp.Symbol("n", integer=True, positive=True)
     x, F, P, c = (sp.MatrixSymbol(name, n, width) for name, width in (("xhat", 1), ("F", n), ("P", n), ("c", 1)))
     # f names the system's rate as a whole, (w^T x2 + phi, g)
     rate, y = sp.MatrixSymbol("f", n, 1), sp.MatrixSymbol("y", 1, 1)
-    Q = sp.S.Zero if zero == letters["process_noise"] else letters["process_noise"]
+    doubts = (("process_noise", sp.Identity(n)), ("hidden_process_noise", sp.MatrixSymbol("I_2", n, n)))
+    doubt = sum((letters[q] * ones for q, ones in doubts if letters[q] not in zero), sp.ZeroMatrix(n, n))
     R = sp.MatrixSymbol(letters["noise_variance"].name, 1, 1)
-    rows = kalman_equations(x, P, F, rate, c, y, sp.Identity(n), Q, R)
+    rows = kalman_equations(x, P, F, rate, c, y, doubt, R)
     at_estimate = sp.Function("f")(sp.Symbol("xhat"))
     start = sp.diag(letters["measured_variance"], letters["hidden_variance"])
     return [
         row(formula(dotted(x), at_estimate), "with", formula(F, sp.Derivative(at_estimate, sp.Symbol("xhat")))),
-        formula(dotted(P), rows["P'"], letters),
+        row(formula(dotted(P), rows["P'"], letters), *_where_hidden(letters["hidden_process_noise"] in zero)),
         row("at a sample of an output", formula("<mi>y</mi>", c.T * sp.MatrixSymbol("x", n, 1))),
         row(formula("<mi>e</mi>", rows["e"]), ",", formula("<mi>s</mi>", rows["s"], letters)),
         row(formula("<mi>k</mi>", rows["k"]), ",", formula(after(x), rows["x+"]), ",", formula(after(P), rows["P+"])),
@@ -134,7 +137,12 @@ def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: sp.Symbol | None = Non
     ]
 
 
-def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: sp.Symbol | None = None) -> list[str]:
+def _where_hidden(unused: bool) -> list[str]:
+    ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
+    return [] if unused else ["with", ones, "for measured and hidden"]
+
+
+def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
     n, m = sp.symbols("n m", integer=True, positive=True)
     x, F, P = (sp.MatrixSymbol(f"{s}_i", n, width) for s, width in (("xhat", 1), ("F", n), ("P", n)))
     rate, C, y = sp.MatrixSymbol("f_0", n, 1), sp.MatrixSymbol("C", m, n), sp.MatrixSymbol("y", m, 1)

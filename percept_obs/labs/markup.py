@@ -39,7 +39,8 @@ def markup(expression: object, letters: Mapping[str, sp.Symbol] | None = None) -
 
 def dotted(symbol: sp.Basic) -> str:
     """MathML of a symbol's time derivative."""
-    return f'<mover accent="true"><mrow>{markup(symbol)}</mrow><mo>˙</mo></mover>'
+    # not as an accent, which without a mathematical font would lie on the letter
+    return f"<mover><mrow>{markup(symbol)}</mrow><mo>˙</mo></mover>"
 
 
 def after(symbol: sp.Basic) -> str:

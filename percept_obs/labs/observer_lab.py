@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
 from functools import lru_cache, partial
 from typing import Any
@@ -20,18 +21,19 @@ from percept_obs.labs.structures import (
     OUTPUTS,
     OWN_SWITCH,
     SURFACES,
+    WAYS,
     form_of,
     key_of,
     model_for_the_page,
     observer_of,
     structure_for_the_page,
+    with_all_gains,
 )
 from percept_obs.labs.tracks import track_for_the_page, with_affine_motion
 from percept_obs.motion import affine
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.surfaces import BehindCamera, plane
-from percept_obs.switching import SWITCHES
-from percept_obs.tracking import SETTLED_PART, VERDICTS, Run, track
+from percept_obs.tracking import SETTLED_PART, VERDICTS, Run, StepTooLong, track
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
@@ -127,7 +129,7 @@ class ObserverLab(Lab):
         """Sentences on excitation, error dynamics and the bias of noise for the present settings."""
         settings = self.settings
         place = (settings["surface"], tuple(settings["outputs"]))
-        structures = {name: (*place, name, _switch(settings, name)) for name in settings["observers"]}
+        structures = {name: (*place, name, _way(settings, name)) for name in settings["observers"]}
         told = [name for name, structure in structures.items() if has_words(structure)]
         try:
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
@@ -135,9 +137,12 @@ class ObserverLab(Lab):
             return {"sentences": [str(error)]}
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(form_of(*place), recording, window)]
-        for name, run in runs({**settings, "observers": told}, self._recordings).items():
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", StepTooLong)
+            found = runs({**settings, "observers": told}, self._recordings)
+        for name, run in found.items():
             sentences += run_in_words(structures[name], run, window)
-        return {"sentences": sentences}
+        return {"sentences": [*sentences, *(str(warning.message) for warning in caught)]}
 
     def _model(self) -> Settings:
         return {
@@ -157,7 +162,7 @@ class ObserverLab(Lab):
         structures: Settings = {}
         for settings in shown:
             place = (settings["surface"], tuple(settings["outputs"]))
-            chosen = [(name, _switch(s, name) or "") for s in shown for name in s["observers"]]
+            chosen = [(name, _way(s, name)) for s in shown for name in s["observers"]]
             structures[key_of(*place)] = structure_for_the_page(*place, tuple(dict.fromkeys(chosen)))
         return structures
 
@@ -172,15 +177,16 @@ def runs(settings: Settings, recordings: Mapping[str, Recording]) -> dict[str, R
     start: Any = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
     found = {}
     for name in settings["observers"]:
-        observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _switch(settings, name))
-        observer = observer.with_gains(**settings["gains"][name])
+        observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _way(settings, name))
+        gains = settings["gains"][name]
+        observer = observer.with_gains(**{gain.name: gains[gain.name] for gain in observer.gains})
         found[name] = track(recording, observer, start, settings["hold"], believed or None)
     return found
 
 
-def _switch(settings: Settings, name: str) -> str | None:
-    """How an observer switches, if it does."""
-    return settings["switches"].get(name)
+def _way(settings: Settings, name: str) -> str:
+    """How an observer switches; nothing if it does not."""
+    return str(settings["switches"].get(name, ""))
 
 
 def _simulated(settings: Settings) -> Recording:
@@ -278,7 +284,7 @@ def _checked_gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, dict[s
     unknown = sorted(set(given) - set(BY_NAME))
     if unknown:
         raise ValueError(f"there is no observer {', '.join(unknown)}; there are {', '.join(BY_NAME)}")
-    observers = {name: observer_of("pinhole", OUTPUTS[0], name).with_gains(**given.get(name, {})) for name in BY_NAME}
+    observers = {name: with_all_gains(name).with_gains(**given.get(name, {})) for name in BY_NAME}
     return {name: {gain.name: gain.value for gain in observer.gains} for name, observer in observers.items()}
 
 
@@ -287,9 +293,7 @@ def _checked_switches(given: Mapping[str, str]) -> dict[str, str]:
     if unknown:
         raise ValueError(f"{', '.join(unknown)} does not switch; {', '.join(OWN_SWITCH)} do")
     whole = {**OWN_SWITCH, **given}
-    return {
-        name: one_of({f"switch of {name}": switch}, f"switch of {name}", SWITCHES) for name, switch in whole.items()
-    }
+    return {name: one_of({f"switch of {name}": way}, f"switch of {name}", WAYS[name]) for name, way in whole.items()}
 
 
 def _check_choices(settings: Settings, recording: Recording | None) -> None:
@@ -304,7 +308,7 @@ def _check_choices(settings: Settings, recording: Recording | None) -> None:
     for name in some_of(settings, "observers", BY_NAME):
         if name in refused:
             raise ValueError(f"{name} cannot follow this recording: {refused[name]}")
-        observer_of(surface, tuple(settings["outputs"]), name, _switch(settings, name))
+        observer_of(surface, tuple(settings["outputs"]), name, _way(settings, name))
     one_of({"noise kind": settings["noise"].get("kind")}, "noise kind", NOISES)
     one_of({"start mode": settings["start"].get("mode")}, "start mode", STARTS)
     one_of(settings, "hold", HOLDS if recording is None else HOLDS[:2])

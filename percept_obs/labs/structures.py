@@ -31,14 +31,18 @@ Texts = dict[str, Any]
 SURFACES = {"pinhole": pinhole, "chained": chained, "plane": plane}
 OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
 BY_NAME: dict[str, Callable[..., Observer]] = {make.__name__: make for make in OBSERVERS}
-OWN_SWITCH = MappingProxyType(
-    {
-        name: parameters["switch"].default
-        for name, make in BY_NAME.items()
-        if "switch" in (parameters := inspect.signature(make).parameters)
-    }
-)
-"""Observers that switch, with the switch that each has unless another is chosen."""
+
+
+def _ways(make: Callable[..., Observer]) -> tuple[str, ...]:
+    own = inspect.signature(make).parameters.get("switch")
+    return ("",) if own is None else tuple(dict.fromkeys((own.default, *SWITCHES)))
+
+
+WAYS = MappingProxyType({name: _ways(make) for name, make in BY_NAME.items()})
+"""Ways in which each observer switches, its own first; one without a name for those that do not."""
+
+OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if ways[0]})
+"""The switch that each observer that switches has unless another is chosen."""
 
 MOTION = affine()
 
@@ -59,16 +63,21 @@ def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
 
 
 @lru_cache(maxsize=256)
-def observer_of(surface: str, outputs: tuple[str, ...], name: str, switch: str | None = None) -> Observer:
-    """An observer with its default gains.
+def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = "") -> Observer:
+    """An observer with its default gains, and its own way to switch unless another is named.
 
     Raises
     ------
     ValueError
         If it does not exist for this structure.
     """
-    chosen = {"switch": switch or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
-    return BY_NAME[name](form_of(surface, outputs), **chosen)
+    form = form_of(surface, outputs)
+    return BY_NAME[name](form, switch=way or OWN_SWITCH[name]) if name in OWN_SWITCH else BY_NAME[name](form)
+
+
+def with_all_gains(name: str) -> Observer:
+    """The observer for all image coordinates, with the gains of every way in which it switches."""
+    return max((observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]), key=lambda o: len(o.gains))
 
 
 @lru_cache
@@ -97,19 +106,15 @@ def _surface_for_the_page(name: str) -> Texts:
 
 def _observer_for_the_page(name: str) -> Texts:
     """What is known about an observer, its gains, and its equations in the lecture's letters."""
-    observer = observer_of("pinhole", OUTPUTS[0], name)
+    observer = with_all_gains(name)
     about = observer.about
+    ways = {way: observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]}
     return {
         "title": observer.name,
         "about": about and {"title": about.title, "source": about.source, "needs": about.needs, "claim": about.claim},
         "gains": [_gain_for_the_page(gain) for gain in observer.gains],
-        "switch": OWN_SWITCH.get(name, ""),
-        "switches": list(SWITCHES) if name in OWN_SWITCH else [],
-        "equations": (
-            {switch: equations_of(BY_NAME[name], switch=switch) for switch in SWITCHES}
-            if name in OWN_SWITCH
-            else {"": equations_of(BY_NAME[name])}
-        ),
+        "ways": {way: [gain.name for gain in made.gains] for way, made in ways.items()},
+        "equations": {way: equations_of(BY_NAME[name], **({"switch": way} if way else {})) for way in ways},
     }
 
 
@@ -137,7 +142,7 @@ def structure_for_the_page(
     ----------
     surface : str
     outputs : tuple of str
-    observers : tuple of pairs of an observer's name and its switch ("" if it has none), optional
+    observers : tuple of pairs of an observer's name and its way to switch, optional
         All of them when left out.
 
     Returns
@@ -155,16 +160,16 @@ def structure_for_the_page(
     except ValueError:
         circle = None
     if observers is None:
-        observers = tuple((name, switch) for name in BY_NAME for switch in (SWITCHES if name in OWN_SWITCH else ("",)))
+        observers = tuple((name, way) for name, ways in WAYS.items() for way in ways)
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
-    for name, switch in observers:
+    for name, way in observers:
         try:
-            observer = observer_of(surface, outputs, name, switch)
+            observer = observer_of(surface, outputs, name, way)
         except ValueError as error:
             refused[name] = str(error)
         else:
-            kernels.setdefault(name, {})[switch] = _kernel_for_the_page(observer)
+            kernels.setdefault(name, {})[way] = _kernel_for_the_page(observer)
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],
@@ -189,11 +194,14 @@ def texts_of(key: str) -> Texts:
 def _kernel_for_the_page(observer: Observer) -> Texts:
     form, equations = observer.form, observer.equations
     known = (*form.x1, *form.parameters, *equations.gains)
-    claimed = observer.covariance
+    claimed, gap = observer.covariance, observer.gap
     return {
+        "gains": [gain.name for gain in observer.gains],
         "run": source(equations, "javascript"),
         "states": len(equations.state),
         "start": function_source((*known, *hats(form.coordinates)), observer.start),
         "estimate": function_source((*known, *equations.state), observer.estimate),
         "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
+        "gap": gap and function_source(known, (sp.Piecewise((1, gap.condition), (0, True)),)),
+        "gapReason": gap and gap.reason,
     }

@@ -10,6 +10,7 @@ export const DASHES = [
   [4, 2, 4, 7],
   [2, 7],
   [16, 3, 5, 3],
+  [13, 3, 2, 3, 7, 3],
 ];
 
 export const SOLID = [];

@@ -14,8 +14,9 @@ export function short(value, digits = 3) {
   return plain.includes(".") ? plain.replace(/\.?0+$/, "") : plain;
 }
 
-/** A number for people: a true minus sign, no padded exponent. */
+/** A number for people: a true minus sign, no padded exponent; what is not there is none. */
 export function readable(value, digits = 3) {
+  if (Number.isNaN(value)) return "none";
   return short(value, digits)
     .replace(/e\+?(-?)0*(\d+)/, "e$1$2")
     .replace(/-/g, "−");

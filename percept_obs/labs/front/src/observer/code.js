@@ -25,9 +25,11 @@ export function pythonOf(shown, model) {
     options.push("believed=believed");
   }
   for (const name of settings.observers) {
-    const changed = model.observers[name].gains.filter((gain) => settings.gains[name][gain.name] !== gain.value);
+    const { gains: known, ways } = model.observers[name];
     const way = switchOf(settings, name);
-    const gains = (way === model.observers[name].switch ? "" : `, switch="${way}"`) + changed.map((gain) => `, ${gain.name}=${number(settings.gains[name][gain.name])}`).join("");
+    const used = known.filter((gain) => ways[way].includes(gain.name));
+    const changed = used.filter((gain) => settings.gains[name][gain.name] !== gain.value);
+    const gains = (way === Object.keys(ways)[0] ? "" : `, switch="${way}"`) + changed.map((gain) => `, ${gain.name}=${number(settings.gains[name][gain.name])}`).join("");
     const result = settings.observers.length > 1 ? `run_${name}` : "run";
     lines.push(`${result} = track(${["recording", `${name}(form${gains})`, ...options].join(", ")})`);
     lines.push(`print(${result}.verdict())`);

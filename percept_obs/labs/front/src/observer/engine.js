@@ -67,7 +67,7 @@ export class Engine {
     const { memory } = this;
     const { width, time } = shown;
     const { grid, known: table } = inputs;
-    const gains = Float64Array.from(this.model.observers[name].gains, (gain) => settings.gains[name][gain.name]);
+    const gains = Float64Array.from(kernel.gains, (gain) => settings.gains[name][gain]);
     const states = memory.room(`states of ${name}`, grid.length * kernel.states);
     const resets = memory.room("resets", grid.length).fill(0);
     const start = startState(settings, shown, inputs, kernel, functions, gains);
@@ -75,7 +75,8 @@ export class Engine {
     const diverged = functions.run(start, steps, outputs, table.rows, samples, gains, table.varying, states, resets);
     if (diverged >= 0) states.fill(NaN, diverged * kernel.states);
     const estimate = memory.room(`estimate ${name}`, time.length * width);
-    readEstimates(functions, kernel, states, inputs, gains, width, estimate);
+    const hidden = functions.gap ? shown.hidden : [];
+    readEstimates(functions, kernel, states, inputs, gains, width, hidden, estimate);
     const result = {
       name,
       title: this.model.observers[name].title,
@@ -84,6 +85,8 @@ export class Engine {
       deviation: null,
       ...this.columns(`estimate ${name}`, estimate, width),
       resets: timesOf(resets, grid),
+      gaps: functions.gap ? gapsOf(estimate, width, hidden[0], time, diverged < 0 ? Infinity : grid[diverged]) : [],
+      gapReason: kernel.gapReason,
       divergedAt: diverged < 0 ? null : grid[diverged],
     };
     if (functions.variances) {
@@ -169,11 +172,12 @@ function startState(settings, shown, { columns, known: table }, kernel, function
   return functions.start(inputs, new Float64Array(kernel.states));
 }
 
-/** Fill in the estimates at the samples. */
-function readEstimates(functions, kernel, states, { index, last, known: table }, gains, width, estimate) {
+/** Fill in the estimates at the samples; none of the hidden coordinates in a gap. */
+function readEstimates(functions, kernel, states, { index, last, known: table }, gains, width, hidden, estimate) {
   const before = last.length + table.width + gains.length;
   const x = new Float64Array(before + kernel.states);
   const out = new Float64Array(width);
+  const missing = new Float64Array(1);
   x.set(table.rows.subarray(0, table.width), last.length);
   x.set(gains, last.length + table.width);
   for (let k = 0; k < index.length; k++) {
@@ -186,7 +190,21 @@ function readEstimates(functions, kernel, states, { index, last, known: table },
     }
     functions.estimate(x, out);
     for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
+    if (hidden.length && functions.gap(x, missing)[0]) for (const c of hidden) estimate[k * width + c] = NaN;
   }
+}
+
+/** The times of every gap's first and last sample: where a hidden coordinate has no estimate, though the run goes on. */
+function gapsOf(estimate, width, c, time, end) {
+  const found = [];
+  let inside = false;
+  for (let k = 0; k < time.length && time[k] < end; k++) {
+    const missing = Number.isNaN(estimate[k * width + c]);
+    if (missing && !inside) found.push([time[k], time[k]]);
+    if (missing) found.at(-1)[1] = time[k];
+    inside = missing;
+  }
+  return found;
 }
 
 /** Fill in the standard deviations that are claimed at the samples. */

@@ -40,10 +40,10 @@ export class Formulas {
     }
   }
 
-  /** An observer's equations, without the terms of a gain that is 0. */
+  /** An observer's equations, without the terms of gains that are 0. */
   linesOf(settings, name) {
     const equations = this.model.observers[name].equations[switchOf(settings, name)];
-    return equations.find(({ zero }) => zero === null || settings.gains[name][zero] === 0).lines;
+    return equations.find(({ zero }) => zero.every((gain) => settings.gains[name][gain] === 0)).lines;
   }
 
   build(settings, chosen) {

@@ -70,10 +70,11 @@ export class Kernels {
       [key, { w: structure.w, ...(structure.circle && { circle: structure.circle }) }],
     ];
     for (const name of settings.observers.filter((n) => !structure.refused[n])) {
-      const { run, start, estimate, variances } = structure.observers[name][switchOf(settings, name)];
+      const { run, start, estimate, variances, gap } = structure.observers[name][switchOf(settings, name)];
       const allowed = Object.fromEntries(this.model.observers[name].gains.map((g) => [`allow_${g.name}`, g.allowed]));
       groups.push([`gains of ${name}`, allowed]);
-      groups.push([nameOf(settings, name), { run, start, estimate, ...(variances && { variances }) }]);
+      const texts = { run, start, estimate, ...(variances && { variances }), ...(gap && { gap }) };
+      groups.push([nameOf(settings, name), texts]);
     }
     return groups;
   }

@@ -3,6 +3,7 @@
 import { button, checkbox, element, select, slider } from "../common/controls.js";
 import { linkToFormula } from "../common/fieldsets.js";
 import { swatch } from "../common/lines.js";
+import { switchOf } from "./kernels.js";
 
 /** Rows and groups for a panel, which shows them with its other controls. */
 export class ObserverList {
@@ -49,7 +50,7 @@ export class ObserverList {
     return element("div", { class: "observer" }, panel.add(choice), more, refusal, known);
   }
 
-  group(name, { title, gains, switches }, order) {
+  group(name, { title, gains, ways }, order) {
     const { lab, panel } = this;
     const put = (key, value) => {
       const all = lab.settings.gains;
@@ -64,7 +65,7 @@ export class ObserverList {
         log: gain.low > 0 && gain.high / gain.low >= 50,
         step: (gain.high - gain.low) / 1000,
         allowed: (value) => lab.allows(name, gain.name, value),
-        get: () => lab.settings.gains[name][gain.name],
+        get: () => (ways[switchOf(lab.settings, name)].includes(gain.name) ? lab.settings.gains[name][gain.name] : undefined),
         set: (value) => put(gain.name, value),
         rest: () => lab.rest(),
       });
@@ -74,12 +75,12 @@ export class ObserverList {
     const way = select({
       name: `${name} switch`,
       label: "switches by",
-      options: switches.map((text) => [text, text]),
+      options: Object.keys(ways).map((text) => [text, text]),
       get: () => lab.settings.switches[name],
       set: (value) => lab.change({ switches: { ...lab.settings.switches, [name]: value } }, true),
     });
     const head = element("summary", { "data-control": `gains of ${name}` }, swatch(order), title);
-    return element("details", { class: "gains-of", open: true }, head, ...(switches.length ? [panel.add(way)] : []), ...sliders);
+    return element("details", { class: "gains-of", open: true }, head, ...(switchOf(lab.settings, name) ? [panel.add(way)] : []), ...sliders);
   }
 
   /** Show the gains of the chosen observers only. */

@@ -11,11 +11,14 @@ export function verdict(run, shown, { verdicts, settledPart }) {
   const say = (which, values) => verdicts[which].replace(/{(\w+)}/g, (_, name) => values[name]);
   if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
   const count = run.resets.length;
-  const resets = count
-    ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) })
-    : "";
+  let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
+  if (run.gaps.length) {
+    const [begin, end] = run.gaps[0].map((time) => short(time));
+    besides += say("gap", { begin, end, reason: run.gapReason });
+    if (run.gaps.length > 1) besides += say("more gaps", { count: run.gaps.length - 1 });
+  }
   const length = shown.time.at(-1) - shown.time[0];
-  if (!shown.truth) return say("followed", { time: short(length) }) + resets;
+  if (!shown.truth) return say("followed", { time: short(length) }) + besides;
   const inside = length - run.settling >= settledPart * length ? "converged" : "late";
   const words = say(run.settling === Infinity ? "outside" : inside, {
     hidden: shown.hiddenNames.join(", "),
@@ -23,7 +26,7 @@ export function verdict(run, shown, { verdicts, settledPart }) {
     tolerance: TOLERANCE,
     time: short(run.settling),
   });
-  return words + resets;
+  return words + besides;
 }
 
 /** Why: what the settings and the path of the point have to do with it. */
