@@ -151,6 +151,7 @@ class ObserverLab(Lab):
             "scenarios": self._scenarios,
             "recordings": self._tracks,
             "opening": self._opening,
+            "standard": self.check(_opening_settings()),
             "pictures": PICTURES,
             "verdicts": dict(VERDICTS),
             "settledPart": SETTLED_PART,

@@ -54,9 +54,7 @@ export class ObserverLab extends Live {
 
   act(preset, number) {
     this.before ??= this.settings;
-    const standard = { ...this.model.opening, ...this.model.scenarios.ma2005_eq35, scenario: "ma2005_eq35" };
-    delete standard.title;
-    this.replace(settingsOf(preset.acts[number], { ...standard, believed: null, surface: "pinhole" }));
+    this.replace(settingsOf(preset.acts[number], this.model.standard));
   }
 
   copy() {

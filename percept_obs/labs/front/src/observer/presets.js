@@ -12,7 +12,7 @@ const STILL = [
 ];
 const NOISE = { kind: "uniform", size: 0.01 };
 
-/** Presets for a model: each act turns the opening settings into its own. */
+/** Presets for a model: each act turns the standard settings into its own. */
 export const PRESETS = [
   {
     name: "foe",
@@ -110,10 +110,10 @@ export const PRESETS = [
   },
 ];
 
-/** The settings of an act: the opening ones with the act's changes. */
-export function settingsOf(act, opening) {
-  const changed = { ...structuredClone(opening), ...structuredClone(act.changes), kept: null };
-  changed.gains = structuredClone(opening.gains);
+/** The settings of an act: the standard ones, whatever the lab was opened with, and the act's changes. */
+export function settingsOf(act, standard) {
+  const changed = { ...structuredClone(standard), ...structuredClone(act.changes), kept: null };
+  changed.gains = structuredClone(standard.gains);
   for (const [name, gains] of Object.entries(act.changes.gains ?? {})) Object.assign(changed.gains[name], gains);
   if (act.believe) changed.believed = { A: changed.A, b: changed.b.map((value) => value * act.believe) };
   return changed;
