@@ -67,3 +67,12 @@ def test_what_does_not_belong_together_is_refused(recording, run):
             figures.quantities(runs, labels)
     with pytest.raises(ValueError, match="3 are needed"):
         figures.quantities(run, axes=figures.compare(run).axes)
+
+
+@pytest.mark.parametrize("observer", [ismo, ekf])
+def test_the_distance_is_that_of_the_point_and_not_of_the_last_unknown(recording, observer):
+    run = track(recording, observer(recording.surface.form), ZERO, **fine)
+    upper = figures.distance(run).axes[0]
+    truth = next(line.get_ydata() for line in upper.lines if line.get_label() == "truth")
+    np.testing.assert_allclose(truth, 1 / recording.surface.inverse(recording.truth))
+    assert (truth > 0).all()

@@ -33,6 +33,7 @@ from percept_obs.figures.base import (
     words,
 )
 from percept_obs.recording import Recording
+from percept_obs.surfaces import ImagingSurface
 from percept_obs.tracking import Run
 
 
@@ -190,16 +191,16 @@ def distance(
 
 def _known_distances(recording: Recording) -> dict[str, Array]:
     """The true distance, if there is one, and what else measured it."""
-    truth = {} if recording.truth is None else {"truth": 1 / recording.truth[:, -1]}
+    truth = {} if recording.truth is None else {"truth": 1 / recording.surface.inverse(recording.truth)}
     return {**truth, **recording.distances}
 
 
 def _claim_of_distance(ax: Axes, run: Run, colour: str) -> str:
     """The same for the distance."""
-    if run.observer.covariance is None:
+    if run.observer.covariance is None or not isinstance(run.recording.surface, ImagingSurface):
         return ""
     low, high = claimed_distance(run)
-    words = draw_claim(ax, run, low, high, None if run.recording.truth is None else 1 / run.truth[:, -1], colour)
+    words = draw_claim(ax, run, low, high, _known_distances(run.recording).get("truth"), colour)
     unbounded = int(np.isposinf(high).sum())
     if not unbounded:
         return words
