@@ -218,7 +218,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(page):
     page.fill(control("identifier_based gain number"), "30")
     page.fill(control("noise size number"), "0.01")
     rested(page)
-    assert "after 77.6 s" in state(page)["verdicts"][0]
+    assert "only since 77.6 s" in state(page)["verdicts"][0]
     assert log_entries(page) == ""
 
 
