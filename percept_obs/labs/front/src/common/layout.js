@@ -113,8 +113,9 @@ export function build(lab, place, presets) {
     element(
       "div",
       { class: "stage" },
-      element("div", { class: "left" }, plane.figure, element("div", { class: "words" }, verdicts, why)),
+      element("div", { class: "left" }, plane.figure),
       element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
+      element("div", { class: "words" }, verdicts, why),
     ),
     silence,
     live,

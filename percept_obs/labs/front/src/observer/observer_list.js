@@ -5,6 +5,8 @@ import { linkToFormula } from "../common/fieldsets.js";
 import { swatch } from "../common/lines.js";
 import { switchOf } from "./kernels.js";
 
+const OPEN_AT_ONCE = 3;
+
 /** Rows and groups for a panel, which shows them with its other controls. */
 export class ObserverList {
   constructor(panel) {
@@ -80,12 +82,17 @@ export class ObserverList {
       set: (value) => lab.change({ switches: { ...lab.settings.switches, [name]: value } }, true),
     });
     const head = element("summary", { "data-control": `gains of ${name}` }, swatch(order), title);
-    return element("details", { class: "gains-of", open: true }, head, ...(switchOf(lab.settings, name) ? [panel.add(way)] : []), ...sliders);
+    return element("details", { class: "gains-of", hidden: true }, head, ...(switchOf(lab.settings, name) ? [panel.add(way)] : []), ...sliders);
   }
 
-  /** Show the gains of the chosen observers only. */
+  /** Show the gains of the chosen observers only; where they are many, closed until asked for. */
   show() {
-    this.groups.forEach((group, k) => (group.hidden = !this.lab.settings.observers.includes(this.observers[k][0])));
+    const { observers } = this.lab.settings;
+    this.groups.forEach((group, k) => {
+      const chosen = observers.includes(this.observers[k][0]);
+      if (chosen && group.hidden) group.open = observers.length <= OPEN_AT_ONCE;
+      group.hidden = !chosen;
+    });
   }
 }
 
