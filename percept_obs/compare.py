@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.compile import WORTH_COMPILING
 from percept_obs.least_squares import WindowEstimate
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-
-WORTH_COMPILING = 100_000
-"""From so many samples in all on, waiting for numba to compile an observer costs less than running it in Python."""
 
 
 def compare(

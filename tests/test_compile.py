@@ -1,9 +1,6 @@
 """Python, numba and JavaScript run the same loop, and what would differ between them is refused."""
 
 import builtins
-import subprocess
-import sys
-import time
 from functools import partial
 
 import numpy as np
@@ -153,54 +150,23 @@ def test_numbers_compile_nothing(monkeypatch):
     assert (kernels._kernel.cache_info().misses, source.cache_info().misses) == before
 
 
-def test_numba_takes_over_once_it_has_compiled():
-    equations = Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,))
-    kernel = kernels._kernel(equations)
-    assert kernel.choose(None) is kernel.python
-    deadline = time.monotonic() + 60
-    while kernel.choose(None) is kernel.python and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert kernel.choose(None) is not kernel.python
-    assert kernel.choose("python") is kernel.python
+def test_numba_takes_over_once_compiling_has_paid(monkeypatch):
+    monkeypatch.setattr(kernels, "WORTH_COMPILING", 1000)
+    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,)))
+    assert kernel.choose(None, 600) is kernel.python
+    assert kernel.choose(None, 600) is kernel.compiled
+    assert kernel.choose("python", 600) is kernel.python
 
 
-SEVERAL = """
-import atexit, threading
-import numba, numpy as np, sympy as sp
-from percept_obs.compile import Table, solve
-from percept_obs.equations import Equations
-
-begun = []
-def njit(*signature, **settings):
-    begun.append(signature)
-    {patience}
-    return lambda run: run
-{patch}
-x = sp.Symbol("x", real=True)
-table = Table(np.full(9, 0.1), np.zeros((9, 3, 0)), np.zeros((1, 0)), np.zeros((10, 0)))
-for k in range(1, 9):
-    assert solve(Equations((x,), (-k * x,)), [1.0], table).diverged is None
-atexit.register(lambda: print("begun:", len(begun)))
-"""
-
-
-def test_a_program_that_ends_finishes_the_compilation_that_has_begun_and_begins_no_other():
-    program = SEVERAL.format(patience="threading.main_thread().join()", patch="numba.njit = njit")
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "begun: 1\n", "")
-
-
-def test_a_program_that_ends_while_numba_compiles_ends_quietly():
-    program = SEVERAL.format(patience="", patch="")
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "begun: 0\n", "")
+def test_what_was_compiled_on_request_is_used_from_then_on():
+    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 8),), (), (k,)))
+    assert kernel.choose("numba", 1) is kernel.choose(None, 1) is kernel.compiled
 
 
 def test_without_numba_python_runs(monkeypatch):
     monkeypatch.setattr(kernels, "find_spec", lambda name: None)
     kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 9),), (), (k,)))
-    assert kernel.choose(None) is kernel.python
-    assert kernel._beside is None
+    assert kernel.choose(None, kernels.WORTH_COMPILING) is kernel.python
 
 
 def test_an_unknown_language_is_refused():

@@ -21,8 +21,7 @@ from percept_obs.labs.structures import KEYS, OWN_SWITCH, WAYS, texts_of
 from percept_obs.observability import windowed
 from percept_obs.surfaces import BehindCamera
 
-# Numba's compilation beside restores the filters that it found, so the warning of long steps is let through for good.
-pytestmark = [pytest.mark.node, pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")]
+pytestmark = pytest.mark.node
 
 
 @pytest.fixture(scope="module")

@@ -2,11 +2,12 @@
 
 from percept_obs.compile.base import LARGEST_PRODUCT, LARGEST_SQUARED_STATE, NotCompilable, source
 from percept_obs.compile.functions import function_source, right_hand_side, vectorised
-from percept_obs.compile.kernels import Table, Trace, solve
+from percept_obs.compile.kernels import WORTH_COMPILING, Table, Trace, solve
 
 __all__ = [
     "LARGEST_PRODUCT",
     "LARGEST_SQUARED_STATE",
+    "WORTH_COMPILING",
     "NotCompilable",
     "Table",
     "Trace",

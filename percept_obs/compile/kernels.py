@@ -1,12 +1,11 @@
-"""Running the loop, in Python at once and in numba as soon as it has compiled."""
+"""Running the loop, in Python at once and in numba where compiling pays."""
 
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.util import find_spec
 from typing import Any, Literal
 
@@ -17,6 +16,9 @@ from percept_obs.compile.base import source
 from percept_obs.equations import Equations
 
 Array = NDArray[np.float64]
+
+WORTH_COMPILING = 200_000
+"""Steps that take Python about as long as numba takes to compile them and run them."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,8 @@ def solve(
     table : Table
     gains : array of shape (number of gains,)
     language : "python" or "numba", optional
-        Left out, numba as soon as it is installed and has compiled these equations beside, and Python until then.
+        Left out, Python until these equations have been asked for so many steps that compiling them would have paid,
+        and from then on numba, if it is installed.
 
     Returns
     -------
@@ -94,7 +97,7 @@ def solve(
         for block in (start, table.steps, table.measured, table.parameters, table.samples, gains)
     ]
     varying = len(table.parameters) > 1
-    run = kernel.choose(language)
+    run = kernel.choose(language, len(table.steps))
     if run is kernel.python:
         states: Any = [math.nan] * (size * count)
         resets: Any = [0.0] * count
@@ -112,10 +115,6 @@ def solve(
     )
 
 
-_COMPILING = threading.Lock()
-"""Held by the thread that compiles beside; the others wait for their turn."""
-
-
 class _Kernel:
     """The same text for Python and, when it is there, numba."""
 
@@ -124,37 +123,26 @@ class _Kernel:
         namespace: dict[str, Any] = {"math": math}
         exec(compile(self.text, "<run>", "exec"), namespace)
         self.python: Callable[..., int] = namespace["run"]
-        self._numba: Callable[..., int] | None = None
-        self._lock = threading.Lock()
-        self._beside: threading.Thread | None = None
+        self.asked = 0
 
-    def choose(self, language: str | None) -> Callable[..., int]:
-        if language == "python":
-            return self.python
-        if language == "numba":
-            return self._compiled()
-        if language is not None:
+    def choose(self, language: str | None, steps: int) -> Callable[..., int]:
+        if language not in (None, "python", "numba"):
             raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
-        if self._numba is None and self._beside is None and find_spec("numba"):
-            self._beside = threading.Thread(target=self._compile_beside)
-            self._beside.start()
-        return self._numba or self.python
+        self.asked += steps
+        pays = self.asked >= WORTH_COMPILING or "compiled" in self.__dict__
+        if language == "numba" or (language is None and pays and find_spec("numba")):
+            return self.compiled
+        return self.python
 
-    def _compile_beside(self) -> None:
-        with _COMPILING:
-            # a program that ends waits for the compilation that has begun, and for no other
-            if threading.main_thread().is_alive():
-                self._compiled()
+    # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
+    @cached_property
+    def compiled(self) -> Callable[..., int]:
+        import numba
 
-    def _compiled(self) -> Callable[..., int]:
-        with self._lock:
-            if self._numba is None:
-                import numba
-
-                block = numba.float64[::1]
-                signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
-                self._numba = numba.njit([signature], error_model="numpy")(self.python)
-            return self._numba
+        block = numba.float64[::1]
+        signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
+        compiled: Callable[..., int] = numba.njit([signature], error_model="numpy")(self.python)
+        return compiled
 
 
 @lru_cache(maxsize=512)
