@@ -12,6 +12,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 from sympy.logic.boolalg import Boolean
+from sympy.solvers.solveset import NonlinearError
 
 from percept_obs.compile import right_hand_side, vectorised
 from percept_obs.equations import Equations, Expressions, Symbols
@@ -179,7 +180,7 @@ class Observer:
         Raises
         ------
         ValueError
-            If the estimate cannot be solved for the state.
+            If the estimate is not linear in the state, so that it cannot be solved for it.
         """
         form, state = self.form, self.equations.state
         truth = sp.ImmutableMatrix(form.coordinates)
@@ -189,14 +190,15 @@ class Observer:
         estimate_rate += estimate.jacobian(form.x1) * sp.ImmutableMatrix([rates[x] for x in form.x1])
         error_rate = sp.ImmutableMatrix([rates[x] for x in form.coordinates]) - estimate_rate
         misses = [m for m in estimate - truth + sp.ImmutableMatrix(self.error) if m.free_symbols & set(state)]
+        solved = [symbol for symbol in state if any(m.has(symbol) for m in misses)]
         try:
-            at_error = sp.solve(misses, state, dict=True)[0]
-        except NotImplementedError:
+            (values,) = sp.linsolve(misses, solved)
+        except NonlinearError:
             raise ValueError(
                 f"the estimate of the {self.name} observer cannot be solved for its state, so that its error has no "
                 "dynamics of its own; look at the equations of the state instead"
             ) from None
-        return error_rate.subs(at_error, simultaneous=True).expand()
+        return error_rate.subs(dict(zip(solved, values, strict=True)), simultaneous=True).expand()
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of the flow with respect to the observer's state."""
