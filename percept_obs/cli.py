@@ -67,8 +67,9 @@ def check(options: argparse.Namespace) -> int:
     """Print a verdict on each of the papers' equations."""
     from percept_obs.papers import all_hold, report
 
+    held = all_hold()
     print(report())
-    return 0 if all_hold() else 1
+    return 0 if held else 1
 
 
 def compare(options: argparse.Namespace) -> int:

@@ -63,8 +63,11 @@ WIDTHS = (16, 5, 30, 16, 49)
 
 
 def all_hold() -> bool:
-    """Whether every computed verdict is the recorded one."""
-    return all(entry.agrees for ledger in LEDGERS for entry in ledger.entries)
+    """Whether every computed verdict is the recorded one; computing them takes a while, which is shown."""
+    from tqdm.auto import tqdm
+
+    entries = [entry for ledger in LEDGERS for entry in ledger.entries]
+    return all(entry.agrees for entry in tqdm(entries, desc="equations", delay=2, leave=False))
 
 
 def report() -> str:
