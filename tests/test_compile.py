@@ -61,6 +61,7 @@ def both_languages(equations, start, table, gains=()):
     return [solve(equations, start, table, gains, language) for language in ("python", "numba")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("observer", "form"), PAIRS)
 def test_python_and_numba_agree(observer, form):
     recording = record(scenarios.ma2005_eq35(), 20, NOISY, seed=3)

@@ -135,6 +135,7 @@ def test_the_jacobian_against_a_finite_difference(make, form):
     np.testing.assert_allclose(np.stack(columns, axis=1), jacobian, rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "form"), [p for p in [*PAIRS, WITHOUT_FORM] if p.values[0] is not integral_sliding_mode]
 )

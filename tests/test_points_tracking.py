@@ -79,6 +79,7 @@ def test_a_start_at_the_truth_stays_there(name):
     assert run.size.max() < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WEIGHTS)
 @pytest.mark.parametrize("hold", ["zero", "first", "exact"])
 def test_python_and_numba_agree(name, hold):

@@ -61,6 +61,7 @@ def test_a_recording_of_a_choice_holds_what_it_may_know():
     np.testing.assert_allclose(known.truth[0, 3:], [0, -0.22, -0.23])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
 def test_every_observer_runs_on_the_form_as_it_is(make):
     recording = record_structure(CASE, 1, Camera(period=0.01))
