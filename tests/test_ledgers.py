@@ -1,0 +1,232 @@
+"""Every equation of the three papers has a computed verdict, which one slip in a formula would change."""
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import pytest
+from ledger_mutations import say_the_same, slips, symbols_in
+
+from percept_obs import papers
+from percept_obs.papers import CHWA2019, INABA2005, MA2005, Ledger, Verdict, ma2005_examples
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of a paper's ledger, and which of its checks are slow.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    numbered : int
+        Equations that the paper numbers.
+    slips : int
+        Slips that there are at least.
+    slow_checks, slow_slips : set of str
+        Places of entries.
+    """
+
+    ledger: Ledger
+    numbered: int
+    slips: int
+    slow_checks: frozenset[str]
+    slow_slips: frozenset[str]
+
+    @property
+    def formulas_that_hold(self):
+        return [entry for entry in self.ledger.entries if entry.expected == Verdict.HOLDS and entry.printed]
+
+    @property
+    def letters(self):
+        """All symbols that a slip may put in the place of another one."""
+        return set().union(*(symbols_in(formula) for entry in self.ledger.entries for formula in entry.printed))
+
+
+PAPERS = {
+    "Ma": Known(
+        MA2005,
+        40,
+        3000,
+        frozenset({"figure 3", "figure 4", "figure 5", "figure 6", "speed", "gamma = 1"}),
+        frozenset({"(4)", "(5)", "(10)", "(15)", "(16)", "(21)", "(23)", "(27)", "(33)", "P positive definite"}),
+    ),
+    "Inaba": Known(
+        INABA2005,
+        24,
+        1000,
+        frozenset(
+            {
+                "(13)",
+                "(18)",
+                "(19)",
+                "(24)",
+                "Q1 and Q2",
+                "less than (15)",
+                "Theorem 3.4 (ii)",
+                "Theorem 3.4 (ii), Lyapunov stable",
+            }
+        ),
+        frozenset(
+            {
+                "(2)",
+                "(6)",
+                "(9)",
+                "(13)",
+                "(14)",
+                "(18)",
+                "(19)",
+                "(23)",
+                "(24)",
+                "Q1 and Q2",
+                "Theorem 3.4 (ii)",
+                "rate of V",
+            }
+        ),
+    ),
+    "Chwa": Known(
+        CHWA2019,
+        37,
+        1000,
+        frozenset({"100 dB", "Remark 1", "figures 9 to 11", "Theorem 1 (iv)"}),
+        frozenset({"(5)", "(7)", "(29)", "(31)"}),
+    ),
+}
+each_paper = pytest.mark.parametrize("known", PAPERS.values(), ids=PAPERS)
+
+
+def marked(name, entry, slow, *others):
+    return pytest.param(entry, *others, id=f"{name} {entry.place}", marks=[pytest.mark.slow] * (entry.place in slow))
+
+
+def each_entry(verdict=None):
+    """Every entry, or those with this verdict."""
+    return pytest.mark.parametrize(
+        "entry",
+        [
+            marked(name, entry, known.slow_checks)
+            for name, known in PAPERS.items()
+            for entry in known.ledger.entries
+            if verdict in (None, entry.expected)
+        ],
+    )
+
+
+@each_paper
+def test_every_number_has_one_entry_with_its_print_and_nearly_all_can_be_checked(known):
+    numbered = [entry for entry in known.ledger.entries if entry.number]
+    assert [entry.number for entry in numbered] == list(range(1, known.numbered + 1))
+    assert all(entry.printed for entry in numbered)
+    assert sum(entry.expected != Verdict.NOT_CHECKABLE for entry in numbered) >= 0.95 * known.numbered
+
+
+@each_entry()
+def test_the_computed_verdict_is_the_recorded_one(entry):
+    assert entry.finding.verdict == entry.expected
+    assert entry.agrees
+
+
+@each_entry(Verdict.MISPRINT)
+def test_a_misprint_is_mended_by_its_correction(entry):
+    assert entry.corrected != entry.printed
+    assert entry.check(entry.corrected).verdict in (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
+    assert entry.note
+
+
+@each_entry(Verdict.FALSE)
+def test_what_is_called_false_comes_with_the_numbers_of_a_counter_example(entry):
+    numbers = entry.finding.numbers
+    assert numbers
+    assert all(map(math.isfinite, numbers.values()))
+    assert entry.note
+
+
+@each_entry(Verdict.NOT_CHECKABLE)
+def test_what_cannot_be_checked_says_why(entry):
+    assert entry.note
+
+
+@pytest.mark.parametrize(
+    ("entry", "letters"),
+    [
+        marked(name, entry, known.slow_slips, letters)
+        for name, known in PAPERS.items()
+        for letters in [known.letters]
+        for entry in known.formulas_that_hold
+    ],
+)
+def test_one_slip_in_a_formula_that_holds_is_noticed(entry, letters):
+    """A slip changes the verdict, unless what it makes is proven to say the same."""
+    changed = list(slips(entry.printed, letters))
+    assert changed
+    unnoticed = [p for p in changed if replace(entry, printed=p).finding.verdict == Verdict.HOLDS]
+    different = [p for p in unnoticed if not say_the_same(p, entry.printed)]
+    assert not different, different
+
+
+@pytest.mark.slow
+@each_paper
+def test_there_are_many_slips(known):
+    letters = known.letters
+    assert sum(1 for entry in known.formulas_that_hold for _ in slips(entry.printed, letters)) > known.slips
+
+
+@each_paper
+def test_entries_show_themselves_as_latex(known):
+    for entry in known.ledger.entries:
+        assert entry._repr_latex_().startswith(r"$\displaystyle \begin{gathered}")
+
+
+@pytest.fixture
+def two_entries(monkeypatch):
+    entries = (MA2005["(4)"], replace(MA2005["(20)"], expected=Verdict.HOLDS))
+    monkeypatch.setattr(papers, "LEDGERS", (Ledger("a paper", entries),))
+    return entries
+
+
+def test_a_verdict_that_is_not_the_recorded_one_is_told(two_entries):
+    assert not papers.all_hold()
+    assert "false as stated;" in papers.report()
+    assert "recorded: holds" in papers.report()
+
+
+def test_a_correction_that_mends_nothing_is_told(monkeypatch):
+    entry = MA2005["f1, f2"]
+    assert entry.agrees
+    b1, b2 = ma2005_examples.SYSTEM.motion.b[:2]
+    assert not replace(entry, correction={b1: b2}).agrees
+
+
+def test_two_entries_cannot_have_the_same_place():
+    with pytest.raises(ValueError, match="same place"):
+        Ledger("a paper", (MA2005["(4)"], MA2005["(4)"]))
+
+
+def test_a_missing_entry_is_named():
+    with pytest.raises(KeyError, match=r"no entry '\(41\)'; it has \(1\), \(2\)"):
+        MA2005["(41)"]
+
+
+@pytest.mark.slow
+def test_the_report_shows_every_entry_of_every_paper_in_120_columns_and_counts_verdicts():
+    tables = papers.report().split("\n\n\n")
+    assert len(tables) == len(papers.LEDGERS)
+    for ledger, table in zip(papers.LEDGERS, tables, strict=True):
+        assert max(map(len, table.splitlines())) <= 120
+        assert all(f"\n{entry.place[:10]}" in table for entry in ledger.entries)
+        counts = Counter(entry.expected for entry in ledger.entries)
+        assert table.splitlines()[-1] == ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
+    assert papers.all_hold()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ma2005_examples.OBSERVERS)
+@pytest.mark.parametrize("period", [0.001, 0.02])
+def test_figure_3_does_not_come_out_with_other_sampling_either(name, period):
+    run = ma2005_examples.followed(35, name, "y1 alone", 0, period)
+    assert math.isinf(run.settling_time())
+    assert len(run.resets)
+
+
+def test_the_corrected_38_is_stable_with_the_listed_constants():
+    corrected = MA2005["(38)"].corrected
+    assert MA2005["(38) is stable"].check(corrected).verdict == Verdict.HOLDS
