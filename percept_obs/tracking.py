@@ -56,6 +56,13 @@ LARGEST_STEP_RATE = 2.0
 """Largest product of a step and a decay rate: explicit Euler's limit of stability; Runge-Kutta's is 2.78."""
 
 
+TOO_LONG = (
+    "from {time} s on, the {name} observer's fastest part decays with {rate}/s, too fast for a step of {step} s: their "
+    "product must stay below {limit}; {remedy}, or take steps below {shorter} s"
+)
+"""What is said of an observer whose steps are too long; live labs use the same words."""
+
+
 class StepTooLong(UserWarning):
     """The steps become too long for the fastest part of an observer, which will then chatter."""
 
@@ -357,10 +364,15 @@ def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
     if len(late):
         k = late[0]
         warnings.warn(
-            f"from {grid[k] - grid[0]:.3g} s on, the {observer.name} observer's fastest part decays with "
-            f"{rate[k]:.4g}/s, too fast for a step of {steps[k]:.3g} s: their product must stay below "
-            f"{LARGEST_STEP_RATE:g}; "
-            f"{observer.fastest.remedy}, or take steps below {LARGEST_STEP_RATE / rate.max():.2g} s",
+            TOO_LONG.format(
+                time=f"{grid[k] - grid[0]:.3g}",
+                name=observer.name,
+                rate=f"{rate[k]:.4g}",
+                step=f"{steps[k]:.3g}",
+                limit=f"{LARGEST_STEP_RATE:g}",
+                remedy=observer.fastest.remedy,
+                shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
+            ),
             StepTooLong,
             stacklevel=3,
         )

@@ -13,8 +13,10 @@ import numpy as np
 from percept_obs import scenarios
 from percept_obs.labs.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.base import Lab, Settings
-from percept_obs.labs.checks import number, numbers, one_of, some_of
+from percept_obs.labs.checks import gains_of, known_names, number, numbers, one_of, some_of, whole_number
+from percept_obs.labs.kernels import with_all_gains
 from percept_obs.labs.printing import Printing
+from percept_obs.labs.sampling import samples_in_front
 from percept_obs.labs.structures import (
     BY_NAME,
     KEYS,
@@ -27,7 +29,7 @@ from percept_obs.labs.structures import (
     model_for_the_page,
     observer_of,
     structure_for_the_page,
-    with_all_gains,
+    ways_of,
 )
 from percept_obs.labs.tracks import track_for_the_page, with_affine_motion
 from percept_obs.motion import affine
@@ -112,12 +114,10 @@ class ObserverLab(Lab):
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
-        unknown = sorted(set(settings) - set(self._opening))
-        if unknown:
-            raise ValueError(f"there is no setting {', '.join(unknown)}; there are {', '.join(self._opening)}")
+        known_names(settings, self._opening)
         whole = self._opening | settings
         recording = self._recordings.get(one_of(whole, "scenario", [*self._scenarios, *self._recordings]))
-        whole["gains"] = _checked_gains(whole["gains"])
+        whole["gains"] = gains_of(whole["gains"], {name: with_all_gains(ways_of(name)) for name in BY_NAME})
         whole["switches"] = _checked_switches(whole["switches"])
         _check_choices(whole, recording)
         _check_numbers(whole)
@@ -210,22 +210,7 @@ def _simulated_once(text: str) -> Recording:
         return simulate(settings["duration"])
     except BehindCamera:
         times = camera.period * np.arange(np.floor(settings["duration"] / camera.period + 1e-9) + 1)
-        return simulate(times[_samples_in_front(scenario, times) - 1])
-
-
-def _samples_in_front(scenario: Scenario, times: np.ndarray) -> int:
-    """How many samples the camera takes before the point leaves the half-space in front of it, by bisection."""
-    seen, unseen = 1, len(times)
-    while unseen - seen > 1:
-        middle = (seen + unseen) // 2
-        try:
-            scenario.coordinates(times[:middle])
-            seen = middle
-        except BehindCamera:
-            unseen = middle
-    if seen < 2:
-        raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
-    return seen
+        return simulate(times[samples_in_front(scenario, times) - 1])
 
 
 def _fitting(recording: Recording) -> Settings:
@@ -281,14 +266,6 @@ def _opening_settings() -> Settings:
     }
 
 
-def _checked_gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
-    unknown = sorted(set(given) - set(BY_NAME))
-    if unknown:
-        raise ValueError(f"there is no observer {', '.join(unknown)}; there are {', '.join(BY_NAME)}")
-    observers = {name: with_all_gains(name).with_gains(**given.get(name, {})) for name in BY_NAME}
-    return {name: {gain.name: gain.value for gain in observer.gains} for name, observer in observers.items()}
-
-
 def _checked_switches(given: Mapping[str, str]) -> dict[str, str]:
     unknown = sorted(set(given) - set(OWN_SWITCH))
     if unknown:
@@ -330,6 +307,4 @@ def _check_numbers(settings: Settings) -> None:
     number({"noise size": settings["noise"].get("size")}, "noise size", 0, 1)
     for key, (low, high) in RANGES.items():
         number(settings, key, low, high)
-    seed = settings["seed"]
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**32:
-        raise ValueError(f"seed is {seed!r}; it must be a whole number from 0 to 2^32 - 1")
+    whole_number(settings)

@@ -9,24 +9,21 @@ import inspect
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any
 
 import sympy as sp
 
 from percept_obs.compile import function_source, source
 from percept_obs.equations import Equations
 from percept_obs.forms import CanonicalForm
+from percept_obs.labs.kernels import Texts, kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.lecture import equations_of
 from percept_obs.labs.markup import formula, markup
 from percept_obs.motion import affine
 from percept_obs.observability import instantaneous
-from percept_obs.observers import OBSERVERS, Gain, Observer
-from percept_obs.observers.base import hats
+from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.surfaces import POINT, chained, pinhole, plane
 from percept_obs.switching import SWITCHES
-
-Texts = dict[str, Any]
 
 SURFACES = {"pinhole": pinhole, "chained": chained, "plane": plane}
 OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
@@ -75,9 +72,9 @@ def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = ""
     return BY_NAME[name](form, switch=way or OWN_SWITCH[name]) if name in OWN_SWITCH else BY_NAME[name](form)
 
 
-def with_all_gains(name: str) -> Observer:
-    """The observer for all image coordinates, with the gains of every way in which it switches."""
-    return max((observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]), key=lambda o: len(o.gains))
+def ways_of(name: str) -> dict[str, Observer]:
+    """The observer for all image coordinates, in every way in which it switches."""
+    return {way: observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]}
 
 
 @lru_cache
@@ -105,31 +102,9 @@ def _surface_for_the_page(name: str) -> Texts:
 
 
 def _observer_for_the_page(name: str) -> Texts:
-    """What is known about an observer, its gains, and its equations in the lecture's letters."""
-    observer = with_all_gains(name)
-    about = observer.about
-    ways = {way: observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]}
-    return {
-        "title": observer.name,
-        "about": about and {"title": about.title, "source": about.source, "needs": about.needs, "claim": about.claim},
-        "gains": [_gain_for_the_page(gain) for gain in observer.gains],
-        "ways": {way: [gain.name for gain in made.gains] for way, made in ways.items()},
-        "equations": {way: equations_of(BY_NAME[name], **({"switch": way} if way else {})) for way in ways},
-    }
-
-
-def _gain_for_the_page(gain: Gain) -> Texts:
-    return {
-        "name": gain.name,
-        "letter": markup(gain.symbol),
-        "value": gain.value,
-        "low": gain.low,
-        "high": gain.high,
-        "meaning": gain.meaning,
-        "allowed": function_source((gain.symbol,), (sp.Piecewise((1, gain.condition), (0, True)),)),
-        "condition": "" if gain.condition == sp.true else str(gain.condition),
-        "reason": gain.reason,
-    }
+    make = BY_NAME[name]
+    ways = ways_of(name)
+    return observer_for_the_page(ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways})
 
 
 @lru_cache
@@ -169,7 +144,7 @@ def structure_for_the_page(
         except ValueError as error:
             refused[name] = str(error)
         else:
-            kernels.setdefault(name, {})[way] = _kernel_for_the_page(observer)
+            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer)
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],
@@ -189,19 +164,3 @@ def texts_of(key: str) -> Texts:
     """Texts of the structure with this name, for all observers."""
     surface, outputs = key.split(" ")
     return structure_for_the_page(surface, tuple(outputs.split("+")))
-
-
-def _kernel_for_the_page(observer: Observer) -> Texts:
-    form, equations = observer.form, observer.equations
-    known = (*form.x1, *form.parameters, *equations.gains)
-    claimed, gap = observer.covariance, observer.gap
-    return {
-        "gains": [gain.name for gain in observer.gains],
-        "run": source(equations, "javascript"),
-        "states": len(equations.state),
-        "start": function_source((*known, *hats(form.coordinates)), observer.start),
-        "estimate": function_source((*known, *equations.state), observer.estimate),
-        "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
-        "gap": gap and function_source(known, (sp.Piecewise((1, gap.condition), (0, True)),)),
-        "gapReason": gap and gap.reason,
-    }

@@ -4,7 +4,7 @@ import { pythonOf } from "../src/observer/code.js";
 import { Engine } from "../src/observer/engine.js";
 import { loadHere } from "./load_here.js";
 import { Kernels } from "../src/observer/kernels.js";
-import { summaryOf } from "../src/observer/text.js";
+import { summaryOf } from "../src/common/words.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
 const kernels = new Kernels(model, loadHere);

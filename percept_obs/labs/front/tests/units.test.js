@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { same } from "../src/common/equal.js";
+import { settlingTime } from "../src/common/errors.js";
 import { moduleText, Modules } from "../src/common/modules.js";
-import { settlingTime, smallestEigenvalue, windowed } from "../src/observer/measures.js";
+import { smallestEigenvalue, windowed } from "../src/observer/measures.js";
 import { uniformFrom } from "../src/common/random.js";
 import { linearScale, logScale, readable, short, spread } from "../src/common/scales.js";
 import { held, interpolate, lastSamples, stepGrid } from "../src/common/tables.js";
@@ -49,9 +50,9 @@ test("a constant w gathers in proportion to the window", () => {
 });
 
 test("the error has settled from the sample after the last one outside", () => {
-  assert.equal(settlingTime([5, 6, 7], [1, 0.01, 0.01]), 1);
-  assert.equal(settlingTime([5, 6, 7], [0, 0, 0]), 0);
-  assert.equal(settlingTime([5, 6, 7], [0, 0, NaN]), Infinity);
+  assert.equal(settlingTime([5, 6, 7], [1, 0.01, 0.01], 0.05), 1);
+  assert.equal(settlingTime([5, 6, 7], [0, 0, 0], 0.05), 0);
+  assert.equal(settlingTime([5, 6, 7], [0, 0, NaN], 0.05), Infinity);
 });
 
 test("numbers are written as Python writes them", () => {

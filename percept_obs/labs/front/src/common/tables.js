@@ -25,6 +25,11 @@ export function differences(grid) {
   return steps;
 }
 
+/** A grid of steps with their lengths. */
+export function withSteps({ grid, index }) {
+  return { grid, index, steps: differences(grid) };
+}
+
 /** The grid with the middles of its steps put between. */
 export function halves(grid) {
   const both = new Float64Array(2 * grid.length - 1);

@@ -1,7 +1,7 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { draws } from "../common/random.js";
-import { column, differences, stepGrid } from "../common/tables.js";
+import { column, stepGrid, withSteps } from "../common/tables.js";
 
 const PLANT_STEP = 0.005;
 const NOTHING = new Float64Array(0);
@@ -94,10 +94,6 @@ function plantGrid(times) {
   const from = new Float64Array(times.length + 1);
   from.set(times, 1);
   return withSteps(stepGrid(from, PLANT_STEP));
-}
-
-export function withSteps({ grid, index }) {
-  return { grid, index, steps: differences(grid) };
 }
 
 /** Fill in coordinates of points; returns how many of them are in front of the camera from the first on. */

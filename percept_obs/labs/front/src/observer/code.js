@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { switchOf } from "./kernels.js";
+import { switchOf } from "../common/observer_list.js";
 
 const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
 

@@ -1,15 +1,11 @@
 // The functions that settings need: of the point, the surface, the structure, the observers.
 
 import { Modules } from "../common/modules.js";
+import { switchOf } from "../common/observer_list.js";
 
 /** Name of a structure: what is seen, and what of it is measured; as in structures.py. */
 export function keyOf({ surface, outputs }) {
   return `${surface} ${outputs.join("+")}`;
-}
-
-/** The name under which an observer's loop is filed: how it switches, or nothing. */
-export function switchOf(settings, name) {
-  return settings.switches?.[name] ?? "";
 }
 
 /** All functions of a model; some structures follow after it has been opened. */

@@ -1,18 +1,19 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
 import { TimeChart } from "../common/charts.js";
+import { ImagePlane } from "../common/image_plane.js";
 import { build } from "../common/layout.js";
 import { Live } from "../common/live.js";
 import { linearScale } from "../common/scales.js";
+import { chartInWords, readingAt, summaryOf, verdict } from "../common/words.js";
 import { pythonOf } from "./code.js";
 import { Engine, translationTowards } from "./engine.js";
-import { Formulas } from "./formula.js";
-import { ImagePlane } from "./image_plane.js";
+import { ObserverFormulas } from "./formula.js";
 import { Kernels } from "./kernels.js";
 import { Panel } from "./panel.js";
 import { chartOf, LABELS } from "./pictures.js";
 import { PRESETS, settingsOf } from "./presets.js";
-import { chartInWords, imagePlaneInWords, readingAt, reasons, summaryOf, verdict } from "./text.js";
+import { imagePlaneInWords, reasons } from "./text.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
@@ -22,13 +23,17 @@ export class ObserverLab extends Live {
     this.kernels = new Kernels(this.model);
     this.engine = new Engine(this.model);
     this.ghostEngine = new Engine(this.model);
-    this.plane = new ImagePlane(
-      (foe) => this.moveFoe(foe),
-      () => this.rest(),
-    );
+    this.plane = new ImagePlane({
+      name: "foe",
+      label: "Focus of expansion",
+      tag: "FOE",
+      placeOf: (shown) => shown.foe,
+      onMove: (foe) => this.moveFoe(foe),
+      onRest: () => this.rest(),
+    });
     this.charts = Object.fromEntries(this.model.pictures.map((name) => [name, new TimeChart(name, LABELS[name])]));
     this.figures = [this.plane, ...Object.values(this.charts)];
-    this.formulas = new Formulas(this.model);
+    this.formulas = new ObserverFormulas(this.model);
     this.panel = new Panel(this.model, this);
     this.view = build(this, place, PRESETS);
     this.open();

@@ -2,7 +2,7 @@
 
 import { checkbox, element, radios, select, slider } from "../common/controls.js";
 import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
-import { ObserverList } from "./observer_list.js";
+import { ObserverList } from "../common/observer_list.js";
 
 const OUTPUT_NAMES = { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only" };
 const PICTURE_NAMES = {

@@ -1,8 +1,8 @@
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
 import { DASHES, KEPT, SOLID } from "../common/lines.js";
-import { linearScale, logScale, readable, spread } from "../common/scales.js";
-import { TOLERANCE } from "./measures.js";
+import { around, decades, line, linesOf, marksOf } from "../common/plots.js";
+import { readable } from "../common/scales.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
 
@@ -51,8 +51,8 @@ const BUILD = {
     };
     ghost?.runs.forEach((run) => add(run, ghost.time, theme.kept, KEPT, `kept ${run.title}`));
     shown.runs.forEach((run) => add(run, shown.time, theme.lines[run.order], DASHES[run.order], run.title));
-    const title = `Largest |error| of ${shown.hiddenNames.join(", ")}, with the tolerance ${TOLERANCE}`;
-    return { title, lines, scale: decades(lines, 1e-6, 1e2), level: TOLERANCE, marks: marksOf(shown, theme) };
+    const title = `Largest |error| of ${shown.hiddenNames.join(", ")}, with the tolerance ${shown.tolerance}`;
+    return { title, lines, scale: decades(lines, 1e-6, 1e2), level: shown.tolerance, marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {
     const { excitation } = shown;
@@ -65,22 +65,6 @@ const BUILD = {
   },
 };
 
-function line(name, time, values, colour, dash) {
-  return { name, time, values, colour, dash };
-}
-
-/** Lines of the kept run, the truth and the runs, by what is picked of each. */
-function linesOf(shown, ghost, theme, label, pick) {
-  const lines = (ghost?.runs ?? []).map((run) =>
-    line(`kept ${run.title} ${label}`, ghost.time, pick(run), theme.kept, KEPT),
-  );
-  if (shown.truth) lines.push(line(`true ${label}`, shown.time, pick(shown), theme.ink, SOLID));
-  for (const run of shown.runs) {
-    lines.push(line(`${run.title} ${label}`, shown.time, pick(run), theme.lines[run.order], DASHES[run.order]));
-  }
-  return lines;
-}
-
 function bandOf(shown, run, c, theme) {
   const middle = run.columnOf(c);
   const deviation = (k) => run.deviation[k * shown.width + c];
@@ -90,36 +74,4 @@ function bandOf(shown, run, c, theme) {
     high: (k) => middle[k] + 2 * deviation(k),
     colour: theme.lines[run.order],
   };
-}
-
-function marksOf(shown, theme) {
-  return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
-}
-
-/** A range around the truth that lets an estimate leave it by as much as the truth is high, and no further. */
-function around(lines, shown) {
-  const certain = lines.filter((l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled")));
-  const bounds = lines.map((l) => [l, spread(l.values)]).filter(([, b]) => b);
-  const sure = bounds.filter(([l]) => certain.includes(l)).map(([, b]) => b);
-  const all = bounds.map(([, b]) => b);
-  if (!all.length) return linearScale(0, 1);
-  let [low, high] = hull(sure.length ? sure : all);
-  if (sure.length) {
-    const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
-    const [least, most] = hull(all);
-    [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
-  }
-  return linearScale(low, high, 3);
-}
-
-function hull(bounds) {
-  return [Math.min(...bounds.map(([low]) => low)), Math.max(...bounds.map(([, high]) => high))];
-}
-
-function decades(lines, least, most) {
-  const positive = lines.map((l) => spread(l.values, { above: 0 })).filter(Boolean);
-  if (!positive.length) return logScale(1e-3, 1);
-  const [low, high] = hull(positive);
-  const top = Math.min(Math.max(high, least * 10), most);
-  return logScale(Math.min(Math.max(low, least), top / 10), top);
 }

@@ -1,33 +1,8 @@
-// What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
+// Why it happened, and the image plane in words.
 
-import { readable, short } from "../common/scales.js";
-import { sampleAt } from "../common/image_frame.js";
-import { TOLERANCE } from "./measures.js";
+import { readable } from "../common/scales.js";
 
 const UNEXCITED = 1e-4;
-
-/** What happened to one observer, as Run.verdict() in Python. */
-export function verdict(run, shown, { verdicts, settledPart }) {
-  const say = (which, values) => verdicts[which].replace(/{(\w+)}/g, (_, name) => values[name]);
-  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
-  const count = run.resets.length;
-  let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
-  if (run.gaps.length) {
-    const [begin, end] = run.gaps[0].map((time) => short(time));
-    besides += say("gap", { begin, end, reason: run.gapReason });
-    if (run.gaps.length > 1) besides += say("more gaps", { count: run.gaps.length - 1 });
-  }
-  const length = shown.time.at(-1) - shown.time[0];
-  if (!shown.truth) return say("followed", { time: short(length) }) + besides;
-  const inside = length - run.settling >= settledPart * length ? "converged" : "late";
-  const words = say(run.settling === Infinity ? "outside" : inside, {
-    hidden: shown.hiddenNames.join(", "),
-    error: short(run.error.at(-1), 2),
-    tolerance: TOLERANCE,
-    time: short(run.settling),
-  });
-  return words + besides;
-}
 
 /** Why: what the settings and the path of the point have to do with it. */
 export function reasons(shown) {
@@ -94,47 +69,4 @@ export function imagePlaneInWords(shown) {
   if (shown.foe) parts.push(`focus of expansion at y1 ${readable(shown.foe[0])}, y2 ${readable(shown.foe[1])}`);
   if (shown.circle) parts.push(`circle of radius ${readable(Math.abs(shown.circle[2]))} in which an instant tells little`);
   return `${parts.join("; ")}.`;
-}
-
-/** The text equivalent of a chart: where each line begins and ends, and between what it stays. */
-export function chartInWords({ title, lines }) {
-  const parts = lines.map(({ name, values }) => {
-    const finite = values.filter(Number.isFinite);
-    if (!finite.length) return `${name}: nothing to show`;
-    const least = finite.reduce((a, b) => Math.min(a, b));
-    const most = finite.reduce((a, b) => Math.max(a, b));
-    const [first, last] = [finite[0], finite.at(-1)];
-    return `${name}: from ${readable(first)} to ${readable(last)}, between ${readable(least)} and ${readable(most)}`;
-  });
-  return `${title}. ${parts.join("; ")}.`;
-}
-
-/** The values under the cursor. */
-export function readingAt(shown, cursor) {
-  const k = sampleAt(shown.time, cursor);
-  const row = (rows) =>
-    shown.names.map((name, c) => `${name} = ${readable(rows[k * shown.width + c])}`).join(", ");
-  const parts = [`At ${readable(shown.time[k])} s`];
-  if (shown.truth) parts.push(`true ${row(shown.truth)}`);
-  for (const run of shown.runs) parts.push(`${run.title} ${row(run.estimate)}`);
-  return parts.join(" · ");
-}
-
-/** Numbers that Python is told: verdicts, final estimates, resets, and estimates at some times. */
-export function summaryOf(shown, serial, model) {
-  if (shown.problem) return { serial, problem: shown.problem };
-  const number = (value) => (Number.isFinite(value) ? value : null);
-  const last = shown.time.length - 1;
-  const probes = Array.from({ length: 9 }, (_, k) => Math.round((k / 8) * last));
-  const row = (run, k) => Array.from(run.estimate.subarray(k * shown.width, (k + 1) * shown.width), number);
-  const by = (value) => Object.fromEntries(shown.runs.map((run) => [run.name, value(run)]));
-  return {
-    serial,
-    samples: shown.time.length,
-    verdicts: by((run) => verdict(run, shown, model)),
-    settling: by((run) => number(run.settling)),
-    resets: by((run) => run.resets.length),
-    final: by((run) => row(run, last)),
-    probes: { samples: probes, estimates: by((run) => probes.map((k) => row(run, k))) },
-  };
 }

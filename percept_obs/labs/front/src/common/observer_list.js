@@ -1,11 +1,15 @@
 // The observers to choose from: what is known of each, where it is impossible and why, and the gains of the chosen.
 
-import { button, checkbox, element, select, slider } from "../common/controls.js";
-import { linkToFormula } from "../common/fieldsets.js";
-import { swatch } from "../common/lines.js";
-import { switchOf } from "./kernels.js";
+import { button, checkbox, element, select, slider } from "./controls.js";
+import { linkToFormula } from "./fieldsets.js";
+import { swatch } from "./lines.js";
 
 const OPEN_AT_ONCE = 3;
+
+/** How an observer switches, or nothing; under this name its loop is filed. */
+export function switchOf(settings, name) {
+  return settings.switches?.[name] ?? "";
+}
 
 /** Rows and groups for a panel, which shows them with its other controls. */
 export class ObserverList {

@@ -1,23 +1,25 @@
-// The image plane: the point's path, the estimates, and the focus of expansion as a handle.
+// The image plane: the point's path, the estimates, and a handle.
 
-import { describe, picture, underlay } from "../common/canvas.js";
-import { Handle } from "../common/handle.js";
-import { clipTo, drawAxes, drawPath, placed, sampleAt, squareAround, widen } from "../common/image_frame.js";
-import { DASHES, KEPT, SOLID } from "../common/lines.js";
-import { spread } from "../common/scales.js";
+import { describe, picture, underlay } from "./canvas.js";
+import { Handle } from "./handle.js";
+import { clipTo, drawAxes, drawPath, placed, sampleAt, squareAround, widen } from "./image_frame.js";
+import { DASHES, KEPT, SOLID } from "./lines.js";
+import { spread } from "./scales.js";
 
 /** The picture, and the handle that is dragged with mouse, touch or arrow keys. */
 export class ImagePlane {
-  constructor(onMove, onRest) {
-    Object.assign(this, picture("image-plane", "Image plane"));
-    const label = "Focus of expansion: drag it, or use the arrow keys";
-    this.handle = new Handle({ name: "foe", className: "foe", label, onMove, onRest });
+  constructor({ name, label, tag, placeOf, onMove, onRest }) {
+    Object.assign(this, picture("image-plane", "Image plane"), { placeOf });
+    const whole = `${label}: drag it, or use the arrow keys`;
+    this.handle = new Handle({ name, className: "diamond", label: whole, onMove, onRest });
+    this.handle.node.dataset.tag = tag;
     this.figure.append(this.handle.node);
   }
 
-  /** Draw what is shown; while the hand holds the focus of expansion the frame stays where it is. */
+  /** Draw what is shown; while the hand holds the handle the frame stays where it is. */
   draw(shown, ghost, cursor, theme) {
-    if (!this.handle.grip || !this.square) this.square = squareOf(shown, ghost);
+    const place = this.placeOf(shown);
+    if (!this.handle.grip || !this.square) this.square = squareOf(shown, ghost, place);
     const frame = placed(this, this.square);
     const pen = this.context;
     underlay(this, [this.square, theme], (below) => drawAxes(below, frame, this.square.ticks, theme));
@@ -32,7 +34,7 @@ export class ImagePlane {
     drawEnds(pen, shown, frame, theme);
     if (cursor !== null) drawAt(pen, shown, cursor, frame, theme);
     pen.restore();
-    this.handle.stand(shown.foe, frame);
+    this.handle.stand(place, frame);
   }
 
   /** Say what the picture shows, and where the handle is. */
@@ -42,8 +44,8 @@ export class ImagePlane {
   }
 }
 
-/** A square with round numbers that holds the path and the focus of expansion, unless that is far away. */
-function squareOf(shown, ghost) {
+/** A square with round numbers that holds the path and the handle, unless that is far away. */
+function squareOf(shown, ghost, place) {
   const source = shown.truth?.length ? [shown.truth, shown.width] : [shown.outputs, 2];
   const bounds = [0, 1].map((c) => bound(source, c) ?? [-1, 1]);
   for (const run of ghost?.runs ?? []) {
@@ -53,8 +55,8 @@ function squareOf(shown, ghost) {
     });
   }
   const size = Math.max(...bounds.map(([low, high]) => high - low), 0.2);
-  const reachable = shown.foe?.every((v, c) => v > bounds[c][0] - 1.5 * size && v < bounds[c][1] + 1.5 * size);
-  if (reachable) bounds.forEach((b, c) => widen(b, [shown.foe[c], shown.foe[c]]));
+  const reachable = place?.every((v, c) => v > bounds[c][0] - 1.5 * size && v < bounds[c][1] + 1.5 * size);
+  if (reachable) bounds.forEach((b, c) => widen(b, [place[c], place[c]]));
   return squareAround(bounds);
 }
 

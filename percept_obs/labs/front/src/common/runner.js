@@ -1,0 +1,127 @@
+// Observers on a recording: the same numbers as track() in Python.
+
+import { hiddenError, settlingTime } from "./errors.js";
+import { Memory } from "./memory.js";
+import { column } from "./tables.js";
+
+/** What the engines of labs share; each lays out the inputs of its observers by itself. */
+export class Runner {
+  constructor(model) {
+    this.model = model;
+    this.memory = new Memory();
+    this.order = Object.keys(model.observers);
+  }
+
+  /** One observer's run: estimates, resets, gaps, errors. */
+  follow(name, chosen, shown, inputs, kernel, functions, asked) {
+    const { memory } = this;
+    const { width, time } = shown;
+    const { grid, known: table } = inputs;
+    const gains = Float64Array.from(kernel.gains, (gain) => chosen[gain]);
+    const states = memory.room(`states of ${name}`, grid.length * kernel.states);
+    const resets = memory.room("resets", grid.length).fill(0);
+    const start = startState(inputs, kernel, functions, gains, asked);
+    const { steps, held: outputs, arriving: samples } = inputs;
+    const diverged = functions.run(start, steps, outputs, table.rows, samples, gains, table.varying, states, resets);
+    if (diverged >= 0) states.fill(NaN, diverged * kernel.states);
+    const estimate = memory.room(`estimate ${name}`, time.length * width);
+    const hidden = functions.gap ? shown.hidden : [];
+    readEstimates(functions, kernel, states, inputs, gains, width, hidden, estimate);
+    const result = {
+      name,
+      title: this.model.observers[name].title,
+      order: this.order.indexOf(name),
+      estimate,
+      deviation: null,
+      ...this.columns(`estimate ${name}`, estimate, width),
+      resets: timesOf(resets, grid),
+      gaps: functions.gap ? gapsOf(estimate, width, hidden[0], time, diverged < 0 ? Infinity : grid[diverged]) : [],
+      gapReason: kernel.gapReason,
+      divergedAt: diverged < 0 ? null : grid[diverged],
+    };
+    if (functions.variances) {
+      result.deviation = memory.room(`deviation ${name}`, estimate.length);
+      readDeviations(functions, kernel, states, inputs, width, result.deviation);
+    }
+    if (shown.truth) {
+      const error = memory.room(`error ${name}`, time.length);
+      result.error = hiddenError(shown.truth, estimate, width, shown.hidden, error);
+      result.settling = settlingTime(time, result.error, shown.tolerance);
+    }
+    return result;
+  }
+
+  /** Functions that give a column of these rows, and the distances: none where the inverse one is not positive. */
+  columns(part, rows, width) {
+    const found = [];
+    const room = (which) => (length) => this.memory.room(`${part} ${which}`, length);
+    const columnOf = (c) => (found[c] ??= column(rows, width, c, room(c)));
+    const distances = () => {
+      if (found[width]) return found[width];
+      const inverse = columnOf(width - 1);
+      const far = (found[width] = room("distances")(inverse.length));
+      for (let k = 0; k < far.length; k++) far[k] = inverse[k] > 0 ? 1 / inverse[k] : NaN;
+      return far;
+    };
+    return { columnOf, distances };
+  }
+}
+
+/** The state at the first sample, from it, from what is known there, and from the estimates that are asked for. */
+function startState({ columns, known: table }, kernel, functions, gains, asked) {
+  const parameters = table.rows.subarray(0, table.width);
+  const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked];
+  return functions.start(inputs, new Float64Array(kernel.states));
+}
+
+/** Fill in the estimates at the samples; none of the hidden coordinates in a gap. */
+function readEstimates(functions, kernel, states, { index, last, known: table }, gains, width, hidden, estimate) {
+  const before = last.length + table.width + gains.length;
+  const x = new Float64Array(before + kernel.states);
+  const out = new Float64Array(width);
+  const missing = new Float64Array(1);
+  x.set(table.rows.subarray(0, table.width), last.length);
+  x.set(gains, last.length + table.width);
+  for (let k = 0; k < index.length; k++) {
+    const at = index[k] * kernel.states;
+    for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
+    for (let m = 0; m < last.length; m++) x[m] = last[m][k];
+    if (table.varying) {
+      const row = 2 * index[k] * table.width;
+      for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
+    }
+    functions.estimate(x, out);
+    for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
+    if (hidden.length && functions.gap(x, missing)[0]) for (const c of hidden) estimate[k * width + c] = NaN;
+  }
+}
+
+/** The times of every gap's first and last sample: where a hidden coordinate has no estimate, though the run goes on. */
+function gapsOf(estimate, width, c, time, end) {
+  const found = [];
+  let inside = false;
+  for (let k = 0; k < time.length && time[k] < end; k++) {
+    const missing = Number.isNaN(estimate[k * width + c]);
+    if (missing && !inside) found.push([time[k], time[k]]);
+    if (missing) found.at(-1)[1] = time[k];
+    inside = missing;
+  }
+  return found;
+}
+
+/** Fill in the standard deviations that are claimed at the samples. */
+function readDeviations(functions, kernel, states, { index }, width, deviation) {
+  const x = new Float64Array(kernel.states);
+  const out = new Float64Array(width);
+  for (let k = 0; k < index.length; k++) {
+    for (let s = 0; s < kernel.states; s++) x[s] = states[index[k] * kernel.states + s];
+    functions.variances(x, out);
+    for (let c = 0; c < width; c++) deviation[k * width + c] = Math.sqrt(Math.max(0, out[c]));
+  }
+}
+
+function timesOf(resets, grid) {
+  const found = [];
+  for (let k = 0; k < resets.length; k++) if (resets[k]) found.push(grid[k]);
+  return found;
+}
