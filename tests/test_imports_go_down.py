@@ -15,7 +15,7 @@ PACKAGE = Path(percept_obs.__file__).parent
 LAYERS = (
     ("cli",),
     ("labs",),
-    ("labs.analysis", "labs.tracks"),
+    ("labs.analysis", "labs.choices", "labs.tracks"),
     ("labs.structures",),
     ("labs.kernels", "labs.lecture"),
     ("labs.checks", "labs.markup", "labs.printing", "labs.sampling"),

@@ -25,7 +25,6 @@ def markup(expression: object, letters: Mapping[str, sp.Symbol] | None = None) -
     """MathML of an expression, with hats, and with the letters marked by name."""
     text = _mathml(expression)
     text = re.sub(r"<mi>(\w+?)hat</mi>", r'<mover accent="true"><mi>\1</mi><mo>^</mo></mover>', text)
-    text = text.replace("<mi>ybar</mi>", '<mover accent="true"><mi>y</mi><mo>¯</mo></mover>')
     for found, better in (("<mi>phi</mi>", "<mi>φ</mi>"), ("&#x1D540;", "I"), ("<mo>&dd;</mo>", "<mi>d</mi>")):
         text = text.replace(found, better)
     # Browsers stretch brackets only with a mathematical font, so the page draws those of a matrix as borders.
@@ -71,4 +70,5 @@ def _mathml(expression: object) -> str:
         taken = [term for term in expression.args if term.as_coeff_mmul()[0].is_negative]
         added = "<mo>+</mo>".join(_mathml(term) for term in expression.args if term not in taken)
         return f"<mrow>{added}{''.join(f'<mo>-</mo>{_mathml(-term)}' for term in taken)}</mrow>"
-    return re.sub(r"\s*\n\s*", "", str(sp.mathml(expression, printer="presentation")))
+    text = re.sub(r"\s*\n\s*", "", str(sp.mathml(expression, printer="presentation")))
+    return text.replace("<mi>ybar</mi>", "<mover><mi>y</mi><mo>¯</mo></mover>")

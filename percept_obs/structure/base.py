@@ -242,6 +242,17 @@ class StructureAndMotion:
     def _absent(self) -> dict[sp.Symbol, sp.Expr]:
         return dict.fromkeys(map(_symbol, self.zero), sp.S.Zero)
 
+    @property
+    def translation(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        """M and m such that d_s (v_p - v_c) = M theta + m, of shapes (3, n) and (3, 1).
+
+        They hold known signals only, so that Omega_g = Omega3 M for every choice, with the same Omega3.
+        """
+        hidden = sp.ImmutableMatrix(self.form.x2)
+        difference = sp.ImmutableMatrix([d_s * (o - c) for c, o in zip(_CAMERA, _OBJECT, strict=True)])
+        moved = difference.xreplace(self._absent).xreplace(self._in_theta(tuple(hidden))).expand()
+        return moved.jacobian(hidden), moved.xreplace(dict.fromkeys(hidden, sp.S.Zero))
+
     @cached_property
     def determinant(self) -> sp.Expr:
         """What must not vanish: det Omega_g, factored; with fewer unknowns than outputs det(Omega_g^T Omega_g)."""

@@ -16,8 +16,8 @@ export class TimeChart {
     this.drawn = [];
   }
 
-  /** Draw lines {time, values, colour, dash}, a band, marks on the time axis, and the cursor. */
-  draw({ title, lines, band, marks = [], level, scale, span, cursor, theme, last }) {
+  /** Draw lines {time, values, colour, dash}, a band, shaded spans of time, marks on the time axis, and the cursor. */
+  draw({ title, lines, band, spans = [], marks = [], level, scale, span, cursor, theme, last }) {
     const { width, height } = fit(this);
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
@@ -30,6 +30,7 @@ export class TimeChart {
     pen.beginPath();
     pen.rect(place.left, place.top - 1, place.width, place.height + 2);
     pen.clip();
+    for (const [begin, end] of spans) shade(pen, place, begin, end, theme.warning);
     if (level !== undefined) horizontal(pen, place, level, theme.muted, [2, 4]);
     if (band) fillBand(pen, place, band);
     for (const line of lines) strokeLine(pen, place, line);
@@ -185,6 +186,15 @@ function vertical(pen, place, time, colour) {
   pen.moveTo(x, place.top);
   pen.lineTo(x, place.bottom);
   pen.stroke();
+  pen.globalAlpha = 1;
+}
+
+/** A time in which something is missing; never thinner than a pixel. */
+function shade(pen, place, begin, end, colour) {
+  const left = place.x(begin);
+  pen.globalAlpha = 0.14;
+  pen.fillStyle = colour;
+  pen.fillRect(left, place.top, Math.max(1, place.x(end) - left), place.height);
   pen.globalAlpha = 1;
 }
 

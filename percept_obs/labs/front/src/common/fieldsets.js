@@ -44,7 +44,7 @@ export class Fieldsets {
     const { lab } = this;
     const put = (value) => lab.change({ [key]: lab.settings[key].map((old, i) => (i === k ? value : old)) });
     const rest = () => lab.rest();
-    const allowed = (v) => Math.abs(v) <= 1000 && !(options.notZero && v === 0);
+    const allowed = (v) => Math.abs(v) <= 1000 && !(options.notZero && v === 0) && !(options.positive && v <= 0);
     return this.add(slider({ get: () => lab.settings[key][k], set: put, rest, allowed, ...options }));
   }
 

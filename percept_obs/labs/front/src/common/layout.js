@@ -6,7 +6,7 @@ import style from "./style.css";
 
 /** Build the lab's page inside an element. */
 export function build(lab, place, presets) {
-  const { plane, charts, panel, formulas } = lab;
+  const { charts, panel, formulas } = lab;
   const problem = element("p", { class: "problem", role: "alert", hidden: true });
   const pythonError = element("p", { class: "problem percept-obs-error", role: "alert", hidden: true });
   const silence = element("p", { class: "silence", role: "status", hidden: true });
@@ -110,10 +110,11 @@ export function build(lab, place, presets) {
     pythonError,
     notice,
     waiting,
+    ...(lab.head ? [lab.head] : []),
     element(
       "div",
       { class: "stage" },
-      element("div", { class: "left" }, plane.figure),
+      element("div", { class: "left" }, ...lab.planes.map((plane) => plane.figure)),
       element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
       element("div", { class: "words" }, verdicts, why),
     ),

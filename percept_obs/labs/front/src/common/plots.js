@@ -25,8 +25,8 @@ export function marksOf(shown, theme) {
   return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
 }
 
-/** A range around the truth that lets an estimate leave it by as much as the truth is high, and no further. */
-export function around(lines, shown) {
+/** A range around the truth, at least as far as `reach`, in which an estimate may leave it by the truth's own height. */
+export function around(lines, shown, reach = 0) {
   const certain = lines.filter((l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled")));
   const bounds = lines.map((l) => [l, spread(l.values)]).filter(([, b]) => b);
   const sure = bounds.filter(([l]) => certain.includes(l)).map(([, b]) => b);
@@ -36,7 +36,7 @@ export function around(lines, shown) {
   if (sure.length) {
     const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
     const [least, most] = hull(all);
-    [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
+    [low, high] = [Math.min(low - reach, Math.max(least, low - room)), Math.max(high + reach, Math.min(most, high + room))];
   }
   return linearScale(low, high, 3);
 }

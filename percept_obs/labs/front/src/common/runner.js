@@ -2,7 +2,7 @@
 
 import { hiddenError, settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
-import { column } from "./tables.js";
+import { arriving, column, held, lastSamples } from "./tables.js";
 
 /** What the engines of labs share; each lays out the inputs of its observers by itself. */
 export class Runner {
@@ -10,6 +10,22 @@ export class Runner {
     this.model = model;
     this.memory = new Memory();
     this.order = Object.keys(model.observers);
+  }
+
+  /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
+  layOut(shown, { grid, index, steps }, known, hold, exact) {
+    const columns = shown.measured.map((c) => shown.sampleOf(c));
+    const room = (part) => (length) => this.memory.room(part, length);
+    return {
+      grid,
+      index,
+      steps,
+      columns,
+      last: columns.map((values, m) => lastSamples(values, room(`last ${m}`))),
+      held: held(columns, shown.time, grid, index, hold, exact, room("held")),
+      arriving: arriving(columns, index, grid.length, room("arriving")),
+      known,
+    };
   }
 
   /** One observer's run: estimates, resets, gaps, errors. */

@@ -1,9 +1,9 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
+import { move, project } from "../common/plant.js";
 import { draws } from "../common/random.js";
-import { column, stepGrid, withSteps } from "../common/tables.js";
+import { column, plantGrid, sampleTimes } from "../common/tables.js";
 
-const PLANT_STEP = 0.005;
 const NOTHING = new Float64Array(0);
 
 /** Records settings; keeps in `memory` the parts that the next settings do not change. */
@@ -34,23 +34,23 @@ export class Camera {
   see(settings, kernels, chart) {
     const { memory } = this;
     const { period, duration } = settings;
-    const count = Math.floor(duration / period + 1e-9) + 1;
     const motion = constantMotion(settings.A, settings.b);
     const shape = shapeOf(settings);
     const width = chart.coordinates.length;
     const clock = memory.once("clock", [period, duration], () => {
-      const time = new Float64Array(count);
-      for (let k = 0; k < count; k++) time[k] = period * k;
+      const time = sampleTimes(period, duration);
       return { time, ...plantGrid(time) };
     });
+    const count = clock.time.length;
     const truth = memory.room("truth", count * width);
     const room = (part, length) => memory.room(part, length);
-    const inFront = project(move(settings, kernels, motion, clock, room), kernels, shape, width, truth);
+    const path = (grid) => move(settings.X0, kernels.plant.run, { rows: motion.rows[0], varying: false }, grid, room);
+    const inFront = project(path(clock), kernels.surface.project, shape, width, truth);
     if (inFront === 0) return { problem: "the point starts behind the camera; move X0 in front of it", ...EMPTY };
     if (inFront < 2) return { problem: "the point leaves the half-space in front of the camera at once", ...EMPTY };
     const signal = (times) => {
       const exact = new Float64Array(times.length * width);
-      project(move(settings, kernels, motion, plantGrid(times), room), kernels, shape, width, exact);
+      project(path(plantGrid(times)), kernels.surface.project, shape, width, exact);
       return [0, 1].map((c) => column(exact, width, c));
     };
     return {
@@ -74,46 +74,6 @@ export function shapeOf(settings) {
 /** A motion that stays as it is, as a table of one row. */
 export function constantMotion(A, b) {
   return { times: [0], rows: [[...A.flat(), ...b]] };
-}
-
-function move(settings, kernels, motion, { index, steps }, room) {
-  const states = room("plant states", 3 * steps.length + 3);
-  const resets = room("plant resets", steps.length + 1);
-  const { rows } = motion;
-  const diverged = kernels.plant.run(settings.X0, steps, NOTHING, rows[0], NOTHING, NOTHING, false, states, resets);
-  if (diverged >= 0) states.fill(NaN, 3 * diverged);
-  const points = room("points", 3 * index.length - 3);
-  for (let k = 1; k < index.length; k++) {
-    for (let c = 0; c < 3; c++) points[3 * k - 3 + c] = states[3 * index[k] + c];
-  }
-  return points;
-}
-
-/** The steps in which the point moves: from time 0 on, with an end at each of the times. */
-function plantGrid(times) {
-  const from = new Float64Array(times.length + 1);
-  from.set(times, 1);
-  return withSteps(stepGrid(from, PLANT_STEP));
-}
-
-/** Fill in coordinates of points; returns how many of them are in front of the camera from the first on. */
-function project(points, kernels, shape, width, truth) {
-  const samples = points.length / 3;
-  const x = new Float64Array(3 + shape.length);
-  const out = new Float64Array(width);
-  x.set(shape, 3);
-  let count = samples;
-  for (let k = 0; k < samples; k++) {
-    x[0] = points[3 * k];
-    x[1] = points[3 * k + 1];
-    x[2] = points[3 * k + 2];
-    kernels.surface.project(x, out);
-    const distance = out[width - 1];
-    if (k < count && !(distance > 0 && distance < Infinity)) count = k;
-    for (let c = 0; c < width - 1; c++) truth[k * width + c] = out[c];
-    truth[(k + 1) * width - 1] = 1 / distance;
-  }
-  return count;
 }
 
 function sampled(truth, shape, loss, noise, dropout, outputs) {

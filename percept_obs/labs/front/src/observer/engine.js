@@ -3,7 +3,7 @@
 import { lazily } from "../common/memory.js";
 import { switchOf } from "../common/observer_list.js";
 import { Runner } from "../common/runner.js";
-import { arriving, halves, held, known, knownAt, lastSamples, stepGrid, withSteps } from "../common/tables.js";
+import { halves, known, knownAt, lastSamples, stepGrid, withSteps } from "../common/tables.js";
 import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { windowed } from "./measures.js";
@@ -45,25 +45,16 @@ export class Engine extends Runner {
   inputs(settings, shown) {
     const { memory } = this;
     const { time, measured } = shown;
-    const columns = measured.map((c) => shown.sampleOf(c));
     const recorded = settings.scenario in this.model.recordings;
     const clock = recorded ? settings.scenario : [settings.period, time.length];
-    const { grid, index, steps } = memory.once("grid", clock, () => withSteps(stepGrid(time, LONGEST_STEP)));
-    const room = (part) => (length) => memory.room(part, length);
+    const lines = memory.once("grid", clock, () => withSteps(stepGrid(time, LONGEST_STEP)));
+    const { grid } = lines;
     const exact = settings.hold === "exact" ? this.exact(shown, grid) : null;
     const believed = settings.believed ? constantMotion(settings.believed.A, settings.believed.b) : shown.motion;
-    return {
-      grid,
-      index,
-      steps,
-      columns,
-      last: columns.map((values, m) => lastSamples(values, room(`last ${m}`))),
-      held: held(columns, time, grid, index, settings.hold, exact && measured.map((c) => exact[c]), room("held")),
-      arriving: arriving(columns, index, grid.length, room("arriving")),
-      known: memory.once("known", [clock, settings.believed ?? (recorded ? "" : believed.rows), shown.shape], () =>
-        known(believed, shown.shape, grid),
-      ),
-    };
+    const table = memory.once("known", [clock, settings.believed ?? (recorded ? "" : believed.rows), shown.shape], () =>
+      known(believed, shown.shape, grid),
+    );
+    return this.layOut(shown, lines, table, settings.hold, exact && measured.map((c) => exact[c]));
   }
 
   exact(shown, grid) {

@@ -1,5 +1,7 @@
 // Points worth seeing: each asks first, then shows, and may have a second act. A way back is the lab's business.
 
+import { settingsAfter } from "../common/acts.js";
+
 const TURNING = [
   [0, 0, 0.1],
   [0, 0, 0],
@@ -110,11 +112,9 @@ export const PRESETS = [
   },
 ];
 
-/** The settings of an act: the standard ones, whatever the lab was opened with, and the act's changes. */
+/** The settings of an act, whose observers may believe a motion so many times as fast. */
 export function settingsOf(act, standard) {
-  const changed = { ...structuredClone(standard), ...structuredClone(act.changes), kept: null };
-  changed.gains = structuredClone(standard.gains);
-  for (const [name, gains] of Object.entries(act.changes.gains ?? {})) Object.assign(changed.gains[name], gains);
+  const changed = settingsAfter(act, standard);
   if (act.believe) changed.believed = { A: changed.A, b: changed.b.map((value) => value * act.believe) };
   return changed;
 }

@@ -1,0 +1,217 @@
+"""The page and Python compute the same run of every choice of unknowns, and refuse the others in the same words."""
+
+import json
+from itertools import combinations
+
+import numpy as np
+import pytest
+import sympy as sp
+from structure_settings import (
+    CASES,
+    COROLLARIES,
+    EVERY,
+    assert_same_structure_runs,
+    structure_in_node,
+    structure_runs_of,
+)
+
+from percept_obs.labs.choices import CHOICES, PARTS, general_form, key_of, refused, texts_of
+from percept_obs.labs.structure_lab import choice_of, structure_lab
+from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion, corollary_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")
+
+POSSIBLE = [u for n in (1, 2, 3) for u in combinations(QUANTITIES, n) if key_of(u, False) not in refused()]
+
+
+@pytest.fixture(scope="module")
+def lab():
+    return structure_lab()
+
+
+@pytest.fixture(scope="module")
+def answers(lab, node):
+    """What the page's engine says of each case, with the settings as Python completed them."""
+    settings = {name: structure_lab(**case).settings for name, case in CASES.items()}
+    found = structure_in_node(node, lab, list(settings.values()))
+    return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
+
+
+def as_array(numbers):
+    return np.array([np.nan if v is None else v for v in numbers], dtype=float)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("case", CASES)
+def test_the_page_computes_what_python_does(answers, case):
+    settings, answer = answers[case]
+    assert answer["problem"] is None
+    assert_same_structure_runs(settings, answer["runs"])
+    for name, run in structure_runs_of(settings).items():
+        recording, told = run.recording, answer["runs"][name]
+        np.testing.assert_allclose(answer["time"], recording.time, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(as_array(answer["outputs"]), recording.outputs.ravel(), rtol=0, atol=1e-10)
+        np.testing.assert_allclose(as_array(answer["truth"]), recording.truth.ravel(), rtol=1e-10, atol=1e-10)
+        np.testing.assert_allclose(told["gaps"], run.gaps, rtol=0, atol=1e-9)
+        if name != "sign":
+            assert answer["summary"]["verdicts"][name] == run.verdict(settings["tolerance"])
+            found = recording.surface.quantities(run.estimate[:, 3:])
+            for quantity, values in found.items():
+                np.testing.assert_allclose(as_array(told["quantities"][quantity]), values, rtol=1e-6, atol=1e-9)
+            far = np.where(np.isfinite(run.distance), run.distance, np.nan)
+            np.testing.assert_allclose(as_array(told["range"]), far, rtol=1e-6)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("case", CASES)
+def test_the_determinant_is_the_choice_s(answers, case):
+    settings, answer = answers[case]
+    (run, *_) = structure_runs_of(settings).values()
+    choice, recording = run.recording.surface, run.recording
+    at = dict(zip(choice.form.x1, recording.outputs[0], strict=True))
+    at |= dict(zip(choice.form.parameters, [*recording.motion.known(0.0)[0], *choice.values.values()], strict=True))
+    assert answer["determinant"][0] == pytest.approx(float(choice.determinant.subs(at)), rel=1e-9)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("case", CASES)
+def test_the_copied_code_makes_the_same_run(answers, case):
+    settings, answer = answers[case]
+    namespace = {}
+    exec(answer["code"], namespace)
+    for name, run in structure_runs_of(settings).items():
+        copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+        np.testing.assert_allclose(copied.estimate, run.estimate, rtol=0, atol=1e-12)
+        assert copied.verdict(settings["tolerance"]) == run.verdict(settings["tolerance"])
+
+
+@pytest.mark.node
+def test_every_choice_is_possible_with_its_corollary_or_refused_in_the_same_words(lab, node):
+    tasks = []
+    for count in range(8):
+        for unknown in combinations(QUANTITIES, count):
+            for values in ([-0.22, -0.23, 0.1], [0.0, -0.23, 0.0]):
+                changes = {"unknown": list(unknown), "v_c": values, "duration": 0.1, "earlier": count % 2 == 0}
+                tasks.append(lab.check({**lab.model["opening"], **changes}))
+    for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+        reason = refusal_of(settings)
+        assert answer["refusal"] == reason
+        assert ("# is refused" in answer["code"]) == bool(reason)
+        if reason:
+            with pytest.raises(ImpossibleChoice):
+                exec(answer["code"], {})
+        else:
+            known = corollary_of(choice_of(settings))
+            # velocities that happen to be zero besides make a special case of the same corollary
+            assert known is None or answer["corollary"] == known.number
+
+
+def refusal_of(settings):
+    """Why Python refuses a choice; empty if it does not."""
+    try:
+        choice_of(settings)
+    except ImpossibleChoice as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize("unknown", POSSIBLE, ids=" ".join)
+@pytest.mark.parametrize("earlier", [False, True])
+def test_the_general_form_is_the_form_of_every_choice(unknown, earlier):
+    choice = StructureAndMotion(unknown, earlier=("d_s",) if earlier and "d_s" not in unknown else ())
+    M, m = choice.translation
+    general = general_form(len(unknown))
+    put = dict(zip(general.parameters[3:], [*M, *m], strict=True))
+    for part in ("w", "phi"):
+        difference = getattr(general, part).xreplace(put) - getattr(choice.form, part)
+        assert difference.expand() == sp.zeros(*difference.shape)
+
+
+def test_the_model_is_complete_and_is_json(lab):
+    model = json.loads(json.dumps(lab.model, allow_nan=False))
+    assert model["opening"] == structure_lab().settings
+    assert lab.parts == list(PARTS)
+    assert [corollary["number"] for corollary in model["corollaries"]] == list(range(1, 8))
+    choices = texts_of(CHOICES)
+    assert {key_of(u, e) for u in POSSIBLE for e in (False, True)} == set(choices)
+    assert set(choices) | set(refused()) == {
+        key_of(u, e) for n in range(8) for u in combinations(QUANTITIES, n) for e in (False, True)
+    }
+
+
+@pytest.mark.parametrize("case", COROLLARIES)
+def test_each_corollary_is_one_click_and_converges(case):
+    settings = structure_lab(**COROLLARIES[case]).settings
+    (run,) = structure_runs_of(settings).values()
+    assert run.verdict(settings["tolerance"]).startswith("converged")
+    found = run.recording.surface.quantities(run.estimate[-1, 3:])
+    true = run.recording.surface.quantities(run.truth[-1, 3:])
+    for name, value in found.items():
+        assert value == pytest.approx(true[name], rel=5e-3, abs=5e-3)
+
+
+def test_a_lab_opens_with_a_choice_that_is_impossible_and_says_why():
+    lab = structure_lab(unknown=["v_c2", "v_p2"])
+    with pytest.raises(ImpossibleChoice, match="act through their difference only"):
+        lab.run()
+    lab.summary = {"serial": 1}
+    assert "act through their difference only" in lab.analysis["sentences"][0]
+
+
+def test_the_analysis_says_what_is_off_and_how_much_it_scatters():
+    lab = structure_lab(bias=1e-4, duration=2.0)
+    lab.summary = {"serial": 3}
+    assert lab.analysis["of"] == 3
+    assert lab.analysis["sentences"][0].startswith("ISMO, ideal switch, last tenth of the run: d_s is off by -")
+    assert len(lab.analysis["sentences"]) == 3
+
+
+def test_settings_survive_json_and_come_back_complete(lab):
+    before = lab.settings
+    there = json.loads(json.dumps(before, allow_nan=False))
+    lab.settings = {key: there[key] for key in ("seed", "unknown")}
+    assert set(lab.settings) == set(there)
+    lab.settings = there
+    assert lab.settings == before
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"colour": "red"}, "there is no setting colour"),
+        ({"unknown": ["v_c4"]}, "it names some of d_s, v_c1"),
+        ({"unknown": ["d_s", "d_s"]}, "each once"),
+        ({"earlier": 1}, "must be True or False"),
+        ({"observers": []}, "name at least one of ideal"),
+        ({"gains": {"ideal": {"feedback": -1.0}}}, "k1 > 0 is needed"),
+        ({"gains": {"luck": {}}}, "there is no observer luck"),
+        ({"ybar": [0.3, 0.3, 0.0]}, "it must be positive, for the point is in front"),
+        ({"ybar": [0.3, 0.3]}, "numbers between"),
+        ({"v_c": [0.0, float("nan"), 0.0]}, "numbers between"),
+        ({"scale": 0}, "it must be a number from 0.001 to 1000"),
+        ({"noise": {"kind": "pink", "size": 0.1, "depth": 0}}, "it must be one of uniform, gaussian"),
+        ({"noise": {"kind": "uniform", "size": 0.1}}, "noise depth is None"),
+        ({"duration": 100, "step": 1e-4}, "1e[+]06 steps are too many"),
+        ({"hold": "second"}, "it must be one of zero, first, exact"),
+        ({"start": "chosen"}, "it must be one of own, zero"),
+        ({"tolerance": 0}, "it must be a number from 1e-06"),
+        ({"pictures": []}, "name at least one of unknowns"),
+        ({"seed": 1.5}, "whole number"),
+        ({"kept": {"seed": -1}}, "whole number"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
+    before = lab.settings
+    with pytest.raises(ValueError, match=reason):
+        lab.settings = {**before, **wrong}
+    assert lab.settings == before
+
+
+def test_every_gain_is_linked_to_a_letter_of_the_equations(lab):
+    for name in EVERY:
+        observer = lab.model["observers"][name]
+        text = "".join(observer["equations"][""][-1]["lines"])
+        for gain in observer["ways"][""]:
+            # a sign has no width to smooth it over
+            unused = (name, gain) == ("sign", "boundary_layer")
+            assert (f'data-letter="{gain}"' in text) != unused, (name, gain)
