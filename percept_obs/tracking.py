@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from types import MappingProxyType
 from typing import Literal
 
@@ -16,8 +17,9 @@ from numpy.typing import NDArray
 from percept_obs.compile import Table, solve, vectorised
 from percept_obs.equations import Symbols
 from percept_obs.motion import Motion
-from percept_obs.observers.base import Observer, elapsed
+from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording, halves, step_grid
+from percept_obs.recovery import elapsed, first_innovation
 
 Array = NDArray[np.float64]
 Hold = Literal["zero", "first", "exact"]
@@ -85,6 +87,8 @@ class Run:
         When the state stopped being finite, in seconds.
     hold : "zero", "first" or "exact"
         How samples were held between them.
+    lacking : array of shape (K,) of int
+        Which of `Observer.gaps` leaves the hidden coordinates without an estimate, counted from 1; 0 where none does.
     """
 
     recording: Recording
@@ -94,6 +98,7 @@ class Run:
     resets: Array
     diverged_at: float | None
     hold: Hold
+    lacking: NDArray[np.int_]
 
     @property
     def time(self) -> Array:
@@ -184,11 +189,20 @@ class Run:
     def gaps(self) -> list[tuple[float, float]]:
         """Times in seconds of every gap's first and last sample, where the hidden coordinates have no estimate.
 
-        Their estimates are NaN there, although the observer runs on: `Observer.gap` says why.
+        Their estimates are NaN there, although the observer runs on; `reasons` says why.
         """
-        missing = np.isnan(self.estimate).any(axis=1) & np.isfinite(self.state).all(axis=1)
-        edges = np.flatnonzero(np.diff(missing, prepend=False, append=False))
-        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in edges.reshape(-1, 2)]
+        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in self._stretches]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why each of the `gaps` is there."""
+        return [self.observer.gaps[self.lacking[k] - 1].reason for k, _ in self._stretches]
+
+    @cached_property
+    def _stretches(self) -> list[tuple[int, int]]:
+        """First sample of every gap, and the first one after it."""
+        edges = np.flatnonzero(np.diff(self.lacking, prepend=0, append=0))
+        return [(int(k), int(end)) for k, end in pairwise(edges) if self.lacking[k]]
 
     def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
         """When the error entered the tolerance for good.
@@ -231,11 +245,12 @@ class Run:
         if len(self.resets):
             which = "reset once" if len(self.resets) == 1 else "reset often"
             besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
-        if self.gaps and self.observer.gap:
-            begin, end = (f"{time:.3g}" for time in self.gaps[0])
-            besides += VERDICTS["gap"].format(begin=begin, end=end, reason=self.observer.gap.reason)
-            if len(self.gaps) > 1:
-                besides += VERDICTS["more gaps"].format(count=len(self.gaps) - 1)
+        for reason in dict.fromkeys(self.reasons):
+            gaps = [gap for gap, why in zip(self.gaps, self.reasons, strict=True) if why == reason]
+            begin, end = (f"{time:.3g}" for time in gaps[0])
+            besides += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
+            if len(gaps) > 1:
+                besides += VERDICTS["more gaps"].format(count=len(gaps) - 1)
         length = float(self.time[-1] - self.time[0])
         if self.recording.truth is None:
             return VERDICTS["followed"].format(time=f"{length:.3g}") + besides
@@ -330,28 +345,49 @@ def track(
     states = trace.states[index]
     at_samples = known if len(known) == 1 else known[2 * index]
     inputs = (*states.T, *(_last_sample(column) for column in samples.T), *at_samples.T)
+    estimate, lacking = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
     return Run(
         recording,
         observer,
-        _estimates(observer, inputs),
+        estimate,
         states,
         grid[trace.resets],
         None if trace.diverged is None else float(grid[trace.diverged]),
         hold,
+        lacking,
     )
 
 
-def _estimates(observer: Observer, inputs: Sequence[Array]) -> Array:
-    """Estimates at the samples, NaN for the hidden coordinates in a gap; from state, outputs and parameters."""
+def _estimates(
+    observer: Observer, inputs: Sequence[Array], time: Array, first: Array
+) -> tuple[Array, NDArray[np.int_]]:
+    """Estimates at the samples, NaN for the hidden coordinates in a gap, and in which gap each sample lies.
+
+    Parameters
+    ----------
+    observer : Observer
+    inputs : arrays of shape (K,)
+        State, outputs and parameters at the samples.
+    time : array of shape (K,)
+        Seconds since the first sample.
+    first : array of shape (n1,)
+        The first sample.
+    """
     form = observer.form
     symbols = (*observer.equations.state, *form.x1, *form.parameters)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+    measured, hidden = (np.array([form.coordinates.index(symbol) for symbol in x]) for x in (form.x1, form.x2))
+    lacking = np.zeros(len(time), dtype=int)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
         estimate = np.stack(vectorised(symbols, observer.estimate, observer.gain_values)(*inputs), axis=-1)
-        if observer.gap:
-            (missing,) = vectorised(symbols, [observer.gap.condition], observer.gain_values)(*inputs)
-            hidden = [form.coordinates.index(symbol) for symbol in form.x2]
-            estimate[np.ix_(missing != 0, hidden)] = np.nan
-    return estimate
+        if observer.gaps:
+            symbols = (*symbols, elapsed, *first_innovation(form))
+            conditions = [gap.condition for gap in observer.gaps]
+            begun = np.broadcast_to(first - estimate[0, measured], (len(time), len(measured)))
+            found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
+            for k, holds in reversed(list(enumerate(found, 1))):
+                lacking[holds != 0] = k
+            estimate[np.ix_(lacking > 0, hidden)] = np.nan
+    return estimate, lacking
 
 
 def _warn_of_long_steps(observer: Observer, grid: Array) -> None:

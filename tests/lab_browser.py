@@ -1,11 +1,13 @@
-"""The observer lab in a real JupyterLab: opening it, moving it, and reading what it draws."""
+"""Labs in a real JupyterLab: opening them, moving them, and reading what they draw."""
 
 import json
 import time
 
 import nbformat
 import numpy as np
+from conftest import missing
 from jupyter_harness import open_notebook, run_all
+from lab_settings import FRONT
 
 from percept_obs.labs.observer_lab import observer_lab
 
@@ -21,6 +23,8 @@ def keep(change):
 lab.observe(keep, "analysis")
 lab
 """
+
+WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
 
 RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
@@ -54,9 +58,9 @@ def write_notebook(folder, name, *cells):
     nbformat.write(notebook, folder / name)
 
 
-def open_lab(page, folder, name="lab.ipynb", arguments=""):
+def open_lab(page, folder, name="lab.ipynb", arguments="", lab="observer_lab"):
     """Show a notebook with one lab, run it, and wait until page and Python have come to rest."""
-    write_notebook(folder, name, OPEN.format(arguments=arguments))
+    write_notebook(folder, name, OPEN.replace("observer_lab", lab).format(arguments=arguments))
     open_notebook(page, name)
     run_all(page)
     rested(page)
@@ -110,6 +114,103 @@ def centre(page, selector):
 def control(name):
     """Selector of a control by its name."""
     return f"[data-control='{name}']"
+
+
+def drag_by_mouse(page, handle):
+    """Drag a handle of the picture a little to the right and up."""
+    x, y = centre(page, handle)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 9, y - 6, steps=4)
+    page.mouse.up()
+
+
+def drag_by_touch(page, handle):
+    """Drag a handle with a finger."""
+    x, y = centre(page, handle)
+    session = page.context.new_cdp_session(page)
+    for kind, step in (("touchStart", 0), ("touchMove", 4), ("touchMove", 9), ("touchEnd", None)):
+        points = [] if step is None else [{"x": x + step, "y": y - step}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.detach()
+
+
+def drag_by_keys(page, handle):
+    """Move a handle with the arrow keys."""
+    page.focus(handle)
+    for key in ("ArrowRight", "ArrowUp", "Shift+ArrowUp", "ArrowDown", "ArrowLeft", "ArrowLeft"):
+        page.keyboard.press(key)
+
+
+def reached_by_keyboard(page, first):
+    """Names of the controls on which the Tab key comes by, beginning with the first.
+
+    Raises
+    ------
+    AssertionError
+        If one that can be seen and is enabled is left out.
+    """
+    wanted = set(
+        page.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
+            .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
+            .map((c) => c.dataset.control)""")
+    )
+    reached = []
+    page.focus(control(first))
+    for _ in range(2 * len(wanted)):
+        name = page.evaluate("document.activeElement.dataset.control ?? ''")
+        if not name and reached and not page.evaluate("Boolean(document.activeElement.closest('.percept-lab'))"):
+            break
+        reached.append(name)
+        page.keyboard.press("Tab")
+    assert wanted - set(reached) == set()
+    return reached
+
+
+def assert_moved_by_keyboard(page, names):
+    """Each of the controls changes its value by keys, and is put back."""
+    there_and_back = {
+        "range": ("ArrowRight", "ArrowLeft"),
+        "number": ("ArrowUp", "ArrowDown"),
+        "checkbox": ("Space", "Space"),
+        "select-one": ("ArrowDown", "ArrowUp"),
+        "radio": ("ArrowDown", "ArrowUp"),
+    }
+    for name in names:
+        kind = page.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
+        if kind not in there_and_back:
+            continue
+        before = value_of(page, name)
+        page.focus(control(name))
+        moved = False
+        for key in (*there_and_back[kind], *reversed(there_and_back[kind])):
+            page.keyboard.press(key)
+            moved = moved or value_of(page, name) != before
+        if kind == "select-one":
+            page.select_option(control(name), before[0])
+        assert moved, name
+
+
+def value_of(page, name):
+    """What a control says."""
+    return page.evaluate("(s) => { const c = document.querySelector(s); return [c.value, c.checked]; }", control(name))
+
+
+def serious_violations(page, widths=("", "400px")):
+    """What axe-core finds to be serious or critical inside the lab, everything open, at some widths."""
+    axe = FRONT / "node_modules/axe-core/axe.min.js"
+    if not axe.exists():
+        missing(f"axe-core is missing: run npm ci in {FRONT}.")
+    page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
+    page.evaluate(axe.read_text())
+    serious = []
+    for width in widths:
+        page.evaluate(WIDTH, width)
+        found = page.evaluate("axe.run('.percept-lab')")
+        assert len(found["passes"]) > 10
+        serious += [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
+    page.evaluate(WIDTH, "")
+    return [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious]
 
 
 def _array(values):

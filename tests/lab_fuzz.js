@@ -33,7 +33,7 @@ async ([seed, count]) => {
         const controls = [...root.querySelectorAll("[data-control]")].filter((c) => c.checkVisibility() && !c.disabled);
         const control = pick(controls);
         used.add(control.dataset.control);
-        if (control.dataset.control === "foe") {
+        if (control.classList.contains("handle")) {
             if (random() < 0.3) return press(control, pick(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]));
             const box = control.getBoundingClientRect();
             const tellPointer = (type, x, y) => control.dispatchEvent(
@@ -63,7 +63,9 @@ async ([seed, count]) => {
     for (let k = 0; k < count; k++) {
         try {
             // Long recordings at short periods only make the test slow.
-            if (lab.settings.duration / lab.settings.period > 20000) lab.change({ period: 0.02, duration: 40 }, true);
+            const { duration, period, step } = lab.settings;
+            const short = { period: 0.02, duration: 40, ...(step && { step: 0.01 }) };
+            if (duration / Math.min(period, step ?? period) > 20000) lab.change(short, true);
             act();
         } catch (error) {
             note(`exception: ${error.message}`);

@@ -1,5 +1,7 @@
 """The integral sliding mode observer has the paper's equations, finds the paper's values, and says what limits it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -8,7 +10,6 @@ from examples import BOTH, ONE
 from percept_obs import Camera, Scenario, affine, pinhole, record, scenarios, track
 from percept_obs.compile import vectorised
 from percept_obs.observers import NeedsMoreOutputs, ismo, rio
-from percept_obs.observers.base import elapsed
 from percept_obs.observers.integral_sliding_mode import (
     GainTooSmall,
     a,
@@ -21,6 +22,7 @@ from percept_obs.observers.integral_sliding_mode import (
     ultimate_bound,
 )
 from percept_obs.pixels import CHWA_CAMERA, SignalToNoise
+from percept_obs.recovery import elapsed
 from percept_obs.structure import COROLLARIES, PatchDepth, grid_patch, record_structure
 from percept_obs.tracking import StepTooLong
 
@@ -106,6 +108,19 @@ def test_the_exact_initial_conditions(switch):
     np.testing.assert_allclose(np.array(g_hat, dtype=float).ravel(), 15 * np.tanh([0.32, 0.30, 0.05]))
 
 
+def assert_only_the_start_is_missing(run, latest):
+    """One gap, at the start, that ends by the latest time, and before what it hides is within 1 % of the truth."""
+    ((begin, end),) = run.gaps
+    assert run.reasons == ["what is left of the start may be half of what is found"]
+    assert begin == 0
+    assert end < latest
+    bare = replace(run.observer, gaps=())
+    hidden = track(run.recording, bare, dict(zip(FORM.measured, run.estimate[0, :3], strict=True)), run.hold, **fine)
+    assert not hidden.gaps
+    error = np.linalg.norm(hidden.error[:, 3:], axis=1) / np.linalg.norm(hidden.truth[:, 3:], axis=1)
+    assert error[run.time <= end].min() > 0.01
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("hold", ["exact", "first"])
 @pytest.mark.parametrize("switch", ["ideal", LAYER])
@@ -114,7 +129,7 @@ def test_the_five_cases_of_the_experiment(section, switch, hold):
     setup = scenarios.chwa2019_experiment(section)
     run = track(record_structure(setup, 3), ismo(setup.choice.form, switch), ZERO, hold=hold, **fine)
     found, true = quantities(run)
-    assert run.gaps == []
+    assert_only_the_start_is_missing(run, 0.55)
     for name in setup.choice.unknown:
         error = np.abs(found[name] - true[name])
         if name == "d_s":
@@ -131,12 +146,24 @@ def test_the_first_values_of_the_scale():
         assert run.estimate[1000, 3] == pytest.approx(10.400, abs=5e-4)
 
 
-def test_a_held_sample_shifts_the_scale():
+def test_a_held_sample_shifts_the_scale_as_is_told_beside_the_claim():
     """Read right after a sample has arrived, the innovation stands at the top of the saw tooth that holding makes."""
     setup = scenarios.chwa2019_experiment("IV.A")
+    shifts = []
     for switch, shifted in ((LAYER, 10.557), ("ideal", 10.651)):
         run = track(record_structure(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="zero", **fine)
         assert run.estimate[1000, 3] == pytest.approx(shifted, abs=2e-3)
+        shifts.append(100 * (run.estimate[1000, 3] / setup.scale - 1))
+    least, most = shifts
+    assert f"held for 1 ms it is off by {least:.1f} to {most:.1f} % after 1 s" in ismo(FORM).about.claim
+
+
+def test_a_long_hold_never_settles_as_is_told_beside_the_claim():
+    recording = record(scenarios.ma2005_eq35(), 40)
+    times = [track(recording, ismo(BOTH), hold=hold, language="python").settling_time() for hold in ("exact", "zero")]
+    assert times[0] < 0.1
+    assert times[1] == np.inf
+    assert "held for 10 ms, even without noise, it does not settle" in ismo(BOTH).about.claim
 
 
 @pytest.mark.slow
@@ -204,7 +231,7 @@ def test_velocities_that_vary(section, angular_velocity):
     run = track(recording, ismo(setup.choice.form), ZERO, hold="first", **fine)
     found, true = quantities(run)
     late = run.time >= 1
-    assert run.gaps == []
+    assert_only_the_start_is_missing(run, 0.7)
     assert np.abs(recording.truth[:, :2]).max() < 1.3
     for name in setup.choice.unknown:
         span = np.ptp(true[name]) if np.ptp(true[name]) > 1e-9 else np.abs(true[name]).max()
@@ -212,24 +239,28 @@ def test_velocities_that_vary(section, angular_velocity):
 
 
 def ranges(run):
-    """Estimated over true depth, from half a second on; NaN in a gap."""
-    true = 1 / run.recording.surface.inverse(run.truth)
-    return (run.distance / true)[run.time >= 0.5]
+    """Estimated over true depth; NaN in a gap."""
+    return run.distance * run.recording.surface.inverse(run.truth)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("switch", ["ideal", LAYER])
-def test_no_spike_where_the_camera_turns_back(switch):
+@pytest.mark.parametrize(
+    ("start", "begins"), [(ZERO, 0.589), (None, 0.137)], ids=["from zero", "from the first sample"]
+)
+def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, begins):
     setup = scenarios.chwa2019_crossing()
     observer = ismo(setup.choice.form, switch)
-    run = track(record_structure(setup), observer, ZERO, hold="first", **fine)
-    for crossing, (begin, end) in zip((2.14, 5.28, 8.42), run.gaps, strict=True):
+    run = track(record_structure(setup), observer, start, hold="first", **fine)
+    assert run.gaps[0] == (0, pytest.approx(begins, abs=0.002))
+    for crossing, (begin, end) in zip((2.14, 5.28, 8.42), run.gaps[1:], strict=True):
         assert begin < crossing < end
     assert np.nanmax(ranges(run)) < 1.2
     assert np.nanmin(ranges(run)) > 0.8
-    assert np.isnan(run.estimate[:, 3:]).mean() < 0.02
+    assert np.isnan(run.estimate[:, 3:]).mean() < 0.02 + begins / 10
     assert np.isfinite(run.estimate[:, :3]).all()
     assert (
+        f"no estimate from 0 to {begins} s, for what is left of the start may be half of what is found; "
         "no estimate from 2.12 to 2.16 s, for theta1, theta2, theta3 nearly drop out of what is seen" in run.verdict()
     )
     unguarded = track(

@@ -6,8 +6,10 @@ from lab_browser import (
     OPEN,
     assert_equals_python,
     assert_python_has,
-    centre,
     control,
+    drag_by_keys,
+    drag_by_mouse,
+    drag_by_touch,
     handed_over,
     open_lab,
     rested,
@@ -56,33 +58,10 @@ def fresh(lab):
     return lab
 
 
-def drag_by_mouse(page):
-    x, y = centre(page, FOE)
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + 9, y - 6, steps=4)
-    page.mouse.up()
-
-
-def drag_by_touch(page):
-    x, y = centre(page, FOE)
-    session = page.context.new_cdp_session(page)
-    for kind, step in (("touchStart", 0), ("touchMove", 4), ("touchMove", 9), ("touchEnd", None)):
-        points = [] if step is None else [{"x": x + step, "y": y - step}]
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-    session.detach()
-
-
-def drag_by_keys(page):
-    page.focus(FOE)
-    for key in ("ArrowRight", "ArrowUp", "Shift+ArrowUp", "ArrowDown", "ArrowLeft", "ArrowLeft"):
-        page.keyboard.press(key)
-
-
 @pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
 def test_the_focus_of_expansion_follows_the_hand(fresh, folder, drag):
     before = state(fresh)
-    drag(fresh)
+    drag(fresh, FOE)
     rested(fresh)
     after = state(fresh)
     assert after["settings"]["b"] != before["settings"]["b"]
@@ -274,7 +253,7 @@ def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder
     write_notebook(folder, "set.ipynb", *cells)
     open_notebook(page, "set.ipynb")
     run_all(page)
-    page.wait_for_function("[...window.perceptObsLabs][0].shown.settings.outputs[0] === 'y2'", timeout=120_000)
+    page.wait_for_function("[...window.perceptObsLabs][0].shown?.settings.outputs[0] === 'y2'", timeout=120_000)
     assert_equals_python(state(page))
     page.fill(control("seed number"), "3")
     page.wait_for_selector(".percept-obs-error:not([hidden])")

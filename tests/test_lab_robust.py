@@ -3,10 +3,21 @@
 from pathlib import Path
 
 import pytest
-from conftest import missing
 from jupyter_harness import jupyterlab, lab_page, log_entries
-from lab_browser import assert_equals_python, assert_python_has, control, handed_over, open_lab, rested, state
-from lab_settings import ALL, FRONT, assert_follows_python
+from lab_browser import (
+    WIDTH,
+    assert_equals_python,
+    assert_moved_by_keyboard,
+    assert_python_has,
+    control,
+    handed_over,
+    open_lab,
+    reached_by_keyboard,
+    rested,
+    serious_violations,
+    state,
+)
+from lab_settings import ALL, assert_follows_python
 
 from percept_obs.labs.observer_lab import runs
 from percept_obs.surfaces import BehindCamera
@@ -15,7 +26,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
 EVENTS, CHUNKS = 5000, 5
-WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
 COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
@@ -87,20 +97,9 @@ def test_a_thousand_moves_do_not_fill_the_memory(fresh):
     assert used() - before < 10
 
 
-def test_axe_finds_nothing_serious(fresh, folder):
-    axe = FRONT / "node_modules/axe-core/axe.min.js"
-    if not axe.exists():
-        missing(f"axe-core is missing: run npm ci in {FRONT}.")
-    fresh.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
+def test_axe_finds_nothing_serious(fresh):
     fresh.click(control("preset drop"))
-    fresh.evaluate(axe.read_text())
-    for width in ("", "400px"):
-        fresh.evaluate(WIDTH, width)
-        found = fresh.evaluate("axe.run('.percept-lab')")
-        serious = [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
-        assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious] == []
-        assert len(found["passes"]) > 10
-    fresh.evaluate(WIDTH, "")
+    assert serious_violations(fresh) == []
 
 
 def test_every_control_is_reached_and_moved_by_keyboard(fresh):
@@ -109,62 +108,8 @@ def test_every_control_is_reached_and_moved_by_keyboard(fresh):
     for name in ("sliding_mode", "extended_kalman", "immersion_and_invariance"):
         fresh.check(control(f"observer {name}"))
     rested(fresh)
-    open_groups_by_keyboard(fresh)
-    wanted = set(
-        fresh.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
-            .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
-            .map((c) => c.dataset.control)""")
-    )
-    reached = []
-    fresh.focus(control("preset foe"))
-    for _ in range(2 * len(wanted)):
-        name = fresh.evaluate("document.activeElement.dataset.control ?? ''")
-        if not name and reached:
-            inside = fresh.evaluate("Boolean(document.activeElement.closest('.percept-lab'))")
-            if not inside:
-                break
-        reached.append(name)
-        fresh.keyboard.press("Tab")
-    assert wanted - set(reached) == set()
-    there_and_back = {
-        "range": ("ArrowRight", "ArrowLeft"),
-        "number": ("ArrowUp", "ArrowDown"),
-        "checkbox": ("Space", "Space"),
-        "select-one": ("ArrowDown", "ArrowUp"),
-        "radio": ("ArrowDown", "ArrowUp"),
-    }
-    for name in reached:
-        kind = fresh.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
-        if kind not in there_and_back:
-            continue
-        # Dropping an observer and choosing it again among many closes its gains.
-        open_groups_by_keyboard(fresh)
-        before = value_of(fresh, name)
-        fresh.focus(control(name))
-        moved = False
-        for key in (*there_and_back[kind], *reversed(there_and_back[kind])):
-            fresh.keyboard.press(key)
-            moved = moved or value_of(fresh, name) != before
-        if kind == "select-one":
-            fresh.select_option(control(name), before[0])
-        assert moved, name
+    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "preset foe"))
     rested(fresh)
-
-
-def open_groups_by_keyboard(page):
-    """Open the gains of all chosen observers, as somebody without a mouse would."""
-    closed = (
-        "[...document.querySelectorAll('.gains-of:not([open]):not([hidden]) summary')].map((s) => s.dataset.control)"
-    )
-    for name in page.evaluate(closed):
-        page.focus(control(name))
-        page.keyboard.press("Enter")
-    assert page.evaluate(closed) == []
-
-
-def value_of(page, name):
-    """What a control says."""
-    return page.evaluate("(s) => { const c = document.querySelector(s); return [c.value, c.checked]; }", control(name))
 
 
 def test_each_picture_says_in_words_what_it_shows(fresh):

@@ -10,7 +10,8 @@ import sympy as sp
 from percept_obs.compile import function_source, source
 from percept_obs.labs.markup import markup
 from percept_obs.observers import Gain, Observer
-from percept_obs.observers.base import elapsed, hats
+from percept_obs.observers.base import hats
+from percept_obs.recovery import elapsed, first_innovation
 
 Texts = dict[str, Any]
 
@@ -58,7 +59,9 @@ def kernel_for_the_page(observer: Observer) -> Texts:
     """An observer's loop, start and estimate for one structure, and what limits them."""
     form, equations = observer.form, observer.equations
     known = (*form.x1, *form.parameters, *equations.gains)
-    claimed, gap, fastest = observer.covariance, observer.gap, observer.fastest
+    claimed, fastest = observer.covariance, observer.fastest
+    conditions = [(k, gap.condition) for k, gap in enumerate(observer.gaps, 1)]
+    begun = (elapsed, *first_innovation(form)) if observer.gaps else ()
     return {
         "gains": [gain.name for gain in observer.gains],
         "run": source(equations, "javascript"),
@@ -66,8 +69,10 @@ def kernel_for_the_page(observer: Observer) -> Texts:
         "start": function_source((*known, *hats(form.coordinates)), observer.start),
         "estimate": function_source((*known, *equations.state), observer.estimate),
         "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
-        "gap": gap and function_source(known, (sp.Piecewise((1, gap.condition), (0, True)),)),
-        "gapReason": gap and gap.reason,
+        "gap": None
+        if not conditions
+        else function_source((*known, *equations.state, *begun), (sp.Piecewise(*conditions, (0, True)),)),
+        "gapReasons": [gap.reason for gap in observer.gaps],
         "fastest": fastest and function_source((elapsed, *equations.gains), (fastest.rate,)),
         "remedy": fastest and fastest.remedy,
     }

@@ -78,8 +78,8 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     begun = [formula(s, value, letters) for s, value in starts if value in letters.values()]
     if begun:
         lines.append(row("at the start", *_listed(begun)))
-    if observer.gap:
-        lines.append(row("no estimate where", markup(observer.gap.condition, letters)))
+    for gap in observer.gaps:
+        lines.append(row("no estimate where", markup(gap.condition, letters)))
     if equations.reset:
         changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
         after_it = [formula(after(s), new, letters) for s, new in changed]

@@ -85,10 +85,6 @@ class About:
     claim: str
 
 
-elapsed = sp.Symbol("t", real=True)
-"""Seconds since the first sample."""
-
-
 @dataclass(frozen=True)
 class FastestRate:
     """How fast the fastest part of an observer is, so that one can tell beforehand whether a step resolves it.
@@ -96,7 +92,7 @@ class FastestRate:
     Parameters
     ----------
     rate : expression
-        Decay rate in 1/s, from the gains and `elapsed`.
+        Decay rate in 1/s, from the gains and `recovery.elapsed`.
     remedy : str
         What to do if the step is too long, besides shortening it.
     """
@@ -127,8 +123,8 @@ class Observer:
         What is known about the observer.
     constant_motion : bool
         Whether the equations hold for a motion with constant coefficients only.
-    gap : Gap, optional
-        Where the hidden coordinates have no estimate.
+    gaps : tuple of Gap
+        Where the hidden coordinates have no estimate; of several that hold, the first tells the reason.
     fastest : FastestRate, optional
         What limits the integration step, if it is known.
     """
@@ -142,7 +138,7 @@ class Observer:
     covariance: sp.ImmutableMatrix | None = None
     about: About | None = None
     constant_motion: bool = False
-    gap: Gap | None = None
+    gaps: tuple[Gap, ...] = ()
     fastest: FastestRate | None = None
 
     def with_gains(self, **values: float) -> Observer:

@@ -92,7 +92,7 @@ def range_identification(form: PartitionedSystem, switch: str = "hyperbolic tang
     by_coordinate = dict(zip((*form.x1, *form.x2), (*x1_hat, *hidden), strict=True))
     estimate = tuple(by_coordinate[x] for x in form.coordinates)
     start = (*x1_hat, *(form.w.T * sp.ImmutableMatrix(hats(form.x2))))
-    observer = Observer("range identification", form, equations, estimate, GAINS, start, about=ABOUT, gap=gap)
+    observer = Observer("range identification", form, equations, estimate, GAINS, start, about=ABOUT, gaps=(gap,))
     return observer.with_gains(**gains)
 
 

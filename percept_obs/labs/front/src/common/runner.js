@@ -41,8 +41,8 @@ export class Runner {
     const diverged = functions.run(start, steps, outputs, table.rows, samples, gains, table.varying, states, resets);
     if (diverged >= 0) states.fill(NaN, diverged * kernel.states);
     const estimate = memory.room(`estimate ${name}`, time.length * width);
-    const hidden = functions.gap ? shown.hidden : [];
-    readEstimates(functions, kernel, states, inputs, gains, width, hidden, estimate);
+    const lacking = memory.room(`lacking ${name}`, time.length).fill(0);
+    readEstimates(functions, kernel, states, inputs, gains, width, shown, estimate, lacking);
     const result = {
       name,
       title: this.model.observers[name].title,
@@ -51,8 +51,8 @@ export class Runner {
       deviation: null,
       ...this.columns(`estimate ${name}`, estimate, width),
       resets: timesOf(resets, grid),
-      gaps: functions.gap ? gapsOf(estimate, width, hidden[0], time, diverged < 0 ? Infinity : grid[diverged]) : [],
-      gapReason: kernel.gapReason,
+      gaps: gapsOf(lacking, time),
+      gapReasons: kernel.gapReasons,
       divergedAt: diverged < 0 ? null : grid[diverged],
     };
     if (functions.variances) {
@@ -90,12 +90,14 @@ function startState({ columns, known: table }, kernel, functions, gains, asked) 
   return functions.start(inputs, new Float64Array(kernel.states));
 }
 
-/** Fill in the estimates at the samples; none of the hidden coordinates in a gap. */
-function readEstimates(functions, kernel, states, { index, last, known: table }, gains, width, hidden, estimate) {
+/** Fill in the estimates at the samples; none of the hidden coordinates in a gap, which `lacking` numbers from 1 on. */
+function readEstimates(functions, kernel, states, inputs, gains, width, { time, measured, hidden }, estimate, lacking) {
+  const { index, last, columns, known: table } = inputs;
   const before = last.length + table.width + gains.length;
-  const x = new Float64Array(before + kernel.states);
+  const after = before + kernel.states;
+  const x = new Float64Array(after + 1 + last.length);
   const out = new Float64Array(width);
-  const missing = new Float64Array(1);
+  const which = new Float64Array(1);
   x.set(table.rows.subarray(0, table.width), last.length);
   x.set(gains, last.length + table.width);
   for (let k = 0; k < index.length; k++) {
@@ -108,19 +110,22 @@ function readEstimates(functions, kernel, states, { index, last, known: table },
     }
     functions.estimate(x, out);
     for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
-    if (hidden.length && functions.gap(x, missing)[0]) for (const c of hidden) estimate[k * width + c] = NaN;
+    if (!functions.gap) continue;
+    // Of the first sample, the innovation counts for all that follow.
+    if (k === 0) measured.forEach((c, m) => (x[after + 1 + m] = columns[m][0] - out[c]));
+    x[after] = time[k] - time[0];
+    lacking[k] = functions.gap(x, which)[0];
+    if (lacking[k]) for (const c of hidden) estimate[k * width + c] = NaN;
   }
 }
 
-/** The times of every gap's first and last sample: where a hidden coordinate has no estimate, though the run goes on. */
-function gapsOf(estimate, width, c, time, end) {
+/** The times of every gap's first and last sample, and its number, where a hidden coordinate has no estimate. */
+function gapsOf(lacking, time) {
   const found = [];
-  let inside = false;
-  for (let k = 0; k < time.length && time[k] < end; k++) {
-    const missing = Number.isNaN(estimate[k * width + c]);
-    if (missing && !inside) found.push([time[k], time[k]]);
-    if (missing) found.at(-1)[1] = time[k];
-    inside = missing;
+  for (let k = 0; k < time.length; k++) {
+    if (!lacking[k]) continue;
+    if (lacking[k] === lacking[k - 1]) found.at(-1)[1] = time[k];
+    else found.push([time[k], time[k], lacking[k]]);
   }
   return found;
 }

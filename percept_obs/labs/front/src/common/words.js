@@ -9,10 +9,10 @@ export function verdict(run, shown, { verdicts, settledPart }) {
   if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
   const count = run.resets.length;
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
-  if (run.gaps.length) {
-    const [begin, end] = run.gaps[0].map((time) => short(time));
-    besides += say("gap", { begin, end, reason: run.gapReason });
-    if (run.gaps.length > 1) besides += say("more gaps", { count: run.gaps.length - 1 });
+  for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
+    const gaps = run.gaps.filter((gap) => gap[2] === which);
+    besides += say("gap", { begin: short(gaps[0][0]), end: short(gaps[0][1]), reason: run.gapReasons[which - 1] });
+    if (gaps.length > 1) besides += say("more gaps", { count: gaps.length - 1 });
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
