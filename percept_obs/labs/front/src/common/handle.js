@@ -49,7 +49,9 @@ export class Handle {
       const step = STEPS[event.key];
       if (step) {
         const size = NUDGE * (event.shiftKey ? LEAP : 1);
-        this.onMove([this.at[0] + step[0] * size, this.at[1] + step[1] * size]);
+        // Keys may come faster than pictures, and each begins where the one before it has led.
+        this.at = [this.at[0] + step[0] * size, this.at[1] + step[1] * size];
+        this.onMove(this.at);
       } else if (!this.onKey?.(event)) return;
       event.preventDefault();
     });
