@@ -1,11 +1,13 @@
 """The page and Python compute the same run of every choice of unknowns, and refuse the others in the same words."""
 
 import json
+import subprocess
 from itertools import combinations
 
 import numpy as np
 import pytest
 import sympy as sp
+from lab_settings import FRONT
 from structure_settings import (
     CASES,
     COROLLARIES,
@@ -16,8 +18,9 @@ from structure_settings import (
 )
 
 from percept_obs.labs.choices import CHOICES, PARTS, general_form, key_of, refused, texts_of
-from percept_obs.labs.structure_lab import choice_of, structure_lab
+from percept_obs.labs.structure_lab import choice_of, runs, structure_lab
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion, corollary_of
+from percept_obs.tracking import StepTooLong
 
 pytestmark = pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")
 
@@ -148,6 +151,88 @@ def test_each_corollary_is_one_click_and_converges(case):
     true = run.recording.surface.quantities(run.truth[-1, 3:])
     for name, value in found.items():
         assert value == pytest.approx(true[name], rel=5e-3, abs=5e-3)
+
+
+@pytest.fixture(scope="module")
+def acts(lab, node):
+    """The settings of every act of every preset, as Python accepts them."""
+    script = FRONT / "tests/structure_presets.js"
+    task = json.dumps(lab.model["standard"])
+    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    return {name: [lab.check(act) for act in found] for name, found in json.loads(answer.stdout).items()}
+
+
+def scatter(run, begin, end):
+    """Standard deviation of the first unknown between two times."""
+    return run.estimate[(run.time >= begin) & (run.time <= end), 3].std()
+
+
+def times_too_far(run):
+    """Estimated over true range."""
+    return run.distance * run.recording.surface.inverse(run.truth)
+
+
+@pytest.mark.node
+def test_the_speedometer_carries_the_metres(acts):
+    driving, standing = acts["speedometer"]
+    (run,) = structure_runs_of(driving).values()
+    assert run.settling_time(0.05) < 0.6
+    assert refusal_of(standing).startswith("the scale d_s multiplies every velocity")
+
+
+@pytest.mark.node
+def test_one_of_two_stories_must_be_known(acts):
+    both, one = acts["story"]
+    assert "act through their difference only" in refusal_of(both)
+    assert next(iter(structure_runs_of(one).values())).verdict(0.05).startswith("converged")
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_a_crossing_leaves_a_gap_or_makes_spikes(acts):
+    guarded, bare = (next(iter(structure_runs_of(act).values())) for act in acts["crossing"])
+    assert len(guarded.gaps) == 3
+    assert np.nanmin(times_too_far(guarded)) > 0.9
+    assert np.nanmax(times_too_far(guarded)) < 1.1
+    assert len(bare.gaps) == 1
+    assert np.nanmax(np.abs(1 / times_too_far(bare) - 1)) > 0.5
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_noise_leaves_two_digits_and_a_filter_more(acts):
+    growing, steady, both = (structure_runs_of(act) for act in acts["noise"])
+    late, early = (scatter(growing["ideal"], *part) for part in ((9, 10), (1, 2)))
+    assert 0.05 < late < 0.15
+    assert late > 1.4 * early
+    late, early = (scatter(steady["ideal"], *part) for part in ((9, 10), (1, 2)))
+    assert late == pytest.approx(early, rel=0.1)
+    assert scatter(both["extended_kalman"], 9, 10) < late / 10
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_chatter_shrinks_with_the_step_and_is_gone_without_switching(acts):
+    coarse, fine, both = (structure_runs_of(act) for act in acts["chatter"])
+    worst = [np.abs(runs["sign"].error[runs["sign"].time > 1, 3]).max() for runs in (coarse, fine)]
+    assert worst[0] > 3 * 10.4
+    assert worst[1] == pytest.approx(worst[0] / 10, rel=0.3)
+    assert both["ideal"].verdict(0.05).startswith("converged")
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
+    forgotten, cured = acts["limit"]
+    answers = structure_in_node(node, lab, [forgotten, cured])
+    (limit,) = answers[0]["limits"]
+    assert limit["time"] == pytest.approx(34.4, abs=0.1)
+    assert answers[1]["limits"] == []
+    with pytest.warns(StepTooLong, match=r"from 34\.4 s on"):
+        (lost,) = runs(forgotten).values()
+    assert np.abs(lost.error[lost.time > 55, 3]).max() > 100
+    assert all(run.verdict(0.05).startswith("converged") for run in structure_runs_of(cured).values())
 
 
 def test_a_lab_opens_with_a_choice_that_is_impossible_and_says_why():

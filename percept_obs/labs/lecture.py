@@ -15,6 +15,7 @@ from percept_obs.motion import affine
 from percept_obs.observers import Observer, extended_kalman, linear_approximation
 from percept_obs.observers.base import hats
 from percept_obs.perspective import PerspectiveSystem
+from percept_obs.recovery import elapsed
 from percept_obs.surfaces import pinhole
 
 Matrices = dict[str, Any]
@@ -79,7 +80,11 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     if begun:
         lines.append(row("at the start", *_listed(begun)))
     for gap in observer.gaps:
-        lines.append(row("no estimate where", markup(gap.condition, letters)))
+        in_time = gap.condition.has(elapsed)  # a condition that is long and of no use by hand
+        where = (
+            [f"no estimate while {gap.reason}"] if in_time else ["no estimate where", markup(gap.condition, letters)]
+        )
+        lines.append(row(*where))
     if equations.reset:
         changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
         after_it = [formula(after(s), new, letters) for s, new in changed]

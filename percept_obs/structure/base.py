@@ -357,9 +357,10 @@ class StructureAndMotion:
         )
 
     def inverse(self, coordinates: ArrayLike) -> Array:
-        """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta gives no positive d_s."""
+        """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta is missing or d_s <= 0."""
         ybar, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
-        return self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
+        inverse: Array = self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
+        return np.where(np.isnan(theta).any(axis=-1), np.nan, inverse)
 
     def locate(self, coordinates: ArrayLike) -> Array:
         """Points in metres, shape (..., 3), from ybar and theta; infinite where no positive inverse depth follows."""

@@ -11,12 +11,12 @@ const GROUPS = [
   ["Velocity of the object", ["v_p1", "v_p2", "v_p3"]],
 ];
 const KINDS = [
-  ["dynamic", "A camera of which something is unknown"],
-  ["general", "Any camera, at a known range"],
+  ["dynamic", "Camera partly unknown"],
+  ["general", "Range known"],
 ];
 const OBJECTS = [
-  ["semigeneral", "An object that stands still, then moves"],
-  ["general", "An object that moves"],
+  ["semigeneral", "Object still, then moving"],
+  ["general", "Object moving"],
 ];
 
 /** The part of the lab above its pictures. */
@@ -87,7 +87,7 @@ export class ChoiceOfUnknowns {
     return element(
       "table",
       { class: "cases" },
-      element("caption", {}, "The paper's cases: corollaries 1 to 7"),
+      element("caption", {}, "The paper's cases, corollaries 1 to 7"),
       element("tr", {}, element("td"), ...OBJECTS.map(([, words]) => element("th", { scope: "col" }, words))),
       ...KINDS.map(([camera, words]) =>
         element("tr", {}, element("th", { scope: "row" }, words), ...OBJECTS.map(([object]) => element("td", {}, ...cell(camera, object)))),

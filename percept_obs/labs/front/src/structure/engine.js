@@ -110,7 +110,7 @@ export class StructureEngine extends Runner {
     owner.quantityOf = (name) => (found[name] ??= fillWith(room(name), quantity(choice, name, columnOf, scaleOf)));
     owner.distances = () => (found.range ??= fillWith(room("range"), (k) => {
       const inverse = scaleOf(k) * columnOf(2)[k];
-      return inverse > 0 ? 1 / inverse : NaN;
+      return inverse > 0 && !Number.isNaN(columnOf(3)[k]) ? 1 / inverse : NaN;
     }));
     return owner;
   }

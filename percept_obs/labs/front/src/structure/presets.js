@@ -68,7 +68,7 @@ export const PRESETS = [
       },
       {
         button: "Without the guard",
-        changes: { ...TURNING_BACK, hold: "zero", gains: { ideal: { largest_amplification: 1e7 } } },
+        changes: { ...TURNING_BACK, gains: { ideal: { largest_amplification: 1e9 } } },
         answer:
           "Dividing by a determinant of nearly zero makes spikes out of the least errors. They look like estimates, and are none.",
       },
@@ -116,7 +116,7 @@ export const PRESETS = [
         changes: { observers: ["sign"], hold: "exact", pictures: ["unknowns", "error", "innovation"] },
         answer:
           "It is lost: a step on the wrong side of s = 0 changes the estimated rate by about γ² c h, and the division " +
-          "makes it a hundred times what is sought.",
+          "makes several times d_s out of it.",
       },
       {
         button: "Shorter steps",

@@ -34,10 +34,15 @@ export function reasons(shown, model) {
 /** What an observer has found at the end. */
 function endOf(run, { choice, quantityOf }) {
   const parts = choice.unknown.map((name) => {
-    const [found, true_] = [run, { quantityOf }].map((rows) => rows.quantityOf(name).at(-1));
-    return `${name} = ${readable(found, 4)} (true ${readable(true_, 4)})`;
+    const [found, right] = [run, { quantityOf }].map((rows) => plain(rows.quantityOf(name).at(-1)));
+    return `${name} = ${found} (true ${right})`;
   });
   return `${run.title} ends with ${parts.join(", ")}.`;
+}
+
+/** A quantity to a micrometre a second, so that what is nothing reads as nothing. */
+function plain(value) {
+  return readable(Number(value.toFixed(6)), 4);
 }
 
 function mostOf({ guard }) {
@@ -67,6 +72,6 @@ export function sceneInWords(shown) {
 /** The values under the cursor. */
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
-  const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${readable(rows.quantityOf(name)[k], 4)}`).join(", ");
+  const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${plain(rows.quantityOf(name)[k])}`).join(", ");
   return [`At ${readable(shown.time[k])} s`, `true ${row(shown)}`, ...shown.runs.map((run) => `${run.title} ${row(run)}`)].join(" · ");
 }
