@@ -115,6 +115,7 @@ export function held(columns, times, grid, index, hold, exact, room = fresh) {
 }
 
 function lineThrough(values, times, places) {
+  if (!values.some(Number.isNaN)) return interpolate(places, times, values);
   const there = [...values.keys()].filter((k) => !Number.isNaN(values[k]));
   return interpolate(places, Float64Array.from(there, (k) => times[k]), Float64Array.from(there, (k) => values[k]));
 }

@@ -1,10 +1,10 @@
 // The observer lab's equations.
 
-import { Formulas } from "../common/formula.js";
+import { ObserverFormulas } from "../common/observer_formulas.js";
 import { keyOf } from "./kernels.js";
 
 /** Equations of the canonical form and of the observers. */
-export class ObserverFormulas extends Formulas {
+export class Formulas extends ObserverFormulas {
   systemOf(settings) {
     return { title: "What is measured and what is hidden", lines: this.model.structures[keyOf(settings)].formulas };
   }

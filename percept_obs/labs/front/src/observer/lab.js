@@ -1,14 +1,15 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
+import { chartInWords } from "../common/chart_parts.js";
 import { TimeChart } from "../common/charts.js";
 import { ImagePlane } from "../common/image_plane.js";
 import { build } from "../common/layout.js";
 import { Live } from "../common/live.js";
 import { linearScale } from "../common/scales.js";
-import { chartInWords, readingAt, summaryOf, verdict } from "../common/words.js";
+import { readingAt, summaryOf, verdict } from "../common/words.js";
 import { pythonOf } from "./code.js";
 import { Engine, translationTowards } from "./engine.js";
-import { ObserverFormulas } from "./formula.js";
+import { Formulas } from "./formula.js";
 import { Kernels } from "./kernels.js";
 import { Panel } from "./panel.js";
 import { chartOf, LABELS } from "./pictures.js";
@@ -34,7 +35,7 @@ export class ObserverLab extends Live {
     this.charts = Object.fromEntries(this.model.pictures.map((name) => [name, new TimeChart(name, LABELS[name])]));
     this.planes = [this.plane];
     this.figures = [this.plane, ...Object.values(this.charts)];
-    this.formulas = new ObserverFormulas(this.model);
+    this.formulas = new Formulas(this.model);
     this.panel = new Panel(this.model, this);
     this.view = build(this, place, PRESETS);
     this.open();

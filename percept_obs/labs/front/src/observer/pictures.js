@@ -1,7 +1,8 @@
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
+import { decades, line } from "../common/chart_parts.js";
 import { DASHES, KEPT, SOLID } from "../common/lines.js";
-import { around, decades, line, linesOf, marksOf } from "../common/plots.js";
+import { around, linesOf, marksOf } from "../common/plots.js";
 import { readable } from "../common/scales.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };

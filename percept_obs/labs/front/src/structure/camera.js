@@ -72,8 +72,11 @@ export class StructureCamera {
     const depth = 1 / (scale * ybar[2]);
     const start = [ybar[0] * depth, ybar[1] * depth, depth];
     const room = (part, length) => memory.room(part, length);
-    const path = (lines) =>
-      move(start, plant, this.velocities(settings, swinging, halves(lines.grid)), lines, room);
+    const path = (lines) => {
+      const place = [motionOf(settings), lines.grid.length, lines.grid.at(-1)];
+      const known = memory.once("velocities", place, () => this.velocities(settings, swinging, halves(lines.grid)));
+      return move(start, plant, known, lines, room);
+    };
     const image = memory.room("image", 3 * count);
     const inFront = project(path(clock), projection, NOTHING, 3, image);
     if (inFront < 2) return { problem: "the point leaves the half-space in front of the camera at once", ...EMPTY };

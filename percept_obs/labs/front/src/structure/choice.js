@@ -1,7 +1,7 @@
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { checkbox, element } from "../common/controls.js";
-import { fillNumbers, putNumbers } from "../common/formula.js";
+import { FormulaSheet } from "../common/formulas.js";
 import { readable } from "../common/scales.js";
 import { isZero, keyOf } from "./kernels.js";
 
@@ -24,6 +24,7 @@ export class ChoiceOfUnknowns {
   constructor(model, lab) {
     Object.assign(this, { model, lab });
     this.shownFor = null;
+    this.determinant = new FormulaSheet();
     this.boxes = GROUPS.map(([title, names]) => [title, names.map((name) => this.box(name))]);
     this.earlier = checkbox({
       name: "earlier",
@@ -112,7 +113,7 @@ export class ChoiceOfUnknowns {
   }
 
   tell(settings, refusal, corollary) {
-    this.numbers = [];
+    this.determinant.clear();
     if (refusal) {
       const head = element("p", {}, element("strong", {}, "Impossible."));
       this.told.replaceChildren(head, element("p", { class: "refused" }, `${refusal[0].toUpperCase()}${refusal.slice(1)}.`));
@@ -127,7 +128,7 @@ export class ChoiceOfUnknowns {
     const numbers = element("div", { class: "line with-numbers" });
     if (choice.square) {
       numbers.innerHTML = `<math displaystyle="true">${choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>")}</math>`;
-      this.numbers = putNumbers(numbers, "");
+      this.determinant.putNumbers(numbers, "");
     }
     this.value = element("span", { class: "value" });
     numbers.append(this.value);
@@ -154,8 +155,7 @@ export class ChoiceOfUnknowns {
   fill({ settings, guard, truth }) {
     const { ybar, scale, w } = settings;
     const at = { d_s: scale, ybar3: truth[2], y1: ybar[0], y2: ybar[1], w1: w[0], w2: w[1], w3: w[2] };
-    const valueOf = ({ letter }) => at[letter] ?? this.velocity(settings, letter);
-    fillNumbers(this.numbers, valueOf);
+    this.determinant.putIn((_, letter) => at[letter] ?? this.velocity(settings, letter));
     const text = ` = ${readable(guard.determinants[0])} at the start`;
     if (this.value.textContent !== text) this.value.textContent = text;
   }

@@ -1,10 +1,10 @@
 // The structure lab's equations.
 
-import { Formulas } from "../common/formula.js";
+import { ObserverFormulas } from "../common/observer_formulas.js";
 import { keyOf } from "./kernels.js";
 
 /** Equations of the choice of unknowns and of the observers. */
-export class StructureFormulas extends Formulas {
+export class StructureFormulas extends ObserverFormulas {
   systemOf(settings) {
     const { formulas } = this.model.choices[keyOf(settings)] ?? { formulas: [] };
     return { title: "What multiplies the unknowns, and what is known", lines: formulas };

@@ -1,12 +1,13 @@
 // The lab of structure and motion: what is known, what can therefore be estimated, and how the estimates converge.
 
 import { settingsAfter } from "../common/acts.js";
+import { chartInWords } from "../common/chart_parts.js";
 import { TimeChart } from "../common/charts.js";
 import { ImagePlane } from "../common/image_plane.js";
 import { build } from "../common/layout.js";
 import { Live } from "../common/live.js";
 import { linearScale } from "../common/scales.js";
-import { chartInWords, summaryOf, verdict } from "../common/words.js";
+import { summaryOf, verdict } from "../common/words.js";
 import { ChoiceOfUnknowns } from "./choice.js";
 import { pythonOf } from "./code.js";
 import { StructureEngine } from "./engine.js";

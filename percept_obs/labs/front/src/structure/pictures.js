@@ -1,7 +1,8 @@
 // What each time chart shows of a run: lines, scale, gaps, and the same in words.
 
+import { decades, line } from "../common/chart_parts.js";
 import { DASHES, KEPT, SOLID } from "../common/lines.js";
-import { around, decades, line, linesOf, marksOf } from "../common/plots.js";
+import { around, linesOf, marksOf } from "../common/plots.js";
 import { readable } from "../common/scales.js";
 
 export const LABELS = {
