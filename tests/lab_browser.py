@@ -116,6 +116,15 @@ def control(name):
     return f"[data-control='{name}']"
 
 
+def end_kernel(page, server, name):
+    """End the kernel of a notebook."""
+    for session in page.request.get("/api/sessions").json():
+        if session["path"] == name:
+            cookie = {c["name"]: c["value"] for c in page.context.cookies()}
+            headers = {"X-XSRFToken": cookie.get("_xsrf", ""), "Referer": server.url}
+            page.request.delete(f"/api/kernels/{session['kernel']['id']}", headers=headers)
+
+
 def drag_by_mouse(page, handle):
     """Drag a handle of the picture a little to the right and up."""
     x, y = centre(page, handle)

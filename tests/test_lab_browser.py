@@ -10,6 +10,7 @@ from lab_browser import (
     drag_by_keys,
     drag_by_mouse,
     drag_by_touch,
+    end_kernel,
     handed_over,
     open_lab,
     rested,
@@ -285,11 +286,7 @@ def test_the_lab_outlives_its_kernel_and_says_so(browser_page, folder, server):
     page = browser_page
     open_lab(page, folder, "dead.ipynb")
     handed_over(page)
-    for session in page.request.get("/api/sessions").json():
-        if session["path"] == "dead.ipynb":
-            cookie = {c["name"]: c["value"] for c in page.context.cookies()}
-            headers = {"X-XSRFToken": cookie.get("_xsrf", ""), "Referer": server.url}
-            page.request.delete(f"/api/kernels/{session['kernel']['id']}", headers=headers)
+    end_kernel(page, server, "dead.ipynb")
     page.fill(control("identifier_based gain number"), "4")
     page.wait_for_selector(".silence:not([hidden])")
     assert "Python does not answer" in page.inner_text(".silence")

@@ -14,6 +14,7 @@ from lab_browser import (
     drag_by_keys,
     drag_by_mouse,
     drag_by_touch,
+    end_kernel,
     handed_over,
     open_lab,
     reached_by_keyboard,
@@ -41,10 +42,15 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def lab(chromium, folder, tmp_path_factory):
+def server(folder, tmp_path_factory):
+    with jupyterlab(folder, tmp_path_factory.mktemp("server")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def lab(chromium, server, folder, tmp_path_factory):
     """A page with one lab that the tests of this module share."""
-    homes = [tmp_path_factory.mktemp(name) for name in ("server", "browser")]
-    with jupyterlab(folder, homes[0]) as server, lab_page(chromium, server, homes[1]) as page:
+    with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
         page.set_default_timeout(15_000)
         open_lab(page, folder, lab="structure_lab")
         handed_over(page)
@@ -111,7 +117,7 @@ def test_fewer_unknowns_are_solved_by_least_squares(fresh):
     assert_is_python(shown)
 
 
-@pytest.mark.parametrize("number", [2, 3, 5, 6])
+@pytest.mark.parametrize("number", [3, 5])
 def test_a_corollary_is_one_click(fresh, number):
     fresh.click(control(f"corollary {number}"))
     rested(fresh)
@@ -212,7 +218,7 @@ def test_axe_finds_nothing_serious(fresh):
     assert serious_violations(fresh) == []
 
 
-@pytest.mark.parametrize("width", [400, 800, 1200])
+@pytest.mark.parametrize("width", [400, 800])
 def test_the_lab_fits_its_cell(fresh, width):
     fresh.evaluate(WIDTH, f"{width}px")
     fresh.wait_for_timeout(200)
@@ -249,7 +255,7 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder
     assert not log_entries(fresh)
 
 
-def test_two_labs_of_two_kinds_live_side_by_side(lab, folder):
+def test_two_labs_of_two_kinds_live_side_by_side_and_outlive_their_kernel(lab, folder, server):
     second = "from percept_obs.labs.observer_lab import observer_lab\nobserver_lab()"
     write_notebook(folder, "two.ipynb", OPEN.replace("observer_lab", "structure_lab").format(arguments=""), second)
     open_notebook(lab, "two.ipynb")
@@ -261,3 +267,10 @@ def test_two_labs_of_two_kinds_live_side_by_side(lab, folder):
     assert state(lab, 0) == first
     assert state(lab, 1)["settings"] == {**other["settings"], "seed": 9}
     assert np.isfinite(first["runs"]["ideal"][-1])
+    whole = "() => { const [l] = window.perceptObsLabs; return l.kernels.whole.size === l.widget.get('parts').length; }"
+    lab.wait_for_function(whole)
+    end_kernel(lab, server, "two.ipynb")
+    lab.click(control("corollary 6"))
+    lab.wait_for_selector(".silence:not([hidden])")
+    lab.wait_for_function("[...window.perceptObsLabs][0].shown.settings === [...window.perceptObsLabs][0].settings")
+    assert_is_python(state(lab, 0))
