@@ -81,6 +81,7 @@ def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains:
         noise that it passes on, does not grow with time; Theorem 1 asks it to be positive.
     largest_amplification : float
         c_max; where recovering x2 from ghat would amplify an error more than this, there is no estimate.  Default 1e5.
+        The start counts no more once it has shrunk by as much.
     reaching_gain : float
         k2, positive.  Default 1; not for the ideal switch.
     boundary_layer : float
@@ -89,7 +90,8 @@ def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains:
     Returns
     -------
     Observer
-        It starts from estimates of the measured outputs only.
+        It starts from estimates of the measured outputs only, and gives none of the hidden coordinates while what is
+        left of that start in ghat may be half of them.
 
     Raises
     ------

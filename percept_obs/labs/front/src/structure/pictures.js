@@ -31,9 +31,19 @@ const MEASURED = ["image", "depth"];
 
 /** The parts of one chart. */
 export function chartOf(name, shown, ghost, theme) {
-  const spans = shown.runs.flatMap((run) => run.gaps);
+  const spans = united(shown.runs.flatMap((run) => run.gaps));
   const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];
   return { spans, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
+}
+
+/** Spans of time without overlaps, so that none is shaded twice. */
+function united(spans) {
+  const found = [];
+  for (const [begin, end] of spans.toSorted((one, other) => one[0] - other[0])) {
+    if (found.length && begin <= found.at(-1)[1]) found.at(-1)[1] = Math.max(end, found.at(-1)[1]);
+    else found.push([begin, end]);
+  }
+  return found;
 }
 
 /** How far around a quantity its chart reaches at least, in m/s or 1/m. */
