@@ -114,7 +114,7 @@ export function build(lab, place, presets) {
     element(
       "div",
       { class: "stage" },
-      element("div", { class: "left" }, ...lab.planes.map((plane) => plane.figure)),
+      element("div", { class: "left" }, ...(lab.planes ?? [lab.plane]).map((plane) => plane.figure)),
       element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
       element("div", { class: "words" }, verdicts, why),
     ),

@@ -33,7 +33,6 @@ export class ObserverLab extends Live {
       onRest: () => this.rest(),
     });
     this.charts = Object.fromEntries(this.model.pictures.map((name) => [name, new TimeChart(name, LABELS[name])]));
-    this.planes = [this.plane];
     this.figures = [this.plane, ...Object.values(this.charts)];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this.model, this);
