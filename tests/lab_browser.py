@@ -159,6 +159,7 @@ def reached_by_keyboard(page, first):
     AssertionError
         If one that can be seen and is enabled is left out.
     """
+    open_groups_by_keyboard(page)
     wanted = set(
         page.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
             .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
@@ -189,6 +190,8 @@ def assert_moved_by_keyboard(page, names):
         kind = page.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
         if kind not in there_and_back:
             continue
+        # Dropping an observer and choosing it again among many closes its gains.
+        open_groups_by_keyboard(page)
         before = value_of(page, name)
         page.focus(control(name))
         moved = False
@@ -198,6 +201,17 @@ def assert_moved_by_keyboard(page, names):
         if kind == "select-one":
             page.select_option(control(name), before[0])
         assert moved, name
+
+
+def open_groups_by_keyboard(page):
+    """Open the gains of all chosen observers, as somebody without a mouse would."""
+    closed = (
+        "[...document.querySelectorAll('.gains-of:not([open]):not([hidden]) summary')].map((s) => s.dataset.control)"
+    )
+    for name in page.evaluate(closed):
+        page.focus(control(name))
+        page.keyboard.press("Enter")
+    assert page.evaluate(closed) == []
 
 
 def value_of(page, name):
