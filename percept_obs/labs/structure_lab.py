@@ -6,7 +6,7 @@ import json
 import warnings
 from collections.abc import Callable
 from functools import lru_cache, partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -61,9 +61,6 @@ RANGES = {
 VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
-
-WORTH_COMPILING = 20_000
-"""From how many steps on: below, each choice would be compiled for longer than it runs."""
 
 PRINTING = Printing("percept_obs.labs.choices")
 
@@ -206,16 +203,11 @@ def runs(settings: Settings) -> dict[str, Run]:
     choice = choice_of(settings)
     recording = _recorded(settings, choice)
     start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
-    language: Literal["python"] | None = "python" if _steps(settings) <= WORTH_COMPILING else None
     found = {}
     for name in settings["observers"]:
         observer = OBSERVERS[name][1](choice.form).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language=language)
+        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"])
     return found
-
-
-def _steps(settings: Settings) -> float:
-    return float(settings["duration"] / min(settings["period"], settings["step"]))
 
 
 def motion_of(settings: Settings) -> Motion:
@@ -337,7 +329,7 @@ def _check_numbers(settings: Settings) -> None:
         number({f"noise {size}": settings["noise"].get(size)}, f"noise {size}", 0, 1)
     for key, (low, high) in RANGES.items():
         number(settings, key, low, high)
-    steps = _steps(settings)
+    steps = settings["duration"] / min(settings["period"], settings["step"])
     if steps > MOST_STEPS:
         raise ValueError(f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps")
     whole_number(settings)
