@@ -177,6 +177,7 @@ def test_several_observers_stand_side_by_side(fresh):
     )
     for start in starts:
         assert any(label.startswith(start) for label in shown["labels"]), start
+    assert "one gain for all unknowns" in fresh.inner_text(".why")
     assert_is_python(shown)
 
 

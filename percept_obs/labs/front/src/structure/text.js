@@ -3,6 +3,8 @@
 import { sampleAt } from "../common/image_frame.js";
 import { readable, short } from "../common/scales.js";
 
+const ONE_GAIN = ["identifier_based", "de_luca"];
+
 /** Why: what the settings have to do with it. */
 export function reasons(shown, model) {
   if (shown.problem) return [shown.problem];
@@ -21,6 +23,12 @@ export function reasons(shown, model) {
   for (const run of shown.runs) if (run.divergedAt === null) found.push(endOf(run, shown));
   if (choice.unknown.includes("d_s") && settings.noise.size + settings.noise.depth > 0) {
     found.push(`An error of the rate is amplified up to ${readable(mostOf(shown), 2)} times, about 1/ȳ3², and noise with it.`);
+  }
+  if (choice.unknown.includes("d_s") && shown.runs.some(({ name }) => ONE_GAIN.includes(name))) {
+    found.push(
+      "The identifier-based observer and De Luca's have one gain for all unknowns, but the columns of Ωg differ in size " +
+        "by a factor of ȳ3, so that d_s hardly moves.",
+    );
   }
   if (settings.bias !== 0 || settings.drift !== 0) {
     found.push("ȳ3 is measured with a bias or a drift. No observer can know it: it becomes an error of θ.");
