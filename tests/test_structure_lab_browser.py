@@ -32,6 +32,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
 START = control("ybar")
+SECOND = "structure_lab(unknown=['v_p1', 'v_p2', 'v_p3'])"
 TOLD = ".unknowns .told"
 COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
@@ -256,9 +257,8 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder
     assert not log_entries(fresh)
 
 
-def test_two_labs_of_two_kinds_live_side_by_side_and_outlive_their_kernel(lab, folder, server):
-    second = "from percept_obs.labs.observer_lab import observer_lab\nobserver_lab()"
-    write_notebook(folder, "two.ipynb", OPEN.replace("observer_lab", "structure_lab").format(arguments=""), second)
+def test_two_labs_live_side_by_side_and_outlive_their_kernel(lab, folder, server):
+    write_notebook(folder, "two.ipynb", OPEN.replace("observer_lab", "structure_lab").format(arguments=""), SECOND)
     open_notebook(lab, "two.ipynb")
     run_all(lab)
     rested(lab)
