@@ -15,8 +15,8 @@ PACKAGE = Path(percept_obs.__file__).parent
 LAYERS = (
     ("cli",),
     ("labs",),
-    ("labs.analysis", "labs.tracks"),
-    ("labs.structures",),
+    ("labs.analysis", "labs.points_words", "labs.tracks"),
+    ("labs.points_model", "labs.structures"),
     ("labs.lecture",),
     ("labs.checks", "labs.markup", "labs.printing"),
     ("figures", "exercises"),
@@ -34,7 +34,7 @@ LAYERS = (
     ("recovery",),
     ("forms", "points.form", "points.weights"),
     ("points.block", "points.directions"),
-    ("motion", "surfaces", "pixels"),
+    ("motion", "surfaces", "pixels", "points.manoeuvre"),
     ("compile",),
     ("equations", "derivation", "switching", "views"),
 )
