@@ -22,7 +22,7 @@ BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monoton
 
 DRAG = """(seconds) => new Promise((resolve) => {
     const [lab] = window.perceptObsLabs;
-    const { handle } = lab.plane;
+    const handle = document.querySelector("[data-control=foe]");
     const box = handle.getBoundingClientRect();
     const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
     const tell = (type, k) => handle.dispatchEvent(new PointerEvent(type, {

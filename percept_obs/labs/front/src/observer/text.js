@@ -1,7 +1,7 @@
 // What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
 
 import { readable, short } from "../common/scales.js";
-import { sampleAt } from "./image_plane.js";
+import { sampleAt } from "../common/image_frame.js";
 import { TOLERANCE } from "./measures.js";
 
 const UNEXCITED = 1e-4;
