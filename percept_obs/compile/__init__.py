@@ -1,7 +1,7 @@
 """From sympy to code that runs, in Python, numba and JavaScript."""
 
 from percept_obs.compile.base import LARGEST_PRODUCT, LARGEST_SQUARED_STATE, NotCompilable, source
-from percept_obs.compile.functions import function_source, right_hand_side, scalar_function, vectorised
+from percept_obs.compile.functions import function_source, right_hand_side, vectorised
 from percept_obs.compile.kernels import WORTH_COMPILING, Table, Trace, solve
 
 __all__ = [
@@ -13,7 +13,6 @@ __all__ = [
     "Trace",
     "function_source",
     "right_hand_side",
-    "scalar_function",
     "solve",
     "source",
     "vectorised",

@@ -39,11 +39,6 @@ def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, 
     return sp.lambdify(symbols, expressions, "numpy", cse=True)
 
 
-def scalar_function(symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr]) -> Callable[..., list[float]]:
-    """A function of numbers that gives a list of numbers; called for one time after the other it is the quickest."""
-    return sp.lambdify(symbols, list(expressions), "math", cse=True)
-
-
 def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
     """The flow as a function of (state, measured, parameters) with the given numbers put in.
 

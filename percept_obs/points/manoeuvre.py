@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
-from percept_obs.compile import scalar_function
+from percept_obs.motion import TIME as t
 
-Array = NDArray[np.float64]
-Vector = tuple[sp.Expr, ...]
+Vectors = tuple[tuple[sp.Expr, ...], ...]
 
-TIME = t = sp.Symbol("t", real=True)
 TURNING = (sp.sin(3 * t / 10) / 5, 3 * sp.cos(2 * t / 5) / 10, sp.Rational(1, 2))
 """w(t) in rad/s, by which W = [w]x turns resting points in the camera's axes."""
 PATH = (3 * sp.sin(t) / 2, 6 * sp.cos(7 * t / 10) / 5, sp.Rational(5, 2) + sp.sin(t / 2) / 2)
@@ -23,32 +18,22 @@ PATH = (3 * sp.sin(t) / 2, 6 * sp.cos(7 * t / 10) / 5, sp.Rational(5, 2) + sp.si
 SPIN = (sp.sin(t) / 2, 2 * sp.cos(t) / 5, sp.Rational(3, 10))
 """Angular velocity of the body in the world, in rad/s."""
 
-PARTS = sp.symbols("turning spin input v1:4", real=True)
+SHARES = sp.symbols("turning spin input v1:4", real=True)
 """What a manoeuvre takes of each, and a constant velocity in m/s."""
 
 
 @lru_cache(maxsize=1)
-def velocities() -> dict[str, Vector]:
-    """Velocities of camera and body, in the camera's axes, as functions of `TIME` and `PARTS`."""
-    turning, spin, size, *constant = PARTS
-    w = turning * sp.Matrix(TURNING)
-    path = sp.Matrix(PATH)
-    input = size * (path.diff(TIME) - w.cross(path)) + sp.Matrix(constant)
-    return {
-        "camera_angular_velocity": tuple(-w),
-        "camera_velocity": tuple(-input),
-        "body_angular_velocity": tuple(spin * sp.Matrix(SPIN)),
-    }
-
-
-@lru_cache(maxsize=1)
-def _functions() -> dict[str, Callable[..., list[float]]]:
-    return {name: scalar_function((TIME, *PARTS), vector) for name, vector in velocities().items()}
+def velocities() -> Vectors:
+    """The camera's angular velocity and velocity and the body's angular velocity, in `TIME` and `SHARES`."""
+    turning, spin, size, *constant = SHARES
+    w, path = turning * sp.Matrix(TURNING), sp.Matrix(PATH)
+    v = size * (path.diff(t) - w.cross(path)) + sp.Matrix(constant)
+    return tuple(-w), tuple(-v), tuple(spin * sp.Matrix(SPIN))
 
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """A camera and a body in motion, with all points kept in view; its methods are what `rigid_body` takes.
+    """A camera and a body in motion, with all points kept in view.
 
     Parameters
     ----------
@@ -67,17 +52,10 @@ class Manoeuvre:
     input: float = 1.0
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def camera_angular_velocity(self, time: float) -> Array:
-        """Angular velocity of the camera at a time, in rad/s."""
-        return self._at("camera_angular_velocity", time)
-
-    def camera_velocity(self, time: float) -> Array:
-        """Velocity of the camera at a time, in m/s."""
-        return self._at("camera_velocity", time)
-
-    def body_angular_velocity(self, time: float) -> Array:
-        """Angular velocity of the body at a time, in rad/s."""
-        return self._at("body_angular_velocity", time)
-
-    def _at(self, name: str, time: float) -> Array:
-        return np.array(_functions()[name](time, self.turning, self.spin, self.input, *self.velocity))
+    @property
+    def velocities(self) -> list[tuple[sp.Expr, ...]]:
+        """As `rigid_body` takes them: of the camera, angular and not, and the body's angular one, as functions of t."""
+        numbers = (self.turning, self.spin, self.input, *self.velocity)
+        # a whole number as one, so that what is 0 or 1 leaves no trace in the formulas
+        shares = {symbol: int(x) if x == int(x) else x for symbol, x in zip(SHARES, numbers, strict=True)}
+        return [tuple(entry.subs(shares) for entry in vector) for vector in velocities()]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from percept_obs.motion import linear
+from percept_obs.motion import TIME, linear
 from percept_obs.points.bodies import rigid_body
 from percept_obs.points.form import PointsForm
-from percept_obs.points.manoeuvre import PATH, TIME, Manoeuvre
+from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.points.recording import PointsScenario
 
 OFFSET = (0.5, -0.3, 0.4)
@@ -20,8 +20,8 @@ def moving_body(points: int = 1) -> PointsScenario:
     The camera moves as in `Manoeuvre`, whose path the first point follows.  The second one is at `OFFSET` from it;
     further ones are drawn at random, always the same, from a cube of 1 m around it.
     """
-    manoeuvre = Manoeuvre()
-    form = rigid_body(points, manoeuvre.camera_angular_velocity, manoeuvre.camera_velocity)
+    camera_turns, camera_moves, body_turns = Manoeuvre().velocities
+    form = rigid_body(points, camera_turns, camera_moves, body_turns)
     drawn = np.random.default_rng(0).uniform(-0.5, 0.5, 3 * max(points - 2, 0))
     begin = [float(place.subs(TIME, 0)) for place in PATH]
     state = [*begin, *OFFSET, *drawn][: 3 * points]

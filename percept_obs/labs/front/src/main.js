@@ -5,8 +5,9 @@
 // layout, modules made from printed texts, and the line to Python are in common/ and know nothing of observers.
 
 import { ObserverLab } from "./observer/lab.js";
+import { PointsLab } from "./points/lab.js";
 
-const LABS = { observer_lab: ObserverLab };
+const LABS = { observer_lab: ObserverLab, points_lab: PointsLab };
 
 export default {
   render({ model, el }) {

@@ -4,14 +4,24 @@
 export function short(value, digits = 3) {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
   if (value === 0) return Object.is(value, -0) ? "-0" : "0";
-  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  const [mantissa, exponent] = rounded(value, digits).split("e");
   const power = Number(exponent);
   if (power < -4 || power >= digits) {
     const bare = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
     return `${bare}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
   }
-  const plain = value.toFixed(Math.max(0, digits - 1 - power));
+  const plain = Number(`${mantissa}e${power}`).toFixed(Math.max(0, digits - 1 - power));
   return plain.includes(".") ? plain.replace(/\.?0+$/, "") : plain;
+}
+
+/** As toExponential, but for a number halfway between two, which goes to the even digit as in Python. */
+function rounded(value, digits) {
+  const [mantissa, power] = value.toExponential(60).split("e");
+  const sign = value < 0 ? "-" : "";
+  const all = mantissa.replace(/[-.]/g, "");
+  const head = all.slice(0, digits);
+  if (!/^50*$/.test(all.slice(digits)) || Number(head.at(-1)) % 2) return value.toExponential(digits - 1);
+  return `${sign}${head[0]}${digits > 1 ? `.${head.slice(1)}` : ""}e${power}`;
 }
 
 /** A number for people: a true minus sign, no padded exponent; what is not there is none. */

@@ -1,5 +1,7 @@
 // What an observer may know at the start, the middle and the end of every step, laid out once; see tracking.py.
 
+const PLANT_STEP = 0.005;
+
 /** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
 export function stepGrid(times, longest) {
   const index = new Int32Array(times.length);
@@ -23,6 +25,25 @@ export function differences(grid) {
   const steps = new Float64Array(grid.length - 1);
   for (let k = 0; k < steps.length; k++) steps[k] = grid[k + 1] - grid[k];
   return steps;
+}
+
+/** A grid of steps with their lengths. */
+export function withSteps({ grid, index }) {
+  return { grid, index, steps: differences(grid) };
+}
+
+/** The steps in which the truth moves: from time 0 on, with an end at each of the times; the first is time 0. */
+export function plantGrid(times) {
+  const from = new Float64Array(times.length + 1);
+  from.set(times, 1);
+  return withSteps(stepGrid(from, PLANT_STEP));
+}
+
+/** Times of samples, a period apart. */
+export function sampleTimes(period, duration) {
+  const time = new Float64Array(Math.floor(duration / period + 1e-9) + 1);
+  for (let k = 0; k < time.length; k++) time[k] = period * k;
+  return time;
 }
 
 /** The grid with the middles of its steps put between. */

@@ -1,9 +1,8 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { draws } from "../common/random.js";
-import { column, differences, stepGrid } from "../common/tables.js";
+import { column, plantGrid, sampleTimes } from "../common/tables.js";
 
-const PLANT_STEP = 0.005;
 const NOTHING = new Float64Array(0);
 
 /** Records settings; keeps in `memory` the parts that the next settings do not change. */
@@ -34,15 +33,14 @@ export class Camera {
   see(settings, kernels, chart) {
     const { memory } = this;
     const { period, duration } = settings;
-    const count = Math.floor(duration / period + 1e-9) + 1;
     const motion = constantMotion(settings.A, settings.b);
     const shape = shapeOf(settings);
     const width = chart.coordinates.length;
     const clock = memory.once("clock", [period, duration], () => {
-      const time = new Float64Array(count);
-      for (let k = 0; k < count; k++) time[k] = period * k;
+      const time = sampleTimes(period, duration);
       return { time, ...plantGrid(time) };
     });
+    const count = clock.time.length;
     const truth = memory.room("truth", count * width);
     const room = (part, length) => memory.room(part, length);
     const inFront = project(move(settings, kernels, motion, clock, room), kernels, shape, width, truth);
@@ -87,17 +85,6 @@ function move(settings, kernels, motion, { index, steps }, room) {
     for (let c = 0; c < 3; c++) points[3 * k - 3 + c] = states[3 * index[k] + c];
   }
   return points;
-}
-
-/** The steps in which the point moves: from time 0 on, with an end at each of the times. */
-function plantGrid(times) {
-  const from = new Float64Array(times.length + 1);
-  from.set(times, 1);
-  return withSteps(stepGrid(from, PLANT_STEP));
-}
-
-export function withSteps({ grid, index }) {
-  return { grid, index, steps: differences(grid) };
 }
 
 /** Fill in coordinates of points; returns how many of them are in front of the camera from the first on. */

@@ -1,8 +1,8 @@
 // The whole of a run: point, camera, observers. The same numbers as record() and track() in Python.
 
 import { lazily, Memory } from "../common/memory.js";
-import { arriving, column, halves, held, known, knownAt, lastSamples, stepGrid } from "../common/tables.js";
-import { Camera, constantMotion, shapeOf, withSteps } from "./camera.js";
+import { arriving, column, halves, held, known, knownAt, lastSamples, stepGrid, withSteps } from "../common/tables.js";
+import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf, switchOf } from "./kernels.js";
 import { hiddenError, settlingTime, windowed } from "./measures.js";
 

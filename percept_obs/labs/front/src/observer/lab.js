@@ -1,5 +1,6 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
+import { chartInWords } from "../common/chart_parts.js";
 import { TimeChart } from "../common/charts.js";
 import { build } from "../common/layout.js";
 import { Live } from "../common/live.js";
@@ -12,7 +13,7 @@ import { Kernels } from "./kernels.js";
 import { Panel } from "./panel.js";
 import { chartOf, LABELS } from "./pictures.js";
 import { PRESETS, settingsOf } from "./presets.js";
-import { chartInWords, imagePlaneInWords, readingAt, reasons, summaryOf, verdict } from "./text.js";
+import { imagePlaneInWords, readingAt, reasons, summaryOf, verdict } from "./text.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 

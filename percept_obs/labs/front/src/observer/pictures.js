@@ -1,7 +1,8 @@
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
+import { decades, line, rangeAround } from "../common/chart_parts.js";
 import { DASHES, KEPT, SOLID } from "../common/lines.js";
-import { linearScale, logScale, readable, spread } from "../common/scales.js";
+import { readable } from "../common/scales.js";
 import { TOLERANCE } from "./measures.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
@@ -65,10 +66,6 @@ const BUILD = {
   },
 };
 
-function line(name, time, values, colour, dash) {
-  return { name, time, values, colour, dash };
-}
-
 /** Lines of the kept run, the truth and the runs, by what is picked of each. */
 function linesOf(shown, ghost, theme, label, pick) {
   const lines = (ghost?.runs ?? []).map((run) =>
@@ -96,30 +93,8 @@ function marksOf(shown, theme) {
   return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
 }
 
-/** A range around the truth that lets an estimate leave it by as much as the truth is high, and no further. */
+/** A range around the truth, or where there is none around the samples. */
 function around(lines, shown) {
-  const certain = lines.filter((l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled")));
-  const bounds = lines.map((l) => [l, spread(l.values)]).filter(([, b]) => b);
-  const sure = bounds.filter(([l]) => certain.includes(l)).map(([, b]) => b);
-  const all = bounds.map(([, b]) => b);
-  if (!all.length) return linearScale(0, 1);
-  let [low, high] = hull(sure.length ? sure : all);
-  if (sure.length) {
-    const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
-    const [least, most] = hull(all);
-    [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
-  }
-  return linearScale(low, high, 3);
-}
-
-function hull(bounds) {
-  return [Math.min(...bounds.map(([low]) => low)), Math.max(...bounds.map(([, high]) => high))];
-}
-
-function decades(lines, least, most) {
-  const positive = lines.map((l) => spread(l.values, { above: 0 })).filter(Boolean);
-  if (!positive.length) return logScale(1e-3, 1);
-  const [low, high] = hull(positive);
-  const top = Math.min(Math.max(high, least * 10), most);
-  return logScale(Math.min(Math.max(low, least), top / 10), top);
+  const certain = (l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled"));
+  return rangeAround(lines, lines.filter(certain));
 }

@@ -96,19 +96,6 @@ export function imagePlaneInWords(shown) {
   return `${parts.join("; ")}.`;
 }
 
-/** The text equivalent of a chart: where each line begins and ends, and between what it stays. */
-export function chartInWords({ title, lines }) {
-  const parts = lines.map(({ name, values }) => {
-    const finite = values.filter(Number.isFinite);
-    if (!finite.length) return `${name}: nothing to show`;
-    const least = finite.reduce((a, b) => Math.min(a, b));
-    const most = finite.reduce((a, b) => Math.max(a, b));
-    const [first, last] = [finite[0], finite.at(-1)];
-    return `${name}: from ${readable(first)} to ${readable(last)}, between ${readable(least)} and ${readable(most)}`;
-  });
-  return `${title}. ${parts.join("; ")}.`;
-}
-
 /** The values under the cursor. */
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);

@@ -1,0 +1,66 @@
+// What each time chart shows of a run: lines, scale, bars where a point is not seen.
+
+import { decades, line, rangeAround } from "../common/chart_parts.js";
+import { BOUND, DASHES, FIT, KEPT, SOLID } from "../common/lines.js";
+import { readable } from "../common/scales.js";
+
+export const LABELS = {
+  error: "Norm of the error over time",
+  depth: "Depth of each point over time",
+  points: "Error of each point over time",
+  gramian: "Smallest eigenvalue of the Gramian over time",
+};
+
+/** The parts of one chart. */
+export function chartOf(name, shown, ghost, theme, more) {
+  return { ...BUILD[name](shown, ghost, theme, more), bars: name === "gramian" ? [] : barsOf(shown, theme) };
+}
+
+const BUILD = {
+  error({ time, size, fit }, ghost, theme, { bound }) {
+    const lines = [line("error", time, size, theme.ink, SOLID)];
+    if (ghost) lines.unshift(line("kept error", ghost.time, ghost.size, theme.kept, KEPT));
+    const end = time.at(-1);
+    if (fit) {
+      const ends = [fit.begin, end];
+      const values = ends.map((t) => Math.exp(fit.level - fit.rate * t));
+      lines.push(line("fitted decay", ends, values, theme.lines[1], FIT));
+    }
+    if (bound !== null) {
+      lines.push(line("guaranteed decay", [0, end], [size[0], size[0] * Math.exp(-bound * end)], theme.lines[2], BOUND));
+    }
+    return { title: "Error |ρ|, all of the state", lines, scale: decades(lines, 1e-8, 1e6) };
+  },
+  depth(shown, ghost, theme) {
+    const { time, points } = shown;
+    const lines = [];
+    const each = (make) => Array.from({ length: points }, (_, k) => lines.push(make(k)));
+    for (let k = 0; ghost && k < ghost.points; k++) {
+      lines.push(line(`kept depth of point ${k + 1}`, ghost.time, ghost.depth(k), theme.kept, KEPT));
+    }
+    each((k) => line(`true depth of point ${k + 1}`, time, shown.trueDepth(k), theme.lines[k], SOLID));
+    each((k) => line(`depth of point ${k + 1}`, time, shown.depth(k), theme.lines[k], DASHES[k]));
+    const certain = lines.filter(({ name }) => name.startsWith("true"));
+    return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
+  },
+  points({ time, offs }, ghost, theme) {
+    const lines = offs.map((off, k) => line(`error of point ${k + 1}`, time, off, theme.lines[k], DASHES[k]));
+    ghost?.offs.forEach((off, k) => lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, off, theme.kept, KEPT)));
+    return { title: "Error of each point in m", lines, scale: decades(lines, 1e-8, 1e6) };
+  },
+  gramian({ gramian }, ghost, theme, { unseen }) {
+    const { time, smallest, largest, window } = gramian;
+    const limit = largest.map((value) => unseen * value);
+    const lines = [
+      line("smallest eigenvalue", time, smallest, theme.ink, SOLID),
+      line("limit of what is seen", time, limit, theme.warning, BOUND),
+    ];
+    if (ghost) lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, ghost.gramian.smallest, theme.kept, KEPT));
+    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s, and below which none is seen`;
+    return { title, lines, scale: decades(lines, 1e-9, 1e6) };
+  },
+};
+
+function barsOf({ hiddenSpans }, theme) {
+  return hiddenSpans.flatMap((spans, k) => spans.map(({ begin, end }) => ({ begin, end, colour: theme.lines[k] })));
+}
