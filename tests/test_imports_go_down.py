@@ -33,8 +33,8 @@ LAYERS = (
     ("observers", "perspective", "points.bodies", "points.kernel"),
     ("recovery",),
     ("forms", "points.form", "points.weights"),
-    ("points.block", "points.directions"),
-    ("motion", "surfaces", "pixels", "points.manoeuvre"),
+    ("points.block", "points.directions", "points.manoeuvre"),
+    ("motion", "surfaces", "pixels"),
     ("compile",),
     ("equations", "derivation", "switching", "views"),
 )

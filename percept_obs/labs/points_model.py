@@ -21,6 +21,9 @@ from percept_obs.surfaces import pinhole
 Texts = dict[str, Any]
 
 MOST_POINTS = 8
+LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("spin", "beta"), ("input", "gamma"))}
+"""Letters of a manoeuvre's shares in the equations."""
+
 SURFACE = pinhole()
 
 
@@ -63,6 +66,7 @@ def model_for_the_page() -> Texts:
         "block": {"N": _numbers(block.N), "l": _numbers(block.l)[0]},
         "locate": function_source((*SURFACE.image_coordinates, distance), place),
         "equations": _equations(),
+        "letters": {symbol.name: markup(LETTERS.get(symbol.name, symbol)) for symbol in SHARES},
         "mostPoints": MOST_POINTS,
     }
 
@@ -95,43 +99,58 @@ def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:
 
 
 def _equations() -> list[Texts]:
-    """The observer, what is known of the motion, and the bookkeeping of P, as MathML."""
+    """The observer, its error, the bookkeeping of P, and what is known of the motion, as MathML."""
     n, m = sp.symbols("n m", integer=True, positive=True)
-    x, v, e = (sp.MatrixSymbol(name, size, 1) for name, size in (("xhat", n), ("v", n), ("e", m)))
-    A, P, start = (sp.MatrixSymbol(name, n, n) for name in ("A", "P", "P_0"))
-    B, C, S = sp.MatrixSymbol("B", m, m), sp.MatrixSymbol("C", m, n), sp.MatrixSymbol("S", n, n)
-    rho, forgetting, decrease = sp.MatrixSymbol("rho", n, 1), sp.Symbol("lambda"), sp.Symbol("q")
-    letters = {"forgetting": forgetting, "decrease": decrease}
-    turning, spin, size, *constant = SHARES
-    shares = dict(zip(("turning", "spin", "input"), (turning, spin, size), strict=True))
-    block = point_block(SURFACE)
-    path, w = sp.Matrix(PATH), sp.Symbol("w")
-    known = [
-        formula(w, sp.MatMul(turning, sp.Matrix(TURNING), evaluate=False), shares),
-        formula(sp.Symbol("r"), path),
-        row(formula(sp.Symbol("v"), _input(size)), "+", markup(sp.Matrix(constant))),
-        formula(sp.Symbol("w_b"), sp.MatMul(spin, sp.Matrix(SPIN), evaluate=False), shares),
+    x, v, e, rho = (sp.MatrixSymbol(name, size, 1) for name, size in (("xhat", n), ("v", n), ("e", m), ("rho", n)))
+    A, P, P0, S = (sp.MatrixSymbol(name, n, n) for name in ("A", "P", "P_0", "S"))
+    B, C = sp.MatrixSymbol("B", m, m), sp.MatrixSymbol("C", m, n)
+    forgetting, decrease = sp.symbols("lambda q", positive=True)
+    kept = {"forgetting": forgetting, "decrease": decrease}
+    K = P.I * C.T * B.T
+    block, xi = point_block(SURFACE), sp.Matrix(sp.symbols("xihat1:4", real=True))
+    innovation = sp.Matrix(block.y) * (block.l * xi)[0] - block.N * xi
+    observer = [
+        formula(dotted(x), A * x + v + K * e),
+        row("for each point", formula(sp.Symbol("B_k"), block.B), ",", formula(sp.Symbol("e_k"), innovation)),
+    ]
+    computed = [
+        row("Lyapunov", formula(dotted(P), -A.T * P - P * A - decrease * sp.Identity(n), kept)),
+        row("Riccati", formula(dotted(P), -A.T * P - P * A + S - forgetting * (P - P0), kept)),
     ]
     return [
-        {
-            "title": "The observer",
-            "lines": [
-                formula(dotted(x), A * x + v + P.I * C.T * B.T * e),
-                row("point by point", formula(sp.Symbol("B_k"), block.B)),
-                row("without a division", formula(sp.Symbol("e_k"), sp.Matrix(block.y) * sp.Symbol("xi_3"))),
-            ],
-        },
-        {"title": "Its error", "lines": [formula(dotted(rho), (A - P.I * C.T * B.T * B * C) * rho)]},
-        {
-            "title": "P, where it is computed",
-            "lines": [
-                row("Lyapunov", formula(dotted(P), -A.T * P - P * A - decrease * sp.Identity(n), letters)),
-                row("Riccati", formula(dotted(P), -A.T * P - P * A + S - forgetting * (P - start), letters)),
-            ],
-        },
-        {"title": "What is known of the motion", "lines": known},
+        {"title": "The observer", "lines": observer},
+        {"title": "Its error", "lines": [formula(dotted(rho), A * rho - K * B * C * rho)]},
+        {"title": "P, where it is computed", "lines": computed},
+        {"title": "The motion of camera and body", "lines": _motion_in_lines()},
     ]
 
 
-def _input(size: sp.Symbol) -> sp.Expr:
-    return size * (sp.Symbol("rdot") - sp.Symbol("W") * sp.Symbol("r"))
+def _motion_in_lines() -> list[str]:
+    """What camera and body are known to do, with a letter for each share."""
+    letters = {symbol.name: LETTERS.get(symbol.name, symbol) for symbol in SHARES}
+    constant = [letters[f"v{k}"] for k in (1, 2, 3)]
+    w, W, r, v = sp.symbols("w W r v")
+    times = [dotted(r), "<mo>-</mo>", markup(W), markup(r)]
+    return [
+        formula(w, _share(letters["turning"], TURNING), letters),
+        row("input", formula(r, _decimal(sp.Matrix(PATH)))),
+        row(
+            f"{markup(v)}<mo>=</mo>",
+            markup(letters["input"], letters),
+            "<mo>(</mo>",
+            *times,
+            "<mo>)</mo><mo>+</mo>",
+            markup(sp.Matrix(constant), letters),
+        ),
+        row("body", formula(sp.Symbol("w_b"), _share(letters["spin"], SPIN), letters)),
+    ]
+
+
+def _share(letter: sp.Symbol, vector: tuple[sp.Expr, ...]) -> sp.MatMul:
+    return sp.MatMul(letter, _decimal(sp.Matrix(vector)), evaluate=False)
+
+
+def _decimal(matrix: sp.Matrix) -> sp.Matrix:
+    """Fractions as decimals, which are easier to read in a matrix."""
+    fractions = [number for number in matrix.atoms(sp.Rational) if not number.is_integer]
+    return matrix.xreplace({number: sp.Float(number, 3) for number in fractions})

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.points.conditions import conditions
+from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.recording import PointsRecording
@@ -32,7 +33,7 @@ PARTS = 40
 VERDICTS = MappingProxyType(
     {
         "holds": "(14) holds: the smallest eigenvalue is at least {least}; least is seen in the {window} s from "
-        "{begin} s on, of {direction}",
+        "{begin} s on, mainly of {direction}",
         "one fails": "(14) fails: in the {window} s from {begin} s on 1 direction is not seen: {directions}",
         "several fail": "(14) fails: in the {window} s from {begin} s on {count} directions are not seen: {directions}",
         "the scale": "; this is the state itself: the images do not tell its scale",
@@ -86,8 +87,10 @@ class Gramian:
 
     @cached_property
     def weakest(self) -> int:
-        """Number of the window whose smallest eigenvalue is the least, relatively to its largest."""
-        return int(np.argmin(self.eigenvalues[:, 0] / np.maximum(self.eigenvalues[:, -1], 1e-300)))
+        """Number of the first window that misses most directions, or if none is missed, of the one that shows least."""
+        largest = np.maximum(self.eigenvalues[:, -1:], 1e-300)
+        missed = (self.eigenvalues <= UNSEEN * largest).sum(axis=1)
+        return int(np.argmax(missed) if missed.any() else np.argmin(self.eigenvalues[:, 0] / largest[:, 0]))
 
     def unseen(self, window: int | None = None) -> Array:
         """Directions of the state that a window does not show, orthonormal, shape (n, q).
@@ -106,8 +109,8 @@ class Gramian:
         lost = self.unseen()
         words = {"window": f"{self.window:g}", "begin": f"{self.time[k]:.3g}", "least": f"{self.least:.3g}"}
         if not lost.shape[1]:
-            direction = np.linalg.eigh(self.matrices[k])[1][:, :1]
-            return VERDICTS["holds"].format(**words, direction=self.form.describe(direction)[0])
+            direction = np.linalg.eigh(self.matrices[k])[1][:, 0]
+            return VERDICTS["holds"].format(**words, direction=mainly(direction, self.form.names))
         named = self.form.describe(lost)
         one = len(named) == 1
         words |= {"count": str(len(named)), "directions": "; ".join(named)}

@@ -2,6 +2,8 @@
 
 import { short } from "../common/scales.js";
 
+const MOST_TERMS = 6;
+
 /** Directions, each a row of numbers, as sums of named states: each of as few states as elimination gets it to. */
 export function inWords(directions, names) {
   return reduced(directions.map((row) => Array.from(row))).map((row) => sumOf(row, names));
@@ -29,12 +31,24 @@ function reduced(rows) {
 
 function sumOf(row, names) {
   const largest = Math.max(...row.map(Math.abs));
+  const terms = row.map((value, k) => [value, names[k]]).filter(([value]) => Math.abs(value) >= 1e-6 * largest);
+  const shown = terms.length <= MOST_TERMS ? terms : terms.slice(0, MOST_TERMS - 1);
   let words = "";
-  row.forEach((value, k) => {
-    if (Math.abs(value) < 1e-6 * largest) return;
+  for (const [value, name] of shown) {
     const size = Math.abs(Math.abs(value) - 1) < 1e-6 ? "" : `${short(Math.abs(value))} `;
-    const sign = value < 0 ? "-" : "+";
-    words += words ? ` ${sign} ${size}${names[k]}` : `${sign === "-" ? "-" : ""}${size}${names[k]}`;
-  });
-  return words;
+    words += words ? ` ${value < 0 ? "-" : "+"} ${size}${name}` : `${value < 0 ? "-" : ""}${size}${name}`;
+  }
+  return shown === terms ? words : `${words} and ${terms.length - shown.length} more states`;
+}
+
+/** The states that a direction changes most, at most three. */
+export function mainly(direction, names) {
+  const largest = Math.max(...direction.map(Math.abs));
+  const sizes = Array.from(direction, (value) => Math.round((1e6 * Math.abs(value)) / largest));
+  const order = [...sizes.keys()].sort((a, b) => sizes[b] - sizes[a]);
+  return order
+    .slice(0, 3)
+    .filter((k) => sizes[k] > 0)
+    .map((k) => names[k])
+    .join(", ");
 }

@@ -291,7 +291,7 @@ export class Engine {
     const places = memory.once("halves of the samples", [clockKey], () => halves(time));
     const known = this.known(scene, "gramian", clockKey, places);
     const gathering = memory.once("gramian", [settings.state, n], () => {
-      const made = new Gramian(layout, this.model.block, n, (part, length) => memory.room(part, length));
+      const made = new Gramian(layout, this.model, n, (part, length) => memory.room(part, length));
       return { made };
     });
     return gathering.made.windows(time, seenImages, known, width, Math.min(settings.window, time.at(-1)));

@@ -5,17 +5,15 @@ import { FormulaSheet } from "../common/formulas.js";
 export class Formulas extends FormulaSheet {
   constructor({ equations }) {
     super();
-    for (const { title, lines } of equations) this.section(title, title, lines);
+    for (const { title, lines } of equations) this.section(title, "", lines);
   }
 
   show(settings) {
-    this.putIn((_, letter) => settings[letter]);
+    this.putIn((_, letter) => valueOf(settings, letter));
   }
+}
 
-  /** Light up a letter wherever it stands. */
-  light(letter) {
-    for (const node of this.body.querySelectorAll("[data-letter]")) {
-      node.classList.toggle("lit", node.dataset.letter === letter);
-    }
-  }
+function valueOf(settings, letter) {
+  const k = ["v1", "v2", "v3"].indexOf(letter);
+  return k < 0 ? settings[letter] : settings.velocity[k];
 }

@@ -1,6 +1,6 @@
 // Condition (14): what the images of each window tell of the state, as points/gramian.py has it.
 
-import { eigen, extremes } from "./symmetric.js";
+import { eigen, spectrum } from "./symmetric.js";
 
 const MOST_MATRICES = 3000;
 
@@ -11,8 +11,8 @@ const MOST_MATRICES = 3000;
  * integral is gathered once from the beginning on, and a window's is a difference, seen through the blocks' inverses.
  */
 export class Gramian {
-  constructor(layout, block, n, room) {
-    Object.assign(this, { layout, block, n, room, vectors: n / 3 });
+  constructor(layout, { block, unseen }, n, room) {
+    Object.assign(this, { layout, block, unseen, n, room, vectors: n / 3 });
     const { rows, columns, which } = layout;
     const entries = Array.from({ length: this.vectors }, () => []);
     rows.forEach((row, e) => columns[e] < n && entries[(row / 3) | 0].push([3 * (row % 3) + (columns[e] % 3), which[e]]));
@@ -55,24 +55,26 @@ export class Gramian {
     const count = this.ends.length;
     const every = Math.max(1, Math.ceil((count * n) / MOST_MATRICES));
     const found = new Map();
-    const look = (k) => found.get(k) ?? found.set(k, extremes(this.matrix(k), n)).get(k);
+    const look = (k) => found.get(k) ?? found.set(k, spectrum(this.matrix(k), n, this.unseen)).get(k);
     for (let k = 0; k < count; k += every) look(k);
     look(count - 1);
-    const weakness = ([smallest, largest]) => smallest / Math.max(largest, 1e-300);
-    const best = (less) => [...found.keys()].reduce((a, b) => (less(found.get(b)) < less(found.get(a)) ? b : a));
-    for (const less of [weakness, ([smallest]) => smallest]) {
-      const middle = best(less);
+    const sorted = () => [...found.keys()].sort((a, b) => a - b);
+    const least = (of) => sorted().reduce((a, b) => (of(found.get(b)) < of(found.get(a)) ? b : a));
+    // Windows that miss directions come first, and of them those that miss most.
+    const weakness = ({ smallest, largest, missed }) => (missed ? -missed : smallest / Math.max(largest, 1e-300));
+    for (const of of [weakness, ({ smallest }) => smallest]) {
+      const middle = least(of);
       for (let k = Math.max(0, middle - every + 1); k < Math.min(count, middle + every); k++) look(k);
     }
-    const begins = [...found.keys()].sort((a, b) => a - b);
-    const column = (which) => Float64Array.from(begins, (k) => found.get(k)[which]);
-    const weakest = begins.reduce((a, b) => (weakness(found.get(b)) < weakness(found.get(a)) ? b : a));
+    const begins = sorted();
+    const column = (name) => Float64Array.from(begins, (k) => found.get(k)[name]);
+    const weakest = least(weakness);
     return {
       window,
       samples,
       time: Float64Array.from(begins, (k) => time[k]),
-      smallest: column(0),
-      largest: column(1),
+      smallest: column("smallest"),
+      largest: column("largest"),
       weakest,
       eigen: eigen(this.matrix(weakest), n),
     };

@@ -9,6 +9,9 @@ import { readable, spread } from "../common/scales.js";
 const NEARER = ["-", "PageDown"];
 const FARTHER = ["+", "=", "PageUp"];
 const DEPTH_STEP = 0.05;
+const TRAIL = 5;
+const FAINT = 0.35;
+const HIDDEN = [1, 4];
 
 /** The picture, with a handle for each point that there may be. */
 export class ImagePlane {
@@ -44,16 +47,22 @@ export class ImagePlane {
     pen.lineWidth = 1;
     pen.save();
     clipTo(pen, frame.box);
-    const trace = ({ points }, rows, k, colour, dash) => {
-      drawPath(pen, rows, { width: 2 * points, first: 2 * k }, frame, colour, dash);
-    };
-    for (let k = 0; ghost && k < ghost.points; k++) trace(ghost, ghost.seenAs.images, k, theme.kept, KEPT);
+    const [first, last] = trail(shown.time, cursor);
     for (let k = 0; k < shown.points; k++) {
-      trace(shown, shown.images, k, theme.sample, SOLID);
-      trace(shown, shown.seenImages, k, theme.lines[k], SOLID);
-      trace(shown, shown.seenAs.images, k, theme.lines[k], DASHES[k]);
+      pen.globalAlpha = FAINT;
+      drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
+      drawPath(pen, shown.seenImages, pathOf(shown, k), frame, theme.lines[k], SOLID);
+      pen.globalAlpha = 1;
     }
-    drawAt(pen, shown, cursor === null ? shown.time.length - 1 : sampleAt(shown.time, cursor), frame, theme);
+    const recent = (run, rows) => rows.subarray(2 * run.points * first, 2 * run.points * (last + 1));
+    for (let k = 0; ghost && k < ghost.points; k++) {
+      drawPath(pen, recent(ghost, ghost.seenAs.images), pathOf(ghost, k), frame, theme.kept, KEPT);
+    }
+    for (let k = 0; k < shown.points; k++) {
+      drawPath(pen, recent(shown, shown.seenImages), pathOf(shown, k), frame, theme.lines[k], SOLID);
+      drawPath(pen, recent(shown, shown.seenAs.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
+    }
+    drawAt(pen, shown, last, frame, theme);
     pen.restore();
     this.handles.forEach((handle, k) => handle.stand(startOf(shown, k), frame));
   }
@@ -70,6 +79,16 @@ export class ImagePlane {
 function startOf({ points, images }, k) {
   const at = [images[2 * k], images[2 * k + 1]];
   return k < points && at.every(Number.isFinite) ? at : null;
+}
+
+function pathOf({ points }, k) {
+  return { width: 2 * points, first: 2 * k };
+}
+
+/** The samples that are drawn in full: the seconds before the cursor, and the first ones without it. */
+function trail(time, cursor) {
+  const last = sampleAt(time, cursor ?? TRAIL);
+  return [sampleAt(time, Math.max(0, time[last] - TRAIL)), last];
 }
 
 /** A square that holds the paths of all points. */

@@ -165,7 +165,12 @@ export class PointsLab extends Live {
       ],
       reasons: reasons(shown, model),
       reading: cursor === null ? "" : readingAt(shown, cursor),
-      legend: [["truth", "true"], ...points, ...(shown.settings.kept ? [["kept", "kept run"]] : [])],
+      legend: [
+        ["truth", "true, and all"],
+        ...points,
+        ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]]),
+        ...(shown.settings.kept ? [["kept", "kept run"]] : []),
+      ],
     });
   }
 

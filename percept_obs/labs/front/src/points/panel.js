@@ -1,7 +1,7 @@
 // The controls of the lab of many points: each reads from the settings and changes them.
 
 import { button, checkbox, element, radios, select, slider } from "../common/controls.js";
-import { Fieldsets } from "../common/fieldsets.js";
+import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
 import { PointList } from "./point_list.js";
 
 const STATES = [
@@ -100,18 +100,29 @@ export class Panel extends Fieldsets {
   }
 
   motion() {
-    const share = (key, label) => this.number(key, { label, low: -2, high: 2, step: 0.05, least: -10, most: 10 });
-    const v = ["X", "Y", "Z"].map((axis, k) =>
-      this.entry("velocity", k, { name: `velocity ${axis}`, label: `more v, ${axis}`, unit: "m/s", low: -1, high: 1, step: 0.02 }),
-    );
+    const { letters } = this.model;
+    const linked = (row, letter) => {
+      linkToFormula(this.controls.at(-1), () => this.lab.formulas, "", letter);
+      return row;
+    };
+    const share = (key, label, holds = () => true) =>
+      linked(
+        this.numberIf(key, holds, { label, letter: letters[key], low: -2, high: 2, step: 0.05, least: -10, most: 10 }),
+        key,
+      );
+    const v = ["X", "Y", "Z"].map((axis, k) => {
+      const [letter, name, label] = [letters[`v${k + 1}`], `velocity ${axis}`, `added to v, ${axis}`];
+      const row = this.entry("velocity", k, { name, label, letter, unit: "m/s", low: -1, high: 1, step: 0.02 });
+      return linked(row, `v${k + 1}`);
+    });
     const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
     const still = button("v = 0", () => this.lab.change({ input: 0, velocity: [0, 0, 0] }, true), { "data-control": "no input" });
     return this.fieldset(
       "The motion, A(t) and v(t)",
       {},
-      share("turning", "× camera turns"),
-      share("spin", "× body turns"),
-      share("input", "× input v(t)"),
+      share("turning", "camera turns"),
+      share("spin", "body turns", ({ state }) => state !== "independent"),
+      share("input", "input"),
       ...v,
       element("div", { class: "buttons" }, still, aim),
     );
@@ -119,12 +130,12 @@ export class Panel extends Fieldsets {
 
   start() {
     return this.fieldset(
-      "The estimate starts",
+      "The estimate",
       {},
-      this.choice("start", "with", [
-        ["rays", "each point on its first ray"],
-        ["error", "a given error"],
-        ["zero", "zero"],
+      this.choice("start", "it starts", [
+        ["rays", "on the first rays"],
+        ["error", "with a given error"],
+        ["zero", "at zero"],
       ]),
       this.numberIf("depth", ({ start }) => start === "rays", {
         label: "at the depth", unit: "m", low: 0.5, high: 6, step: 0.05, least: 0.01, most: 100,

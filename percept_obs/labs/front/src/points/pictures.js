@@ -56,8 +56,8 @@ const BUILD = {
       line("limit of what is seen", time, limit, theme.warning, BOUND),
     ];
     if (ghost) lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, ghost.gramian.smallest, theme.kept, KEPT));
-    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s, and below which none is seen`;
-    return { title, lines, scale: decades(lines, 1e-9, 1e6) };
+    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s`;
+    return { title, lines, scale: decades(lines.filter((l) => l.values !== limit), 1e-9, 1e6) };
   },
 };
 

@@ -3,8 +3,11 @@
 const PRECISION = 1e-13;
 const SWEEPS = 30;
 
-/** Smallest and largest eigenvalue: reflections make the matrix tridiagonal, and halving an interval counts them. */
-export function extremes(matrix, n) {
+/**
+ * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix
+ * tridiagonal, and halving an interval finds them by counting.
+ */
+export function spectrum(matrix, n, share) {
   const { diagonal, beside } = tridiagonal(Float64Array.from(matrix), n);
   let [low, high] = [Infinity, -Infinity];
   for (let i = 0; i < n; i++) {
@@ -13,7 +16,7 @@ export function extremes(matrix, n) {
     high = Math.max(high, diagonal[i] + reach);
   }
   const precision = PRECISION * Math.max(Math.abs(low), Math.abs(high));
-  return [0, n - 1].map((which) => {
+  const [smallest, largest] = [0, n - 1].map((which) => {
     let [from, to] = [low, high];
     while (to - from > precision) {
       const middle = (from + to) / 2;
@@ -23,6 +26,7 @@ export function extremes(matrix, n) {
     }
     return (from + to) / 2;
   });
+  return { smallest, largest, missed: countBelow(diagonal, beside, share * Math.max(largest, 1e-300)) };
 }
 
 /** Diagonal, and entries beside it, of a tridiagonal matrix with the same eigenvalues. */

@@ -2,7 +2,7 @@
 
 import { sampleAt } from "../common/image_frame.js";
 import { readable, short } from "../common/scales.js";
-import { inWords } from "./directions.js";
+import { inWords, mainly } from "./directions.js";
 import { settledAt, TOLERANCE } from "./measures.js";
 
 /** Put values into a text of Python's. */
@@ -33,7 +33,7 @@ export function gramianInWords(shown, { verdicts, unseen }) {
   const largest = Math.max(gramian.eigen.at(-1).value, 1e-300);
   const lost = gramian.eigen.filter(({ value }) => value <= unseen * largest).map(({ vector }) => vector);
   const words = { window: short(window, 6), begin: short(shown.time[weakest]), least: short(Math.min(...gramian.smallest)) };
-  if (!lost.length) return say(verdicts.holds, { ...words, direction: inWords([gramian.eigen[0].vector], names)[0] });
+  if (!lost.length) return say(verdicts.holds, { ...words, direction: mainly(gramian.eigen[0].vector, names) });
   const directions = inWords(lost, names);
   const one = directions.length === 1;
   const text = say(verdicts[one ? "one fails" : "several fail"], {
