@@ -33,8 +33,9 @@ async ([seed, count]) => {
         const controls = [...root.querySelectorAll("[data-control]")].filter((c) => c.checkVisibility() && !c.disabled);
         const control = pick(controls);
         used.add(control.dataset.control);
-        if (control.dataset.control === "foe") {
-            if (random() < 0.3) return press(control, pick(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]));
+        if (control.classList.contains("handle")) {
+            const keys = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "+", "-", "Delete"];
+            if (random() < 0.3) return press(control, pick(keys));
             const box = control.getBoundingClientRect();
             const tellPointer = (type, x, y) => control.dispatchEvent(
                 new PointerEvent(type, { pointerId: 3, clientX: box.left + x, clientY: box.top + y, bubbles: true }));

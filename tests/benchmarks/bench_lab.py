@@ -1,4 +1,4 @@
-"""How fast the observer lab opens, and draws while the hand drags, in JupyterLab: python tests/benchmarks/bench_lab.py.
+"""How fast the labs open, and draw while the hand drags, in JupyterLab: python tests/benchmarks/bench_lab.py.
 
 Pointer events are made in the page, one a frame, since a driver's own moves wait for the page.  A picture counts when
 the frame that holds it has been handed to the screen; its latency runs from the event to that moment.
@@ -20,9 +20,9 @@ from percept_obs.labs.structures import BY_NAME
 SECONDS = 5
 BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monotonic() < end:\n    pass"
 
-DRAG = """(seconds) => new Promise((resolve) => {
+DRAG = """([seconds, control]) => new Promise((resolve) => {
     const [lab] = window.perceptObsLabs;
-    const handle = document.querySelector("[data-control=foe]");
+    const handle = document.querySelector(`[data-control="${control}"]`);
     const box = handle.getBoundingClientRect();
     const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
     const tell = (type, k) => handle.dispatchEvent(new PointerEvent(type, {
@@ -35,7 +35,7 @@ DRAG = """(seconds) => new Promise((resolve) => {
     const draw = lab.draw.bind(lab);
     lab.draw = () => {
         draw();
-        const estimate = lab.shown.runs[0].estimate;
+        const { estimate } = lab.shown.runs?.[0] ?? lab.shown;
         const key = [0.1, 0.3, 0.5, 0.9].map((part) => estimate[Math.floor(part * estimate.length)]).join();
         if (key !== before) pictures += 1;
         before = key;
@@ -71,7 +71,7 @@ OPENING = """() => {
     const look = () => {
         const [lab] = window.perceptObsLabs ?? [];
         if (lab?.pictures) window.opening.picture ??= (performance.now() - began) / 1000;
-        const whole = lab && lab.kernels.whole.size === lab.widget.get("parts").length;
+        const whole = lab && (lab.kernels?.whole.size ?? 0) === lab.widget.get("parts").length;
         if (whole && lab.pictures) window.opening.whole = (performance.now() - began) / 1000;
         else requestAnimationFrame(look);
     };
@@ -84,6 +84,16 @@ ALL = "['identifier_based', 'sliding_mode', 'extended_kalman']"
 CASES = {
     "three charts of two and three lines": f"{THREE}, kept=observer_lab().settings",
     "three charts of five and six lines": f"{THREE}, observers={ALL}, kept=observer_lab(observers={TWO}).settings",
+}
+EIGHT = "points=[[0.2 * k - 0.7, 1.2 - 0.1 * k, 2.5 + 0.1 * k] for k in range(8)]"
+RICCATI = "weight='riccati', size=0.01"
+POINTS = {
+    "three points, three charts": "",
+    "three points, Riccati, a kept run, four charts": (
+        f"{RICCATI}, pictures=['error', 'depth', 'points', 'gramian'], kept=points_lab().settings"
+    ),
+    "eight points, 24 states": EIGHT,
+    "eight points, 24 states, Riccati": f"{EIGHT}, {RICCATI}",
 }
 ALONE = {name: f"{THREE}, observers=['{name}']" for name in BY_NAME}
 
@@ -99,21 +109,27 @@ def report(title, found):
     )
 
 
-def opened(page, folder, arguments):
-    """Open a lab in a notebook with a busy cell, and leave it at rest."""
-    write_notebook(folder, "bench.ipynb", OPEN.format(arguments=arguments), "ready = True", BUSY)
+def opened(page, folder, arguments, lab="observer_lab", handle="foe"):
+    """Open a lab in a notebook with a busy cell, and leave it at rest after a short drag of a handle."""
+    cell = OPEN.replace("observer_lab", lab).format(arguments=arguments)
+    write_notebook(folder, "bench.ipynb", cell, "ready = True", BUSY)
     open_notebook(page, "bench.ipynb")
     page.locator(".jp-Cell").first.click()
     page.evaluate(OPENING)
     page.keyboard.press("Shift+Enter")
     page.wait_for_function("window.opening.whole", timeout=120_000)
     rested(page, 60)
-    page.locator("[data-control=foe]").scroll_into_view_if_needed()
-    page.evaluate(DRAG, 1)
+    drag(page, handle, 1)
+
+
+def drag(page, handle="foe", seconds=SECONDS):
+    """Drag a handle for some seconds; the pictures drawn, and how long each event waited for its own."""
+    page.locator(f"[data-control='{handle}']").scroll_into_view_if_needed()
+    return page.evaluate(DRAG, [seconds, handle])
 
 
 def main():
-    """Measure every case with the kernel idle and with the kernel busy, and every observer alone."""
+    """Measure the observer lab with the kernel idle and busy, the lab of many points, and every observer alone."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
         with jupyterlab(*places[:2]) as server, lab_page(shutil.which("chromium"), server, places[2]) as page:
@@ -123,15 +139,17 @@ def main():
                 print(
                     f"first picture {times['picture']:.1f} s after its cell was run, all parts {times['whole']:.1f} s"
                 )
-                report(f"{title}, kernel idle", page.evaluate(DRAG, SECONDS))
+                report(f"{title}, kernel idle", drag(page))
                 rested(page)
                 page.locator(".jp-Cell").nth(2).locator(".cm-content").click()
                 page.keyboard.press("Shift+Enter")
-                page.locator("[data-control=foe]").scroll_into_view_if_needed()
-                report(f"{title}, kernel busy", page.evaluate(DRAG, SECONDS))
+                report(f"{title}, kernel busy", drag(page))
+            for title, arguments in POINTS.items():
+                opened(page, places[0], arguments, "points_lab", "point 1")
+                report(f"many points: {title}", drag(page, "point 1"))
             for name, arguments in ALONE.items():
                 opened(page, places[0], arguments)
-                report(f"{name}, three charts, kernel idle", page.evaluate(DRAG, SECONDS))
+                report(f"{name}, three charts, kernel idle", drag(page))
     finally:
         for place in places:
             shutil.rmtree(place, ignore_errors=True)

@@ -2,8 +2,9 @@
 
 import { lazily, Memory } from "../common/memory.js";
 import { draws } from "../common/random.js";
-import { column, halves, plantGrid, sampleTimes, stepGrid, withSteps } from "../common/tables.js";
-import { Gramian } from "./gramian.js";
+import { column, differences, halves, plantGrid, sampleTimes, stepGrid, withSteps } from "../common/tables.js";
+import { ENTRIES, flowOf, inversesOf, kindsOf } from "./flow.js";
+import { windowsOf } from "./gramian.js";
 import { advance } from "./kernel.js";
 import { decayRate, norms, spansOf } from "./measures.js";
 import { pseudoInverse } from "./symmetric.js";
@@ -60,20 +61,35 @@ export class Engine {
     });
   }
 
+  /** How each kind of vector moves, at some of the ends of steps; made anew only when the motion changes. */
+  flows(scene, part, clock, { grid, steps }, wanted) {
+    const { settings, layout, n, width } = scene;
+    const { state, turning, spin, input, velocity } = settings;
+    const kinds = kindsOf(layout, n);
+    const motion = [state, kinds.kinds.length, turning, spin, input, velocity, clock];
+    const flows = this.memory.once(`flows ${part}`, motion, () => {
+      const known = this.known(scene, part, clock, halves(grid));
+      return { of: kinds.kinds.map((kind) => flowOf(kind, steps, known, width, wanted)) };
+    });
+    return { ...kinds, flows: flows.of, made: flows };
+  }
+
   /** True states at the times of a grid that begins at time 0. */
-  move(scene, part, clock, { grid, index, steps }) {
-    const { layout, n, width } = scene;
-    const { memory } = this;
-    const places = memory.once(`places ${part}`, [clock], () => halves(grid));
-    const coefficients = this.known(scene, part, clock, places);
-    const path = memory.room(`path ${part}`, grid.length * n);
-    const still = { computed: false, information: 0, forgetting: 0, pull: null };
-    const images = memory.room(`nothing ${part}`, 6 * steps.length).fill(NaN);
-    const alone = { ...layout, begins: [0] };
-    const tables = { steps, coefficients, width, inverses: [1], images, points: 1, first: 0 };
-    advance(alone, this.model.block, still, this.begin(scene), null, tables, path);
-    const states = memory.room(`states ${part}`, (index.length - 1) * n);
-    for (let k = 1; k < index.length; k++) states.set(path.subarray(index[k] * n, index[k] * n + n), (k - 1) * n);
+  move(scene, part, clock, plant) {
+    const { n } = scene;
+    const wanted = plant.index.subarray(1);
+    const { kindOf, flows } = this.flows(scene, part, clock, plant, wanted);
+    const states = this.memory.room(`states ${part}`, wanted.length * n);
+    const x = this.begin(scene);
+    for (let v = 0; v < n; v += 3) {
+      const flow = flows[kindOf[v / 3]];
+      for (let k = 0; k < wanted.length; k++) {
+        for (let i = 0; i < 3; i++) {
+          const at = ENTRIES * k + 4 * i;
+          states[k * n + v + i] = flow[at] * x[v] + flow[at + 1] * x[v + 1] + flow[at + 2] * x[v + 2] + flow[at + 3];
+        }
+      }
+    }
     return states;
   }
 
@@ -195,7 +211,7 @@ export class Engine {
       ...steps,
       held: this.held(scene, recording, steps),
       coefficients: this.known(scene, "observer", `${clockKey} ${settings.step}`, places),
-      inverses: inversesOf(settings, places),
+      inverses: inversesOfP(settings, places),
     };
     const start = new Float64Array(n);
     if (settings.start === "error") {
@@ -286,15 +302,16 @@ export class Engine {
   }
 
   gramian(scene, { time, clockKey, seenImages }) {
-    const { layout, n, width, settings } = scene;
-    const { memory } = this;
-    const places = memory.once("halves of the samples", [clockKey], () => halves(time));
-    const known = this.known(scene, "gramian", clockKey, places);
-    const gathering = memory.once("gramian", [settings.state, n], () => {
-      const made = new Gramian(layout, this.model, n, (part, length) => memory.room(part, length));
-      return { made };
-    });
-    return gathering.made.windows(time, seenImages, known, width, Math.min(settings.window, time.at(-1)));
+    const { memory, model } = this;
+    const clock = memory.once("samples' steps", [clockKey], () => ({
+      grid: time,
+      steps: differences(time),
+      wanted: Int32Array.from(time, (_, k) => k),
+    }));
+    const { kindOf, flows, made } = this.flows(scene, "gramian", clockKey, clock, clock.wanted);
+    made.back ??= flows.map(inversesOf);
+    const window = Math.min(scene.settings.window, time.at(-1));
+    return windowsOf({ ...scene, model, time, images: seenImages, kindOf, flows, back: made.back, window, memory });
   }
 }
 
@@ -306,7 +323,7 @@ function lawOf({ weight, size, forgetting, decrease }, n) {
 }
 
 /** The inverse of a P that is given, as a multiple of the identity. */
-function inversesOf({ weight, size, final, duration }, places) {
+function inversesOfP({ weight, size, final, duration }, places) {
   if (weight !== "scheduled") return Float64Array.of(1 / size);
   return Float64Array.from(places, (t) => 1 / (size * (final / size) ** (t / duration)));
 }

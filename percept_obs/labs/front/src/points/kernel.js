@@ -50,7 +50,10 @@ export function advance(layout, block, law, x, P, tables, path) {
 }
 
 /** A function that fills the rates of an estimate and of P. */
-function rateOf({ rows, columns, which, begins, axes, states, entries }, { N, l }, law, n) {
+function rateOf(layout, { N, l }, law, n) {
+  const { begins } = layout;
+  const [rows, columns, which, axes, states] = ["rows", "columns", "which", "axes", "states"].map((name) => Int32Array.from(layout[name]));
+  const entries = Float64Array.from(layout.entries);
   const { computed, information, forgetting, pull } = law;
   const correction = new Float64Array(n);
   const xi = new Float64Array(3);
@@ -58,25 +61,28 @@ function rateOf({ rows, columns, which, begins, axes, states, entries }, { N, l 
   const S = new Float64Array(9);
   const b = new Float64Array(3);
   const solve = solver(n);
+  // A^T P, whose transpose is P A, for P is symmetric.
+  const AP = new Float64Array(computed ? n * n : 0);
+  const ratesOfP = (P, known, offset, dP) => {
+    AP.fill(0);
+    for (let e = 0; e < rows.length; e++) {
+      if (columns[e] === n) continue;
+      const a = known[offset + which[e]];
+      const [from, to] = [rows[e] * n, columns[e] * n];
+      for (let k = 0; k < n; k++) AP[to + k] += a * P[from + k];
+    }
+    for (let i = 0, at = 0; i < n; i++) {
+      for (let j = 0; j < n; j++, at++) dP[at] = pull[at] - forgetting * P[at] - AP[at] - AP[j * n + i];
+    }
+  };
   return (x, P, inverse, known, offset, images, at, dx, dP) => {
     dx.fill(0);
     correction.fill(0);
-    for (let i = 0; i < dP.length; i++) dP[i] = pull[i] - forgetting * P[i];
     for (let e = 0; e < rows.length; e++) {
-      const i = rows[e];
-      const j = columns[e];
       const a = known[offset + which[e]];
-      if (j === n) {
-        dx[i] += a;
-        continue;
-      }
-      dx[i] += a * x[j];
-      if (!computed) continue;
-      for (let k = 0; k < n; k++) {
-        dP[k * n + j] -= a * P[i * n + k];
-        dP[j * n + k] -= a * P[i * n + k];
-      }
+      dx[rows[e]] += columns[e] === n ? a : a * x[columns[e]];
     }
+    if (computed) ratesOfP(P, known, offset, dP);
     let anything = false;
     for (let k = 0; k + 1 < begins.length; k++) {
       const y1 = images[at + 2 * k];
@@ -95,7 +101,8 @@ function rateOf({ rows, columns, which, begins, axes, states, entries }, { N, l 
           b[i] = N[m][i] - y * l[i];
           c[i] += b[i] * innovation;
         }
-        for (let i = 0; computed && i < 9; i++) S[i] += b[(i / 3) | 0] * b[i % 3];
+        if (!computed) continue;
+        for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) S[3 * i + j] += b[i] * b[j];
       }
       for (let e = begins[k]; e < begins[k + 1]; e++) {
         correction[states[e]] += entries[e] * c[axes[e]];
@@ -114,21 +121,23 @@ function rateOf({ rows, columns, which, begins, axes, states, entries }, { N, l 
 function solver(n) {
   const L = new Float64Array(n * n);
   return (P, x) => {
-    for (let j = 0; j < n; j++) {
-      for (let i = j; i < n; i++) {
-        let total = P[i * n + j];
-        for (let k = 0; k < j; k++) total -= L[i * n + k] * L[j * n + k];
-        if (i > j) L[i * n + j] = total / L[j * n + j];
-        else L[j * n + j] = total > 0 ? Math.sqrt(total) : NaN;
-      }
-    }
     for (let i = 0; i < n; i++) {
-      for (let k = 0; k < i; k++) x[i] -= L[i * n + k] * x[k];
-      x[i] /= L[i * n + i];
+      const row = i * n;
+      for (let j = 0; j <= i; j++) {
+        const other = j * n;
+        let total = P[row + j];
+        for (let k = 0; k < j; k++) total -= L[row + k] * L[other + k];
+        if (j < i) L[row + j] = total / L[other + j];
+        else L[row + i] = total > 0 ? Math.sqrt(total) : NaN;
+      }
+      let value = x[i];
+      for (let k = 0; k < i; k++) value -= L[row + k] * x[k];
+      x[i] = value / L[row + i];
     }
     for (let i = n - 1; i >= 0; i--) {
-      for (let k = i + 1; k < n; k++) x[i] -= L[k * n + i] * x[k];
-      x[i] /= L[i * n + i];
+      let value = x[i];
+      for (let k = i + 1; k < n; k++) value -= L[k * n + i] * x[k];
+      x[i] = value / L[i * n + i];
     }
   };
 }

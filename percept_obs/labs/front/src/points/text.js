@@ -30,10 +30,11 @@ export function decayInWords({ fit }, bound) {
 export function gramianInWords(shown, { verdicts, unseen }) {
   const { gramian, names, truth, n } = shown;
   const { weakest, window } = gramian;
-  const largest = Math.max(gramian.eigen.at(-1).value, 1e-300);
-  const lost = gramian.eigen.filter(({ value }) => value <= unseen * largest).map(({ vector }) => vector);
+  const found = gramian.eigen();
+  const largest = Math.max(found.at(-1).value, 1e-300);
+  const lost = found.filter(({ value }) => value <= unseen * largest).map(({ vector }) => vector);
   const words = { window: short(window, 6), begin: short(shown.time[weakest]), least: short(Math.min(...gramian.smallest)) };
-  if (!lost.length) return say(verdicts.holds, { ...words, direction: mainly(gramian.eigen[0].vector, names) });
+  if (!lost.length) return say(verdicts.holds, { ...words, direction: mainly(found[0].vector, names) });
   const directions = inWords(lost, names);
   const one = directions.length === 1;
   const text = say(verdicts[one ? "one fails" : "several fail"], {
@@ -84,7 +85,8 @@ function absences({ time, hiddenSpans, offs, settings, outputs, points }) {
 export function imagePlaneInWords({ points, images, seenAs, hiddenSpans, time }) {
   const place = (rows, k) => {
     const [y1, y2] = [rows[2 * k], rows[2 * k + 1]];
-    return Number.isNaN(y1) ? "nowhere in the image" : `y1 ${readable(y1)}, y2 ${readable(y2)}`;
+    const round = (y) => readable(Number(y.toFixed(3)));
+    return Number.isNaN(y1) ? "nowhere in the image" : `y1 ${round(y1)}, y2 ${round(y2)}`;
   };
   const end = points * (time.length - 1);
   const parts = Array.from({ length: points }, (_, k) => {
