@@ -178,6 +178,8 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
         ({"input": 0.0, "turning": 0.2, "spin": 1.0}, ["the pair (C, A) is uniformly observable", "it needs (14)"]),
         ({"weight": "lyapunov", "decrease": 0.1}, ["P is not positive definite from|the smallest eigenvalue of P"]),
         ({"size": 0.001}, ["turns the rays"]),
+        ({"period": 0.27, "window": 12.0}, ["guarantees that errors decay"]),
+        ({"input": 0.0}, ["turns no ray of point 1"]),
     ],
 )
 def test_the_analysis_says_what_python_found(settings, words):

@@ -132,8 +132,7 @@ class PointsLab(Lab):
 
     def analyse(self, summary: Settings) -> Settings:
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
-        settings = self.settings
-        return in_words(run_of(settings), min(settings["window"], settings["duration"]))
+        return in_words(self.run(), self.settings["window"])
 
     def _model(self) -> Settings:
         return {

@@ -13,10 +13,21 @@ from percept_obs.points.ray import ray_turning
 BOUND_WINDOW = 4.0
 """Seconds of the windows over which the decay is bounded; longer ones promise less, for corrections hide more."""
 
+STILL = 1e-6
+"""rad/s below which a ray rests."""
+
 
 def in_words(run: PointsRun, window: float) -> dict[str, Any]:
-    """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed."""
+    """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed.
+
+    Parameters
+    ----------
+    run : PointsRun
+    window : float
+        Seconds of the Gramian's windows; a shorter run is one window.
+    """
     recording = run.recording
+    window = min(window, float(run.time[-1]))
     told = gramian(recording, window)
     sentences = []
     if not told.holds:
@@ -52,6 +63,8 @@ def _turning(run: PointsRun) -> str:
     assert recording.truth is not None
     turning = ray_turning(recording.form, recording.time, recording.truth).mean(axis=0)
     slowest = int(np.argmin(turning))
+    if turning[slowest] < STILL:
+        return f"The input turns no ray of point {slowest + 1}, so that nothing carries an error along it across."
     return (
         f"The input turns the rays by {turning[slowest]:.2g} rad/s on average (least, point {slowest + 1}): about "
         "as fast, and no faster, may the error of one point decay with a constant P."

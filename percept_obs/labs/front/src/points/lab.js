@@ -166,7 +166,6 @@ export class PointsLab extends Live {
       reasons: reasons(shown, model),
       reading: cursor === null ? "" : readingAt(shown, cursor),
       legend: [
-        ["truth", "true, and all"],
         ...points,
         ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]]),
         ...(shown.settings.kept ? [["kept", "kept run"]] : []),

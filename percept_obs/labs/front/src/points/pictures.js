@@ -11,6 +11,8 @@ export const LABELS = {
   gramian: "Smallest eigenvalue of the Gramian over time",
 };
 
+const FLOOR = 1e-9;
+
 /** The parts of one chart. */
 export function chartOf(name, shown, ghost, theme, more) {
   return { ...BUILD[name](shown, ghost, theme, more), bars: name === "gramian" ? [] : barsOf(shown, theme) };
@@ -50,14 +52,16 @@ const BUILD = {
   },
   gramian({ gramian }, ghost, theme, { unseen }) {
     const { time, smallest, largest, window } = gramian;
-    const limit = largest.map((value) => unseen * value);
-    const lines = [
-      line("smallest eigenvalue", time, smallest, theme.ink, SOLID),
-      line("limit of what is seen", time, limit, theme.warning, BOUND),
-    ];
-    if (ghost) lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, ghost.gramian.smallest, theme.kept, KEPT));
-    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s`;
-    return { title, lines, scale: decades(lines.filter((l) => l.values !== limit), 1e-9, 1e6) };
+    const floored = (values) => values.map((value) => Math.max(value, FLOOR));
+    const limit = line("limit of what is seen", time, largest.map((value) => unseen * value), theme.warning, BOUND);
+    const lines = [line("smallest eigenvalue", time, floored(smallest), theme.ink, SOLID)];
+    if (ghost) {
+      lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, floored(ghost.gramian.smallest), theme.kept, KEPT));
+    }
+    const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
+    const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
+    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s${low ? ", and what is too little" : ""}`;
+    return { title, lines: [...lines, limit], scale };
   },
 };
 

@@ -32,15 +32,15 @@ export class PointList {
     const hide = element("input", { type: "checkbox", "data-control": `hide ${k + 1}` });
     hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
     const times = ["from", "to"].map((word, end) => this.time(k, word, end));
-    const span = element("span", { class: "span" }, ...times.map(({ node }) => node), " s");
+    const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s");
     const remove = button("×", () => lab.removePoint(k), {
       class: "remove",
       "data-control": `remove ${k + 1}`,
       "aria-label": `remove point ${k + 1}`,
     });
-    const head = element("div", { class: "head" }, swatch(k), element("strong", {}, `point ${k + 1}`), remove);
-    const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide it"));
-    const row = element("div", { class: "one" }, head, depth.row, element("div", { class: "hiding" }, hiding, span));
+    const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide"));
+    const head = element("div", { class: "head" }, swatch(k), element("strong", {}, `point ${k + 1}`), hiding, remove);
+    const row = element("div", { class: "one", role: "group", "aria-label": `Point ${k + 1}` }, head, span, depth.row);
     panel.add(depth);
     const show = () => {
       row.hidden = !there();
