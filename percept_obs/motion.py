@@ -179,7 +179,7 @@ def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Moti
     Parameters
     ----------
     A : array of shape (3, 3) or (K, 3, 3), function of time, or sympy matrix, optional
-        Coefficients in 1/s; symbols a11 ... a33 when left out.
+        Coefficients in 1/s; symbols a11 ... a33 when left out.  Expressions in `TIME` alone are functions of time.
     b : array of shape (3,) or (K, 3), function of time, or sympy expressions or column, optional
         Coefficients in m/s; symbols b1, b2, b3 when left out.
     times : array of shape (K,), optional

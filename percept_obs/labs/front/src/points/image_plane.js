@@ -50,7 +50,7 @@ export class ImagePlane {
     const [first, last] = trail(shown.time, cursor);
     for (let k = 0; k < shown.points; k++) {
       pen.globalAlpha = FAINT;
-      drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
+      if (shown.hiddenSpans[k].length) drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
       drawPath(pen, shown.seenImages, pathOf(shown, k), frame, theme.lines[k], SOLID);
       pen.globalAlpha = 1;
     }
