@@ -50,17 +50,17 @@ export class ImagePlane {
     const [first, last] = trail(shown.time, cursor);
     for (let k = 0; k < shown.points; k++) {
       pen.globalAlpha = FAINT;
-      if (shown.hiddenSpans[k].length) drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
+      if (shown.absences[k].length) drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
       drawPath(pen, shown.seenImages, pathOf(shown, k), frame, theme.lines[k], SOLID);
       pen.globalAlpha = 1;
     }
     const recent = (run, rows) => rows.subarray(2 * run.points * first, 2 * run.points * (last + 1));
     for (let k = 0; ghost && k < ghost.points; k++) {
-      drawPath(pen, recent(ghost, ghost.seenAs.images), pathOf(ghost, k), frame, theme.kept, KEPT);
+      drawPath(pen, recent(ghost, ghost.estimated.images), pathOf(ghost, k), frame, theme.kept, KEPT);
     }
     for (let k = 0; k < shown.points; k++) {
       drawPath(pen, recent(shown, shown.seenImages), pathOf(shown, k), frame, theme.lines[k], SOLID);
-      drawPath(pen, recent(shown, shown.seenAs.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
+      drawPath(pen, recent(shown, shown.estimated.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
     }
     drawAt(pen, shown, last, frame, theme);
     pen.restore();
@@ -105,12 +105,12 @@ function squareOf({ points, images }) {
 }
 
 /** Where points are at a time, full, and where they are estimated to be, open. */
-function drawAt(pen, { points, images, seenAs }, k, { x, y }, theme) {
+function drawAt(pen, { points, images, estimated }, k, { x, y }, theme) {
   pen.setLineDash([]);
   for (let p = 0; p < points; p++) {
     const at = 2 * (k * points + p);
     pen.fillStyle = pen.strokeStyle = theme.lines[p];
-    for (const rows of [images, seenAs.images]) {
+    for (const rows of [images, estimated.images]) {
       const [a, b] = [x(rows[at]), y(rows[at + 1])];
       if (Number.isNaN(a + b)) continue;
       pen.beginPath();

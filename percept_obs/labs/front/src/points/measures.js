@@ -12,6 +12,23 @@ export function norms(truth, estimate, n, found) {
   return found;
 }
 
+/** How far each point's estimate is from it, a column each. */
+export function pointErrors({ begins, axes, states, entries }, truth, estimate, n, room) {
+  const count = truth.length / n;
+  const off = new Float64Array(3);
+  return Array.from({ length: begins.length - 1 }, (_, p) => {
+    const found = room(`error ${p}`, count);
+    for (let k = 0; k < count; k++) {
+      off.fill(0);
+      for (let e = begins[p]; e < begins[p + 1]; e++) {
+        off[axes[e]] += entries[e] * (truth[k * n + states[e]] - estimate[k * n + states[e]]);
+      }
+      found[k] = Math.hypot(off[0], off[1], off[2]);
+    }
+    return found;
+  });
+}
+
 /** The exponential fitted to the last two thirds of an error: its rate and its logarithm at time 0, or null. */
 export function decayRate(time, size) {
   const begin = time.at(-1) / 3;

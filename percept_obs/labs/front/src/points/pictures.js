@@ -45,9 +45,11 @@ const BUILD = {
     const certain = lines.filter(({ name }) => name.startsWith("true"));
     return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
   },
-  points({ time, offs }, ghost, theme) {
-    const lines = offs.map((off, k) => line(`error of point ${k + 1}`, time, off, theme.lines[k], DASHES[k]));
-    ghost?.offs.forEach((off, k) => lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, off, theme.kept, KEPT)));
+  points({ time, errors }, ghost, theme) {
+    const lines = errors.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
+    ghost?.errors.forEach((values, k) => {
+      lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
+    });
     return { title: "Error of each point in m", lines, scale: decades(lines, 1e-8, 1e6) };
   },
   gramian({ gramian }, ghost, theme, { unseen }) {
@@ -65,6 +67,6 @@ const BUILD = {
   },
 };
 
-function barsOf({ hiddenSpans }, theme) {
-  return hiddenSpans.flatMap((spans, k) => spans.map(({ begin, end }) => ({ begin, end, colour: theme.lines[k] })));
+function barsOf({ absences }, theme) {
+  return absences.flatMap((spans, k) => spans.map(({ begin, end }) => ({ begin, end, colour: theme.lines[k] })));
 }

@@ -125,3 +125,13 @@ export function pseudoInverse(R, m, n) {
   }
   return inverse;
 }
+
+/** A matrix with so many rows, times a vector. */
+export function product(matrix, x, rows) {
+  const width = x.length;
+  return Float64Array.from({ length: rows }, (_, i) => {
+    let sum = 0;
+    for (let j = 0; j < width; j++) sum += matrix[i * width + j] * x[j];
+    return sum;
+  });
+}

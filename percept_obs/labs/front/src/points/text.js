@@ -5,6 +5,8 @@ import { readable, short } from "../common/scales.js";
 import { inWords, mainly } from "./directions.js";
 import { settledAt, TOLERANCE } from "./measures.js";
 
+const MOST_ABSENCES = 3;
+
 /** Put values into a text of Python's. */
 function say(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
@@ -51,7 +53,7 @@ export function gramianInWords(shown, { verdicts, unseen }) {
 /** Why: what the settings and the paths of the points have to do with it. */
 export function reasons(shown, model) {
   const { settings } = shown;
-  const found = [`${gramianInWords(shown, model)}.`, ...absences(shown)];
+  const found = [`${gramianInWords(shown, model)}.`, ...absencesInWords(shown)];
   if (settings.noise.size > 0 && settings.hold === "exact") {
     found.push("Between samples the exact signal is held, which has no noise: hold the last sample to feel it.");
   }
@@ -62,27 +64,26 @@ export function reasons(shown, model) {
 }
 
 /** When points were not seen for half a second or longer, and what became of them meanwhile. */
-function absences({ time, hiddenSpans, offs, settings, outputs, points }) {
-  return hiddenSpans.flatMap((spans, k) => {
-    const long = spans.filter(({ begin, end }) => end - begin > 0.5);
-    if (!long.length) return [];
+function absencesInWords({ time, absences, errors, settings }) {
+  return absences.flatMap((spans, k) => {
     const name = `Point ${k + 1}`;
-    const never = Number.isNaN(outputs[2 * k]) && long[0].last === time.length - 1;
-    if (never) return [`${name} is never seen.`];
+    const long = spans.filter(({ begin, end }) => end - begin > 0.5);
+    if (long.some(({ first, last }) => first === 0 && last === time.length - 1)) return [`${name} is never seen.`];
     const asked = settings.hidden[k];
-    return long.slice(0, 3).map(({ first, last, begin, end }) => {
+    return long.slice(0, MOST_ABSENCES).map(({ first, last, begin, end }) => {
       const hidden = asked && begin >= asked[0] - 1e-9 && begin < asked[1];
-      const where = hidden ? "hidden" : points && "out of view or behind the camera";
-      const [before, after] = [offs[k][first], offs[k][last]];
-      const change = after < 0.9 * before ? "shrank" : after > 1.1 * before ? "grew" : "stayed";
-      const error = change === "stayed" ? `stayed about ${readable(after, 2)} m` : `${change} from ${readable(before, 2)} to ${readable(after, 2)} m`;
-      return `${name} was ${where} from ${readable(begin)} to ${readable(end)} s; its error ${error} meanwhile.`;
+      const where = hidden ? "hidden" : "out of view or behind the camera";
+      const [before, after] = [errors[k][first], errors[k][last]];
+      const change = after < 0.9 * before ? "shrank" : after > 1.1 * before ? "grew" : null;
+      const sizes = change ? `${change} from ${readable(before, 2)} to` : "stayed about";
+      const error = Number.isNaN(after) ? "" : `; its error ${sizes} ${readable(after, 2)} m meanwhile`;
+      return `${name} was ${where} from ${readable(begin)} to ${readable(end)} s${error}.`;
     });
   });
 }
 
 /** The text equivalent of the image plane. */
-export function imagePlaneInWords({ points, images, seenAs, hiddenSpans, time }) {
+export function imagePlaneInWords({ points, images, estimated, absences, time }) {
   const place = (rows, k) => {
     const [y1, y2] = [rows[2 * k], rows[2 * k + 1]];
     const round = (y) => readable(Number(y.toFixed(3)));
@@ -90,10 +91,10 @@ export function imagePlaneInWords({ points, images, seenAs, hiddenSpans, time })
   };
   const end = points * (time.length - 1);
   const parts = Array.from({ length: points }, (_, k) => {
-    const gaps = hiddenSpans[k].length ? `, not seen ${hiddenSpans[k].length} times` : "";
+    const gaps = absences[k].length ? `, not seen ${absences[k].length} times` : "";
     return (
       `point ${k + 1} goes from ${place(images, k)} to ${place(images, end + k)}${gaps}, ` +
-      `and its estimate ends at ${place(seenAs.images, end + k)}`
+      `and its estimate ends at ${place(estimated.images, end + k)}`
     );
   });
   return `${parts.join("; ")}.`;
@@ -103,7 +104,7 @@ export function imagePlaneInWords({ points, images, seenAs, hiddenSpans, time })
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const points = Array.from({ length: shown.points }, (_, p) => {
-    const [depth, estimate] = [shown.depths, shown.seenAs.depths].map((rows) => readable(rows[k * shown.points + p]));
+    const [depth, estimate] = [shown.depths, shown.estimated.depths].map((rows) => readable(rows[k * shown.points + p]));
     return `point ${p + 1}: depth ${depth} m, estimated ${estimate} m`;
   });
   return [`At ${readable(shown.time[k])} s`, `|error| ${readable(shown.size[k])}`, ...points].join(" · ");
