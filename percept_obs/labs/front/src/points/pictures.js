@@ -62,7 +62,7 @@ const BUILD = {
     }
     const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
     const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
-    const title = `Gramian (14): smallest eigenvalue over the next ${readable(window)} s${low ? ", and what is too little" : ""}`;
+    const title = `Gramian (14) over ${readable(window)} s: smallest eigenvalue${low ? "; dotted: too little" : ""}`;
     return { title, lines: [...lines, limit], scale };
   },
 };
