@@ -24,7 +24,7 @@ export class ImagePlane {
   handle(lab, k) {
     return new Handle({
       name: `point ${k + 1}`,
-      className: `point point-${k}`,
+      className: `numbered point-${k}`,
       text: String(k + 1),
       label: `Point ${k + 1} at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it`,
       onMove: (place) => lab.movePoint(k, place),
