@@ -13,6 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 Values = NDArray[np.float64]
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
+TIME = sp.Symbol("t", real=True)
+"""Time in seconds: a motion whose coefficients are expressions in nothing else is known at all times."""
+
 
 @dataclass(frozen=True, eq=False)
 class Signal:
@@ -176,7 +179,7 @@ def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Moti
     Parameters
     ----------
     A : array of shape (3, 3) or (K, 3, 3), function of time, or sympy matrix, optional
-        Coefficients in 1/s; symbols a11 ... a33 when left out.
+        Coefficients in 1/s; symbols a11 ... a33 when left out.  Expressions in `TIME` alone are functions of time.
     b : array of shape (3,) or (K, 3), function of time, or sympy expressions or column, optional
         Coefficients in m/s; symbols b1, b2, b3 when left out.
     times : array of shape (K,), optional
@@ -276,7 +279,7 @@ def bound(
     A, b : sympy matrices
         In the symbols of the blocks.
     given : list of (value, block of symbols)
-        Values as `affine` takes them: arrays, functions of time, expressions, or None for all.
+        Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
     times : array of shape (K,), optional
         Times in seconds of sampled values.
 
@@ -295,8 +298,8 @@ def bound(
     if any(_has_symbols(value) for value in values):
         entries = [e for value, block in given for e in sp.ImmutableMatrix(value).reshape(*block.shape)]
         A, b = (matrix.xreplace(dict(zip(symbols, entries, strict=True))) for matrix in (A, b))
-        free = sorted(A.free_symbols | b.free_symbols, key=str)
-        return Motion(name, A, b, tuple(free))
+        free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
+        return Motion(name, A, b, free, Signal(lambda t: [t]) if free == (TIME,) else None)
     if any(callable(value) for value in values):
         return Motion(name, A, b, symbols, Signal(lambda t: _row(given, t)))
     if times is None:

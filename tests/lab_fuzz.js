@@ -1,5 +1,5 @@
 // Random events over every control of a lab, the same for the same seed; what went wrong is returned.
-async ([seed, count]) => {
+async ([seed, count, most = 20000]) => {
     const [lab] = window.perceptObsLabs;
     const { root } = lab.view;
     const wrong = [];
@@ -34,7 +34,8 @@ async ([seed, count]) => {
         const control = pick(controls);
         used.add(control.dataset.control);
         if (control.classList.contains("handle")) {
-            if (random() < 0.3) return press(control, pick(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]));
+            const keys = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "+", "-", "Delete"];
+            if (random() < 0.3) return press(control, pick(keys));
             const box = control.getBoundingClientRect();
             const tellPointer = (type, x, y) => control.dispatchEvent(
                 new PointerEvent(type, { pointerId: 3, clientX: box.left + x, clientY: box.top + y, bubbles: true }));
@@ -63,9 +64,9 @@ async ([seed, count]) => {
     for (let k = 0; k < count; k++) {
         try {
             // Long recordings at short periods only make the test slow.
-            const { duration, period, step } = lab.settings;
-            const short = { period: 0.02, duration: 40, ...(step && { step: 0.01 }) };
-            if (duration / Math.min(period, step ?? period) > 20000) lab.change(short, true);
+            const { duration, period, step = period } = lab.settings;
+            const finest = Math.min(period, step);
+            if (duration / finest > most) lab.change({ duration: Math.max(1, (most / 10) * finest) }, true);
             act();
         } catch (error) {
             note(`exception: ${error.message}`);

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from percept_obs import affine, rigid
-from percept_obs.motion import Motion, Signal
+from percept_obs.motion import TIME, Motion, Signal
 
 A = np.arange(9.0).reshape(3, 3)
 b = np.array([1.0, 2, 3])
@@ -156,3 +156,13 @@ def test_a_signal_of_another_width_is_refused():
     motion = Motion("affine", symbolic.A, symbolic.b, symbolic.parameters, Signal([1.0, 2.0]))
     with pytest.raises(ValueError, match="12 parameters, not 2"):
         motion.known(0.0)
+
+
+def test_expressions_of_time_alone_are_known_at_all_times():
+    t, free = TIME, sp.Symbol("k", real=True)
+    motion = affine(sp.diag(sp.sin(t), 0, 2), [t, 0, 1])
+    np.testing.assert_array_equal(motion.known([0.0, 0.5]), [[0.0], [0.5]])
+    assert motion.parameters == (t,)
+    assert motion.values == {}
+    with pytest.raises(ValueError, match="has no values for k, t"):
+        affine(sp.diag(sp.sin(t), 0, free), [t, 0, 1]).known(0.0)

@@ -17,6 +17,7 @@ from percept_obs.points import (
     point_block,
     rigid_body,
 )
+from percept_obs.points.directions import in_words, mainly
 from percept_obs.surfaces import POINT
 
 y1, y2 = sp.symbols("y1 y2", real=True)
@@ -184,3 +185,11 @@ def test_the_derivation_tells_the_block():
     assert sp.latex(point_block(pinhole()).B) in text
     assert "1 = 1" not in text
     assert "R" in PointsForm(linear(np.eye(3), np.ones(3)), np.eye(3))._repr_latex_()
+
+
+def test_directions_of_many_states_are_told_by_their_first_or_by_their_largest():
+    names = [f"x{k + 1}" for k in range(8)]
+    assert in_words(np.ones((8, 1)), names) == ("x1 + x2 + x3 + x4 + x5 and 3 more states",)
+    assert in_words(np.eye(8)[:, :1] - np.eye(8)[:, 6:7], names) == ("x1 - x7",)
+    assert mainly(np.array([0.1, -0.9, 0.2, 0.9]), names[:4]) == "x2, x4, x3"
+    assert mainly(np.array([0.0, 2.0, 0.0]), names[:3]) == "x2"

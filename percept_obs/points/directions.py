@@ -13,6 +13,9 @@ Array = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
 """A direction that changes the outputs less than this, relatively, is not seen."""
 
+MOST_TERMS = 6
+"""States that are named of a direction with more of them, less one."""
+
 
 def unobservable(A: Array, C: Array) -> Array:
     """The largest subspace that C maps to 0 and every A maps into itself.
@@ -51,7 +54,7 @@ def in_words(directions: Array, names: Sequence[str]) -> tuple[str, ...]:
     Returns
     -------
     tuple of q str
-        They span the same space, each by as few states as elimination gets it to.
+        They span the same space, each by as few states as elimination gets it to; of many states the first are named.
     """
     return tuple(_sum(row, names) for row in _reduced(directions.T))
 
@@ -70,13 +73,19 @@ def _reduced(rows: Array) -> Array:
     return rows
 
 
+def mainly(direction: Array, names: Sequence[str]) -> str:
+    """The states that a direction of shape (n,) changes most, such as "r_z, d2_z, d2_x", at most three."""
+    size = np.round(np.abs(direction) / np.abs(direction).max(), 6)
+    return ", ".join(names[k] for k in np.argsort(-size, kind="stable")[:3] if size[k] > 0)
+
+
 def _sum(row: Array, names: Sequence[str]) -> str:
     largest = np.abs(row).max()
+    terms = [(value, name) for value, name in zip(row, names, strict=True) if abs(value) >= 1e-6 * largest]
+    shown = terms if len(terms) <= MOST_TERMS else terms[: MOST_TERMS - 1]
     words = ""
-    for value, name in zip(row, names, strict=True):
-        if abs(value) < 1e-6 * largest:
-            continue
+    for value, name in shown:
         size = "" if abs(abs(value) - 1) < 1e-6 else f"{abs(value):.3g} "
         sign = "-" if value < 0 else "+"
         words += f" {sign} {size}{name}" if words else f"{sign.strip('+')}{size}{name}"
-    return words
+    return words if shown is terms else f"{words} and {len(terms) - len(shown)} more states"

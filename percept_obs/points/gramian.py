@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.points.conditions import conditions
+from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.recording import PointsRecording
@@ -27,6 +29,18 @@ UNSEEN = 1e-6
 
 PARTS = 40
 """Intervals into which a window is divided for the bound on the decay."""
+
+VERDICTS = MappingProxyType(
+    {
+        "holds": "(14) holds: the smallest eigenvalue is at least {least}; least is seen in the {window} s from "
+        "{begin} s on, mainly of {direction}",
+        "one fails": "(14) fails: in the {window} s from {begin} s on 1 direction is not seen: {directions}",
+        "several fail": "(14) fails: in the {window} s from {begin} s on {count} directions are not seen: {directions}",
+        "the scale": "; this is the state itself: the images do not tell its scale",
+        "the scale too": "; the state itself is among them: the images do not tell its scale",
+    }
+)
+"""What may be said of condition (14)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +87,10 @@ class Gramian:
 
     @cached_property
     def weakest(self) -> int:
-        """Number of the window whose smallest eigenvalue is the least, relatively to its largest."""
-        return int(np.argmin(self.eigenvalues[:, 0] / np.maximum(self.eigenvalues[:, -1], 1e-300)))
+        """Number of the first window that misses most directions, or if none is missed, of the one that shows least."""
+        largest = np.maximum(self.eigenvalues[:, -1:], 1e-300)
+        missed = (self.eigenvalues <= UNSEEN * largest).sum(axis=1)
+        return int(np.argmax(missed) if missed.any() else np.argmin(self.eigenvalues[:, 0] / largest[:, 0]))
 
     def unseen(self, window: int | None = None) -> Array:
         """Directions of the state that a window does not show, orthonormal, shape (n, q).
@@ -90,23 +106,20 @@ class Gramian:
     def verdict(self) -> str:
         """Whether (14) holds, in words; if not, which directions of the state are not seen."""
         k = self.weakest
-        where = f"the {self.window:g} s from {self.time[k]:.3g} s on"
         lost = self.unseen()
+        words = {"window": f"{self.window:g}", "begin": f"{self.time[k]:.3g}", "least": f"{self.least:.3g}"}
         if not lost.shape[1]:
-            direction = np.linalg.eigh(self.matrices[k])[1][:, :1]
-            return (
-                f"(14) holds: the smallest eigenvalue is at least {self.least:.3g}; least is seen in {where}, "
-                f"of {self.form.describe(direction)[0]}"
-            )
+            direction = np.linalg.eigh(self.matrices[k])[1][:, 0]
+            return VERDICTS["holds"].format(**words, direction=mainly(direction, self.form.names))
         named = self.form.describe(lost)
-        many = "1 direction is" if len(named) == 1 else f"{len(named)} directions are"
-        text = f"(14) fails: in {where} {many} not seen: {'; '.join(named)}"
+        one = len(named) == 1
+        words |= {"count": str(len(named)), "directions": "; ".join(named)}
+        text = VERDICTS["one fails" if one else "several fail"].format(**words)
         if self.states is None or not np.isfinite(self.states[k]).all():
             return text
         state = self.states[k] / max(float(np.linalg.norm(self.states[k])), 1e-300)
         if np.linalg.norm(lost.T @ state) > 1 - 1e-4:
-            whole = "this is the state itself" if len(named) == 1 else "the state itself is among them"
-            text += f"; {whole}: the images do not tell its scale"
+            text += VERDICTS["the scale" if one else "the scale too"]
         return text
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,17 @@ from percept_obs.points.recording import PointsRecording
 from percept_obs.tracking import Hold
 
 Array = NDArray[np.float64]
+
+VERDICTS = MappingProxyType(
+    {
+        "diverged": "diverged at {time} s: the estimate grew beyond all bounds, or P is no longer positive definite; "
+        "choose a larger P or shorter steps, and look at conditions()",
+        "followed": "followed {time} s; no truth to compare with",
+        "outside": "not converged: the error went from {first} to {last} in {time} s",
+        "converged": "converged: the error stays within {tolerance} after {time} s",
+    }
+)
+"""What may be said of a run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,19 +184,16 @@ class PointsRun:
     def verdict(self, tolerance: float = 0.05) -> str:
         """What happened, in words."""
         if self.diverged_at is not None:
-            return (
-                f"diverged at {self.diverged_at:.3g} s: the estimate grew beyond all bounds, or P is no longer "
-                "positive definite; choose a larger P or shorter steps, and look at conditions()"
-            )
-        seconds = self.time[-1] - self.time[0]
+            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}")
+        seconds = f"{self.time[-1] - self.time[0]:.3g}"
         if self.recording.truth is None:
-            return f"followed {seconds:.3g} s; no truth to compare with"
-        first, last = self.size[0], self.size[-1]
+            return VERDICTS["followed"].format(time=seconds)
+        first, last = (f"{size:.2g}" for size in self.size[[0, -1]])
         outside = np.flatnonzero(~(self.size < tolerance))
         if len(outside) and outside[-1] == len(self.size) - 1:
-            return f"not converged: the error went from {first:.2g} to {last:.2g} in {seconds:.3g} s"
+            return VERDICTS["outside"].format(first=first, last=last, time=seconds)
         settled = self.time[outside[-1] + 1] - self.time[0] if len(outside) else 0.0
-        return f"converged: the error stays within {tolerance:g} after {settled:.3g} s"
+        return VERDICTS["converged"].format(tolerance=f"{tolerance:g}", time=f"{settled:.3g}")
 
     def __repr__(self) -> str:
         return f"<Run of {self.observer.name} on {self.recording.source}: {self.verdict()}>"

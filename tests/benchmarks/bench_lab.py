@@ -92,6 +92,16 @@ STRUCTURE = {
         "unknown=['v_p1', 'v_p2', 'v_p3'], v_c_swing=[0.3, 0.3, -0.1], v_p_swing=[0.2, 0.2, 0.1]"
     ),
 }
+EIGHT = "points=[[0.2 * k - 0.7, 1.2 - 0.1 * k, 2.5 + 0.1 * k] for k in range(8)]"
+RICCATI = "weight='riccati', size=0.01"
+POINTS = {
+    "three points, three charts": "",
+    "three points, Riccati, a kept run, four charts": (
+        f"{RICCATI}, pictures=['error', 'depth', 'points', 'gramian'], kept=points_lab().settings"
+    ),
+    "eight points, 24 states": EIGHT,
+    "eight points, 24 states, Riccati": f"{EIGHT}, {RICCATI}",
+}
 ALONE = {name: f"{THREE}, observers=['{name}']" for name in BY_NAME}
 
 
@@ -126,7 +136,7 @@ def drag(page, handle="foe", seconds=SECONDS):
 
 
 def main():
-    """Measure the observer lab with the kernel idle and busy, the structure lab, and every observer alone."""
+    """Measure the observer lab with the kernel idle and busy, the other labs, and every observer alone."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
         with jupyterlab(*places[:2]) as server, lab_page(shutil.which("chromium"), server, places[2]) as page:
@@ -144,6 +154,9 @@ def main():
             for title, arguments in STRUCTURE.items():
                 opened(page, places[0], arguments, "structure_lab", "ybar")
                 report(f"structure and motion: {title}", drag(page, "ybar"))
+            for title, arguments in POINTS.items():
+                opened(page, places[0], arguments, "points_lab", "point 1")
+                report(f"many points: {title}", drag(page, "point 1"))
             for name, arguments in ALONE.items():
                 opened(page, places[0], arguments)
                 report(f"{name}, three charts, kernel idle", drag(page))

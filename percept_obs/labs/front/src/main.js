@@ -5,9 +5,10 @@
 // layout, modules made from printed texts, and the line to Python are in common/ and know nothing of observers.
 
 import { ObserverLab } from "./observer/lab.js";
+import { PointsLab } from "./points/lab.js";
 import { StructureLab } from "./structure/lab.js";
 
-const LABS = { observer_lab: ObserverLab, structure_lab: StructureLab };
+const LABS = { observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 export default {
   render({ model, el }) {

@@ -8,6 +8,9 @@ import { smallestEigenvalue, windowed } from "../src/observer/measures.js";
 import { uniformFrom } from "../src/common/random.js";
 import { linearScale, logScale, readable, short, spread } from "../src/common/scales.js";
 import { held, interpolate, lastSamples, stepGrid } from "../src/common/tables.js";
+import { inWords, mainly } from "../src/points/directions.js";
+import { spansOf } from "../src/points/measures.js";
+import { eigen, pseudoInverse, spectrum } from "../src/points/symmetric.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {
@@ -78,4 +81,45 @@ test("a text that fails to load says which, and may be loaded once mended", asyn
   await modules.prepare("flat y1 one", { run: "function run() { return 1; }" });
   assert.equal(modules.get("flat y1 one").run(), 1);
   assert.match(moduleText({ run: "function run() {}" }), /^export const run/);
+});
+
+test("a symmetric matrix's eigenvalues are found, all of them and the extreme ones", () => {
+  // Q diag(0, 1e-8, 2, 5) Q with the reflection Q = I - 2 v v^T
+  const [v, values] = [[0.5, -0.5, 0.5, 0.5], [0, 1e-8, 2, 5]];
+  const Q = (i, j) => (i === j ? 1 : 0) - 2 * v[i] * v[j];
+  const matrix = Float64Array.from({ length: 16 }, (_, k) =>
+    values.reduce((sum, value, m) => sum + value * Q((k / 4) | 0, m) * Q(m, k % 4), 0),
+  );
+  const found = spectrum(matrix, 4, 1e-6);
+  assert.ok(Math.abs(found.smallest) < 1e-12 && Math.abs(found.largest - 5) < 1e-12);
+  assert.equal(found.missed, 2);
+  eigen(matrix, 4).forEach(({ value, vector }, m) => {
+    assert.ok(Math.abs(value - values[m]) < 1e-14);
+    vector.forEach((_, i) => {
+      const image = vector.reduce((sum, x, j) => sum + matrix[4 * i + j] * x, 0);
+      assert.ok(Math.abs(image - value * vector[i]) < 1e-14);
+    });
+  });
+  assert.deepEqual(spectrum(Float64Array.of(3), 1, 1e-6), { smallest: 3, largest: 3, missed: 0 });
+  assert.equal(spectrum(new Float64Array(9), 3, 1e-6).missed, 3);
+});
+
+test("the pseudo-inverse gives the smallest solution, and the nearest where there is none", () => {
+  assert.deepEqual([...pseudoInverse(Float64Array.of(1, 1), 1, 2)], [0.5, 0.5]);
+  const lost = pseudoInverse(Float64Array.of(0, 2), 2, 1);
+  assert.deepEqual([...lost], [0, 0.5]);
+});
+
+test("directions are told as Python tells them", () => {
+  const names = ["r_x", "r_y", "d2_x", "d2_y"];
+  assert.deepEqual(inWords([[2, 0, -2, 1e-9], [0, 0, 0, -3]], names), ["r_x - d2_x", "d2_y"]);
+  assert.deepEqual(inWords([[0.1, 0.2, 0, -0.05]], names), ["0.5 r_x + r_y - 0.25 d2_y"]);
+  assert.equal(mainly([0.1, -0.9, 0.2, 0.9], names), "r_y, d2_y, d2_x");
+  const many = Array.from({ length: 8 }, (_, k) => `x${k + 1}`);
+  assert.deepEqual(inWords([Array(8).fill(1)], many), ["x1 + x2 + x3 + x4 + x5 and 3 more states"]);
+});
+
+test("the spans in which a point is not seen end with the next image of it", () => {
+  const outputs = [0, 0, NaN, NaN, NaN, NaN, 1, 1];
+  assert.deepEqual(spansOf([0, 1, 2, 3], outputs, 1, 0), [{ first: 1, last: 2, begin: 1, end: 3 }]);
 });

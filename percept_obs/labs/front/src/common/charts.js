@@ -16,8 +16,11 @@ export class TimeChart {
     this.drawn = [];
   }
 
-  /** Draw lines {time, values, colour, dash}, a band, shaded spans of time, marks on the time axis, and the cursor. */
-  draw({ title, lines, band, spans = [], marks = [], level, scale, span, cursor, theme, last }) {
+  /**
+   * Draw lines {time, values, colour, dash}, a band, shaded spans of time, marks on the time axis, bars
+   * {begin, end, colour} at the top, and the cursor.
+   */
+  draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
     const { width, height } = fit(this);
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
@@ -35,6 +38,7 @@ export class TimeChart {
     if (band) fillBand(pen, place, band);
     for (const line of lines) strokeLine(pen, place, line);
     for (const { time, colour } of marks) mark(pen, place, time, colour);
+    drawBars(pen, place, bars);
     if (cursor !== null) vertical(pen, place, cursor, theme.ink);
     pen.restore();
   }
@@ -196,6 +200,15 @@ function shade(pen, place, begin, end, colour) {
   pen.fillStyle = colour;
   pen.fillRect(left, place.top, Math.max(1, place.x(end) - left), place.height);
   pen.globalAlpha = 1;
+}
+
+/** A row of thin bars for each colour, from the top on. */
+function drawBars(pen, place, bars) {
+  const rows = [...new Set(bars.map(({ colour }) => colour))];
+  for (const { begin, end, colour } of bars) {
+    pen.fillStyle = colour;
+    pen.fillRect(place.x(begin), place.top + 1 + 5 * rows.indexOf(colour), Math.max(1, place.x(end) - place.x(begin)), 3);
+  }
 }
 
 /** A reset: a short tick that hangs from the top. */

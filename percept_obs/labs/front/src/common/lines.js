@@ -15,13 +15,16 @@ export const DASHES = [
 
 export const SOLID = [];
 export const KEPT = [1, 3];
+export const FIT = [5, 3];
+export const BOUND = [1, 5];
+const NAMED = { truth: SOLID, kept: KEPT, fit: FIT, bound: BOUND };
 
-/** A piece of a line, for legends: which is "truth", "kept" or the line's place in the order. */
+/** A piece of a line, for legends: which is "truth", "kept", "fit", "bound" or the line's place in the order. */
 export function swatch(which) {
   const space = "http://www.w3.org/2000/svg";
   const picture = document.createElementNS(space, "svg");
   const line = document.createElementNS(space, "line");
-  const dash = which === "truth" ? SOLID : which === "kept" ? KEPT : DASHES[which];
+  const dash = NAMED[which] ?? DASHES[which];
   for (const [key, value] of Object.entries({ x1: 0, y1: 4, x2: 36, y2: 4, "stroke-dasharray": dash.join(" ") })) {
     line.setAttribute(key, value);
   }

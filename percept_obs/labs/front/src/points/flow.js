@@ -1,0 +1,65 @@
+// How a state moves: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
+
+/** Numbers of a flow at a time: Phi and beside it q, row by row. */
+export const ENTRIES = 12;
+
+/** Vectors of a state that move alike: where the coefficients of each kind stand in [A v], and each vector's kind. */
+export function kindsOf({ rows, columns, which }, n) {
+  const entries = Array.from({ length: n / 3 }, () => []);
+  rows.forEach((row, e) => {
+    const column = columns[e] === n ? 3 : columns[e] % 3;
+    entries[(row / 3) | 0].push([4 * (row % 3) + column, which[e]]);
+  });
+  const keys = entries.map((list) => JSON.stringify(list));
+  const names = [...new Set(keys)];
+  return { kinds: names.map((name) => entries[keys.indexOf(name)]), kindOf: keys.map((key) => names.indexOf(key)) };
+}
+
+/** The flow of a kind at the wanted ends of steps, by the classical Runge-Kutta method; `known` has half steps. */
+export function flowOf(kind, steps, known, width, wanted) {
+  const found = new Float64Array(ENTRIES * wanted.length);
+  const A = [0, 1, 2].map(() => new Float64Array(ENTRIES));
+  const [now, stage, sum, rate] = [0, 1, 2, 3].map(() => new Float64Array(ENTRIES));
+  now[0] = now[5] = now[10] = 1;
+  let next = 0;
+  for (let k = 0; next < wanted.length; k++) {
+    for (; wanted[next] === k; next++) found.set(now, ENTRIES * next);
+    if (k === steps.length) break;
+    const h = steps[k];
+    for (let half = 0; half < 3; half++) {
+      const row = (2 * k + half) * width;
+      for (let e = 0; e < kind.length; e++) A[half][kind[e][0]] = known[row + kind[e][1]];
+    }
+    sum.set(now);
+    for (let part = 0; part < 4; part++) {
+      const place = (part + 1) >> 1;
+      const share = 0.5 * h * place;
+      for (let i = 0; i < ENTRIES; i++) stage[i] = now[i] + (part ? share * rate[i] : 0);
+      ratesOf(A[place], stage, rate);
+      const weight = h / (part % 3 === 0 ? 6 : 3);
+      for (let i = 0; i < ENTRIES; i++) sum[i] += weight * rate[i];
+    }
+    now.set(sum);
+  }
+  return found;
+}
+
+/** Phi' = A Phi, q' = A q + v. */
+function ratesOf(A, flow, rate) {
+  for (let i = 0; i < 12; i += 4) {
+    for (let j = 0; j < 4; j++) rate[i + j] = A[i] * flow[j] + A[i + 1] * flow[4 + j] + A[i + 2] * flow[8 + j];
+    rate[i + 3] += A[i + 3];
+  }
+}
+
+/** The inverse of Phi at each time, nine numbers a time. */
+export function inversesOf(flow) {
+  const found = new Float64Array((9 * flow.length) / ENTRIES);
+  for (let k = 0; k * ENTRIES < flow.length; k++) {
+    const at = (r, c) => flow[ENTRIES * k + 4 * (r % 3) + (c % 3)];
+    const cofactor = (i, j) => at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
+    const determinant = at(0, 0) * cofactor(0, 0) + at(0, 1) * cofactor(0, 1) + at(0, 2) * cofactor(0, 2);
+    for (let i = 0; i < 9; i++) found[9 * k + i] = cofactor(i % 3, (i / 3) | 0) / determinant;
+  }
+  return found;
+}

@@ -1,0 +1,61 @@
+"""How a camera and a body move while points are seen: a manoeuvre that tells everything, and parts of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import sympy as sp
+
+from percept_obs.motion import TIME as t
+
+Vectors = tuple[tuple[sp.Expr, ...], ...]
+
+TURNING = (sp.sin(3 * t / 10) / 5, 3 * sp.cos(2 * t / 5) / 10, sp.Rational(1, 2))
+"""w(t) in rad/s, by which W = [w]x turns resting points in the camera's axes."""
+PATH = (3 * sp.sin(t) / 2, 6 * sp.cos(7 * t / 10) / 5, sp.Rational(5, 2) + sp.sin(t / 2) / 2)
+"""Where the input keeps a point that starts there, in metres."""
+SPIN = (sp.sin(t) / 2, 2 * sp.cos(t) / 5, sp.Rational(3, 10))
+"""Angular velocity of the body in the world, in rad/s."""
+
+SHARES = sp.symbols("turning spin input v1:4", real=True)
+"""What a manoeuvre takes of each, and a constant velocity in m/s."""
+
+
+@lru_cache(maxsize=1)
+def velocities() -> Vectors:
+    """The camera's angular velocity and velocity and the body's angular velocity, in `TIME` and `SHARES`."""
+    turning, spin, size, *constant = SHARES
+    w, path = turning * sp.Matrix(TURNING), sp.Matrix(PATH)
+    v = size * (path.diff(t) - w.cross(path)) + sp.Matrix(constant)
+    return tuple(-w), tuple(-v), tuple(spin * sp.Matrix(SPIN))
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """A camera and a body in motion, with all points kept in view.
+
+    Parameters
+    ----------
+    turning : float
+        Share of W = [w]x, w = (0.2 sin 0.3t, 0.3 cos 0.4t, 0.5), by which the camera turns.
+    spin : float
+        Share of (0.5 sin t, 0.4 cos t, 0.3) rad/s, by which the body turns in the world.
+    input : float
+        Share of the input v = r' - W r, which keeps a point on r = (1.5 sin t, 1.2 cos 0.7t, 2.5 + 0.5 sin 0.5t).
+    velocity : three numbers
+        A constant part of v, in m/s.
+    """
+
+    turning: float = 1.0
+    spin: float = 0.0
+    input: float = 1.0
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def velocities(self) -> list[tuple[sp.Expr, ...]]:
+        """As `rigid_body` takes them: of the camera, angular and not, and the body's angular one, as functions of t."""
+        numbers = (self.turning, self.spin, self.input, *self.velocity)
+        # a whole number as one, so that what is 0 or 1 leaves no trace in the formulas
+        shares = {symbol: int(x) if x == int(x) else x for symbol, x in zip(SHARES, numbers, strict=True)}
+        return [tuple(entry.subs(shares) for entry in vector) for vector in velocities()]

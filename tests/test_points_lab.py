@@ -1,0 +1,209 @@
+"""The page of the lab of many points computes what Python does, and says the same of it."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+from points_settings import CASES, as_array, random_settings, run_in_node
+
+from percept_obs.labs.points_lab import PICTURES, points_lab, recording_of, run_of
+from percept_obs.labs.points_model import MOST_POINTS, STATES, form_of, state_of
+from percept_obs.points import kernel
+from percept_obs.points.gramian import gramian
+from percept_obs.points.manoeuvre import Manoeuvre
+
+
+@pytest.fixture(scope="module")
+def lab():
+    kernel.compiled()  # once for all, for many short runs
+    return points_lab()
+
+
+@pytest.fixture(scope="module")
+def answers(lab, node):
+    """What the page's engine says of each case, with the settings as Python completed them."""
+    settings = {name: lab.check(case) for name, case in CASES.items()}
+    found = run_in_node(node, lab, list(settings.values()))
+    return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("case", CASES)
+def test_page_and_python_agree_to_1e_9(answers, case):
+    settings, answer = answers[case]
+    run = run_of(settings)
+    assert_same_run(answer, run)
+    assert_same_gramian(answer, settings, run.recording)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("case", CASES)
+def test_the_copied_code_makes_the_same_run(answers, case):
+    settings, answer = answers[case]
+    namespace = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of directions that are never seen, as the user is to see it
+        exec(answer["code"], namespace)
+    expected, copied = run_of(settings), namespace["run"]
+    assert copied.diverged_at == expected.diverged_at
+    if expected.diverged_at is None:
+        np.testing.assert_allclose(copied.state, expected.state, rtol=0, atol=1e-9)
+
+
+@pytest.mark.node
+def test_random_settings_agree(lab, node):
+    tasks = [lab.check(random_settings(seed)) for seed in range(25)]
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        run = run_of(settings)
+        assert_same_run(answer, run)
+        assert_same_gramian(answer, settings, run.recording)
+
+
+def assert_same_run(answer, run, tolerance=1e-9):
+    recording = run.recording
+    np.testing.assert_allclose(as_array(answer["time"]), recording.time, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(as_array(answer["truth"]), recording.truth.ravel(), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(as_array(answer["outputs"]), recording.outputs.ravel(), rtol=0, atol=1e-10)
+    assert answer["divergedAt"] == run.diverged_at
+    assert answer["summary"]["verdict"] == run.verdict()
+    told, state = as_array(answer["estimate"]), run.state.ravel()
+    there = np.isfinite(state)
+    assert (np.isfinite(told) == there).all()
+    size = np.fmax(1, np.abs(state[there]))
+    growing = 1 if run.diverged_at is None else 1e6  # what grows without end multiplies the last digit as well
+    np.testing.assert_allclose(told[there] / size, state[there] / size, rtol=0, atol=growing * tolerance)
+    if run.diverged_at is None and run.size[run.time >= run.time[-1] / 3].min() > 1e-9:
+        assert answer["rate"] == pytest.approx(run.decay_rate(run.time[-1] / 3), abs=1e-8)
+
+
+def assert_same_gramian(answer, settings, recording):
+    found = gramian(recording, min(settings["window"], recording.time[-1]))
+    told = answer["gramian"]
+    at = np.searchsorted(found.time, np.array(told["time"]) - 1e-9)
+    np.testing.assert_allclose(told["time"], found.time[at], rtol=0, atol=1e-12)
+    largest = found.eigenvalues[at, -1]
+    scale = max(found.eigenvalues[:, -1].max(), 1e-300)
+    np.testing.assert_allclose(as_array(told["largest"]), largest, rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(as_array(told["smallest"]), found.smallest[at], rtol=0, atol=1e-9 * scale)
+    assert found.weakest in at
+    assert np.argmin(found.smallest) in at or found.smallest.min() < 1e-9 * scale
+    said = answer["summary"]["gramian"]
+    # of a whole subspace the last digits decide how it is spanned
+    assert said.split(":")[0] == found.verdict().split(":")[0]
+    if found.unseen().shape[1] <= 1:
+        assert said == found.verdict()
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("points", [1, 3, MOST_POINTS])
+def test_the_layouts_are_those_of_the_form(lab, state, points):
+    """And each vector of three states is moved by itself, as the page takes it to be."""
+    layout = lab.model["states"][state]["layouts"][points - 1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        form = form_of(state, points, Manoeuvre(0.3, 0.4, 0.5, (0.1, 0.2, 0.3)))
+    assert tuple(layout["names"]) == form.names
+    C = np.zeros((points, 3, form.states))
+    owners = np.repeat(np.arange(points), np.diff(layout["begins"]))
+    C[owners, layout["axes"], layout["states"]] = layout["entries"]
+    np.testing.assert_array_equal(C, form.blocks)
+    A, v = form.coefficients(0.7)
+    there = np.zeros((form.states, form.states + 1), dtype=bool)
+    there[layout["rows"], layout["columns"]] = True
+    assert there[:, :-1][A[0] != 0].all()
+    assert there[:, -1][v[0] != 0].all()
+    columns = np.array(layout["columns"])
+    inside = columns < form.states
+    assert (columns[inside] // 3 == np.array(layout["rows"])[inside] // 3).all()
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_the_state_has_the_points_at_their_places(state):
+    places = [[0.1, 0.2, 3.0], [-0.5, 0.3, 2.5]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        form = form_of(state, 2, Manoeuvre())
+    np.testing.assert_allclose(form.positions(state_of(form, places)), places, atol=1e-12)
+
+
+def test_settings_survive_json_and_come_back_complete(lab):
+    there = json.loads(json.dumps(lab.settings, allow_nan=False))
+    assert lab.check({key: there[key] for key in ("seed", "points")}) == there
+    assert json.loads(json.dumps(lab.model, allow_nan=False))["pictures"] == list(PICTURES)
+
+
+def test_points_without_a_word_on_hiding_are_not_hidden(lab):
+    assert lab.check({"points": [[0.0, 0.0, 2.0]]})["hidden"] == [None]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"colour": "red"}, "there is no setting colour"),
+        ({"state": "gas"}, "state is 'gas'; it must be one of body, independent, origin"),
+        ({"weight": "heavy"}, "it must be one of constant, scheduled, lyapunov, riccati"),
+        ({"hold": "second"}, "it must be one of exact, zero, first"),
+        ({"start": "guess"}, "it must be one of rays, error, zero"),
+        ({"points": []}, "a list of 1 to 8 places"),
+        ({"points": [[0.0, 0.0, 1.0]] * 9}, "a list of 1 to 8 places"),
+        ({"points": [[0.0, 0.0]]}, "numbers between"),
+        ({"points": [[0.0, 0.0, float("nan")]]}, "numbers between"),
+        ({"hidden": [None]}, "an entry for each of the 3 points"),
+        ({"hidden": [None, [3, 2], None]}, "hidden of point 2 is .* it must begin at 0 s or later and end after that"),
+        ({"hidden": [None, [3], None]}, "hidden of point 2"),
+        ({"velocity": [0, 0]}, "numbers between"),
+        ({"size": 0}, "it must be a number from 0.0001 to 10000"),
+        ({"turning": float("inf")}, "it must be a number from -10 to 10"),
+        ({"noise": {"kind": "pink", "size": 0.1}}, "it must be one of uniform, gaussian"),
+        ({"noise": {"kind": "uniform", "size": -1}}, "it must be a number from 0 to 1"),
+        ({"pictures": []}, "name at least one of error, depth, points, gramian"),
+        ({"duration": 0.5}, "it must be a number from 1 to 120"),
+        ({"seed": 1.5}, "whole number"),
+        ({"kept": {"seed": -1}}, "whole number"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
+    before = lab.settings
+    with pytest.raises(ValueError, match=reason):
+        lab.settings = {**before, **wrong}
+    assert lab.settings == before
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({}, ["Inequality (15) holds throughout", "Theorem 3.4 guarantees that errors decay", "turns the rays"]),
+        ({"weight": "riccati", "size": 0.01}, ["Inequality (15) fails", "it needs a given P that meets (15)"]),
+        ({"input": 0.0, "turning": 0.2, "spin": 1.0}, ["the pair (C, A) is uniformly observable", "it needs (14)"]),
+        ({"weight": "lyapunov", "decrease": 0.1}, ["P is not positive definite from|the smallest eigenvalue of P"]),
+        ({"size": 0.001}, ["turns the rays"]),
+        ({"period": 0.27, "window": 12.0}, ["guarantees that errors decay"]),
+        ({"input": 0.0}, ["turns no ray of point 1"]),
+    ],
+)
+def test_the_analysis_says_what_python_found(settings, words):
+    lab = points_lab(**settings, duration=12.0)
+    lab.summary = {"serial": 7}
+    assert lab.analysis["of"] == 7
+    text = " ".join(lab.analysis["sentences"])
+    assert all(any(part in text for part in choice.split("|")) for choice in words)
+    assert (lab.analysis["bound"] is not None) == ("guarantees that errors decay" in text)
+
+
+def test_what_is_guaranteed_lies_below_what_is_measured(lab):
+    lab.summary = {"serial": 1}
+    assert 0 < lab.analysis["bound"] < lab.run().decay_rate(10, 30)
+
+
+def test_the_lab_is_the_set_up_of_the_verified_figures(lab):
+    """The rates of one point and of two, as they were verified for the moving body."""
+    two = {"points": [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9]], "duration": 60.0, "start": "error"}
+    for settings, rate in (
+        ({"points": [[0.0, 1.2, 2.5]], "duration": 60.0, "start": "error"}, 0.179),
+        (two, 0.085),
+        ({**two, "size": 10.0}, 0.029),
+    ):
+        run = run_of(lab.check(settings))
+        assert run.decay_rate(20, 60) == pytest.approx(rate, rel=0.02)
+    assert gramian(recording_of(lab.check(two)), 8).least == pytest.approx(0.277, rel=0.01)
