@@ -21,7 +21,7 @@ from percept_obs.labs.structures import KEYS, OWN_SWITCH, WAYS, texts_of
 from percept_obs.observability import windowed
 from percept_obs.surfaces import BehindCamera
 
-pytestmark = pytest.mark.node
+pytestmark = [pytest.mark.node, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,7 @@ def all_of(press, keys):
     return found, complaints
 
 
+@pytest.mark.slow
 def test_another_process_prints_what_this_one_would():
     press = printing.Printing(STRUCTURES)
     found, complaints = all_of(press, KEYS)
@@ -33,6 +34,7 @@ def test_what_was_printed_is_handed_over_at_once_and_not_printed_again(monkeypat
     assert all_of(press, KEYS) == ([(key, {"of": key}) for key in KEYS], [])
 
 
+@pytest.mark.slow
 def test_a_process_that_fails_is_told_and_the_next_lab_tries_again():
     press = printing.Printing("no.such.module")
     for _ in range(2):

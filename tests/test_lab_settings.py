@@ -53,6 +53,7 @@ def test_the_model_opens_with_what_is_shown_first_and_the_kept_run():
     assert lab.parts[0] == "pinhole y1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", KEYS)
 def test_every_structure_has_every_observer_or_a_reason(key):
     texts = texts_of(key)

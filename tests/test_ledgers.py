@@ -56,6 +56,8 @@ PAPERS = {
         1000,
         frozenset(
             {
+                "(5)",
+                "(9)",
                 "(13)",
                 "(18)",
                 "(19)",
@@ -87,7 +89,7 @@ PAPERS = {
         CHWA2019,
         37,
         1000,
-        frozenset({"100 dB", "Remark 1", "figures 9 to 11", "Theorem 1 (iv)"}),
+        frozenset({"(29)", "100 dB", "Remark 1", "figures 9 to 11", "Theorem 1 (iv)"}),
         frozenset({"(5)", "(7)", "(29)", "(31)"}),
     ),
 }

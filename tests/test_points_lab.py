@@ -28,6 +28,7 @@ def answers(lab, node):
     return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
 
 
+@pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
 def test_page_and_python_agree_to_1e_9(answers, case):
@@ -37,6 +38,7 @@ def test_page_and_python_agree_to_1e_9(answers, case):
     assert_same_gramian(answer, settings, run.recording)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
 def test_the_copied_code_makes_the_same_run(answers, case):
@@ -51,6 +53,7 @@ def test_the_copied_code_makes_the_same_run(answers, case):
         np.testing.assert_allclose(copied.state, expected.state, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_random_settings_agree(lab, node):
     tasks = [lab.check(random_settings(seed)) for seed in range(25)]

@@ -11,7 +11,7 @@ from percept_obs.labs.points_lab import points_lab, recording_of, run_of
 from percept_obs.points import kernel
 from percept_obs.points.gramian import gramian, linear_gramian
 
-pytestmark = pytest.mark.node
+pytestmark = [pytest.mark.node, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

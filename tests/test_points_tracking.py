@@ -233,6 +233,7 @@ def test_a_run_that_diverges_says_when():
     assert run.conditions().positive
 
 
+@pytest.mark.slow
 def test_a_p_that_decreases_too_long_is_told():
     """P = (1 - 0.3 t) I ends at 3.3 s, and the run with it."""
     whole = body(1)

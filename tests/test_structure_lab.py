@@ -22,7 +22,7 @@ from percept_obs.labs.structure_lab import choice_of, runs, structure_lab
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion, corollary_of
 from percept_obs.tracking import StepTooLong
 
-pytestmark = pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")]
 
 POSSIBLE = [u for n in (1, 2, 3) for u in combinations(QUANTITIES, n) if key_of(u, False) not in refused()]
 
