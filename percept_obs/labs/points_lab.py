@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.labs.base import Lab, Settings
-from percept_obs.labs.checks import number, numbers, one_of, some_of
+from percept_obs.labs.checks import known_names, number, numbers, one_of, some_of, whole_number
 from percept_obs.labs.points_model import MOST_POINTS, STATES, form_of, model_for_the_page, state_of
 from percept_obs.labs.points_words import in_words
 from percept_obs.points import (
@@ -106,9 +106,7 @@ class PointsLab(Lab):
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
-        unknown = sorted(set(settings) - set(self._opening))
-        if unknown:
-            raise ValueError(f"there is no setting {', '.join(unknown)}; there are {', '.join(self._opening)}")
+        known_names(settings, self._opening)
         if "points" in settings and "hidden" not in settings:
             settings = {**settings, "hidden": [None] * len(settings["points"])}
         whole = self._opening | settings
@@ -123,9 +121,7 @@ class PointsLab(Lab):
             raise ValueError(f"a duration of {whole['duration']} s holds no two samples {whole['period']} s apart")
         numbers(whole, "velocity", (3,))
         _check_points(whole)
-        seed = whole["seed"]
-        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**32:
-            raise ValueError(f"seed is {seed!r}; it must be a whole number from 0 to 2^32 - 1")
+        whole_number(whole)
         if whole["kept"] is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})
         return whole

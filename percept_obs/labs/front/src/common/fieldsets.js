@@ -1,6 +1,13 @@
 // What the panels of all labs are made of: groups of controls that read from a lab's settings and change them.
 
-import { element, grid, slider } from "./controls.js";
+import { checkbox, element, grid, slider } from "./controls.js";
+
+/** What observers may take for the outputs between samples. */
+export const HOLDS = [
+  ["zero", "the last sample"],
+  ["first", "a line, a sample ahead"],
+  ["exact", "the exact signal"],
+];
 
 /** Controls of a lab that has settings, change(), rest(), say() and formulas. */
 export class Fieldsets {
@@ -46,6 +53,27 @@ export class Fieldsets {
     const rest = () => lab.rest();
     const allowed = (v) => Math.abs(v) <= 1000 && !(options.notZero && v === 0) && !(options.positive && v <= 0);
     return this.add(slider({ get: () => lab.settings[key][k], set: put, rest, allowed, ...options }));
+  }
+
+  /** Boxes that say which time charts are shown, by their names; one of them stays. */
+  pictures(labels) {
+    const { lab } = this;
+    const names = Object.keys(labels);
+    const boxes = names.map((name) =>
+      this.add(
+        checkbox({
+          name: `picture ${name}`,
+          label: labels[name],
+          get: () => lab.settings.pictures.includes(name),
+          set: (on) => {
+            const chosen = names.filter((n) => (n === name ? on : lab.settings.pictures.includes(n)));
+            if (chosen.length) lab.change({ pictures: chosen }, true);
+            else this.refuse("At least one chart stays.");
+          },
+        }),
+      ),
+    );
+    return element("div", { class: "choices", role: "group", "aria-label": "Time charts" }, ...boxes);
   }
 
   matrix(name, label, get, set) {

@@ -8,14 +8,10 @@ const REST = 150;
 const BETWEEN_WORDS = 250;
 
 /**
- * A lab that follows the hand and tells Python when the hand rests. A lab of its own gives it `figures`, `panel` and
- * `view` before open(), and says in methods of its own:
- *   ready(settings)    whether all that these settings need is there, so that they can be shown at once
- *   prepare(settings)  a promise of it
- *   progress()         how much of what follows is there, for those who have to wait
+ * A lab that follows the hand and tells Python when the hand rests. A lab of its own gives it `kernels`, `figures`,
+ * `panel` and `view` before open(), and says in methods of its own:
  *   show(settings)     what is shown of them, for draw(), speak(), describe() and summary(serial)
- *   fitted(settings)   the settings, or those that take their place where they are impossible
- *   arrive(part, value), analysed(analysis)   what came from Python
+ *   afterAct(act)      the settings that a preset's act shows
  */
 export class Live {
   constructor(widget) {
@@ -106,9 +102,38 @@ export class Live {
     return this.rest();
   }
 
+  /** What is shown, and what is kept to compare with. */
+  wanted(settings) {
+    return settings.kept ? [settings, settings.kept] : [settings];
+  }
+
+  /** Whether all that these settings need is there, so that they can be shown at once. */
+  ready(settings) {
+    return this.wanted(settings).every((s) => this.kernels.of(s));
+  }
+
+  /** A promise of it. */
+  prepare(settings) {
+    return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
+  }
+
+  /** How much of what follows is there, for those who have to wait. */
+  progress() {
+    return { done: this.kernels.whole.size, of: this.widget.get("parts").length, reason: this.widget.get("unprinted") };
+  }
+
+  allows(observer, gain, value) {
+    return this.kernels.allows(observer, gain, value);
+  }
+
+  /** The settings, or those that take their place where they are impossible. */
+  fitted(settings) {
+    return settings;
+  }
+
   /** Take a part of the model that Python hands over after opening. */
   arrived(part, value) {
-    this.arrive(part, value);
+    this.kernels.arrive(part, value);
     if (!this.link) return;
     this.panel.shownFor = null;
     this.settings = this.fitted(this.settings);
@@ -194,6 +219,11 @@ export class Live {
     this.schedule();
   }
 
+  act(preset, number) {
+    this.before ??= this.settings;
+    this.replace(this.afterAct(preset.acts[number]));
+  }
+
   goBack() {
     if (this.before) this.replace(this.before);
     this.before = null;
@@ -208,6 +238,11 @@ export class Live {
     this.cursor = null;
     this.view.forgetPreset();
     this.replace(this.model.opening);
+  }
+
+  /** Take what Python has found out about the settings at rest. */
+  analysed({ sentences }) {
+    this.view.analysis((sentences ?? []).filter(Boolean));
   }
 
   say(text) {

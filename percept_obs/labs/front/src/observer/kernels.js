@@ -1,6 +1,6 @@
 // The functions that settings need: of the point, the surface, the structure, the observers.
 
-import { Modules } from "../common/modules.js";
+import { PrintedKernels } from "../common/kernels.js";
 import { switchOf } from "../common/observer_list.js";
 
 /** Name of a structure: what is seen, and what of it is measured; as in structures.py. */
@@ -9,19 +9,11 @@ export function keyOf({ surface, outputs }) {
 }
 
 /** All functions of a model; some structures follow after it has been opened. */
-export class Kernels {
-  constructor(model, load) {
-    this.model = model;
-    this.modules = new Modules(load);
-    this.whole = new Set();
-    this.waiters = [];
-  }
-
+export class Kernels extends PrintedKernels {
   /** Take a structure with all its observers. */
   arrive(key, structure) {
     this.model.structures[key] = structure;
-    this.whole.add(key);
-    for (const retry of this.waiters.splice(0)) retry();
+    this.came(key);
   }
 
   /** Whether the texts that settings need have come. */
@@ -44,18 +36,6 @@ export class Kernels {
     return Object.values(found).every(Boolean) ? this.arranged(settings, found) : undefined;
   }
 
-  /** Wait for what settings need, and load it. */
-  async prepare(settings) {
-    while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
-    await Promise.all(this.needed(settings).map(([key, texts]) => this.modules.prepare(key, texts)));
-  }
-
-  /** Whether an observer's gain may have this value. */
-  allows(observer, gain, value) {
-    const functions = this.modules.get(`gains of ${observer}`);
-    return !functions || functions[`allow_${gain}`]([value], [0])[0] === 1;
-  }
-
   needed(settings) {
     const key = keyOf(settings);
     const { project, ray, foe } = this.model.surfaces[settings.surface];
@@ -67,8 +47,7 @@ export class Kernels {
     ];
     for (const name of settings.observers.filter((n) => !structure.refused[n])) {
       const { run, start, estimate, variances, gap } = structure.observers[name][switchOf(settings, name)];
-      const allowed = Object.fromEntries(this.model.observers[name].gains.map((g) => [`allow_${g.name}`, g.allowed]));
-      groups.push([`gains of ${name}`, allowed]);
+      groups.push(this.gains(name));
       const texts = { run, start, estimate, ...(variances && { variances }), ...(gap && { gap }) };
       groups.push([nameOf(settings, name), texts]);
     }

@@ -58,38 +58,15 @@ export class ObserverLab extends Live {
     return this.change({ scenario: name, surface, outputs, duration, window, hold, believed: null }, true);
   }
 
-  act(preset, number) {
-    this.before ??= this.settings;
-    this.replace(settingsOf(preset.acts[number], this.model.standard));
+  afterAct(act) {
+    return settingsOf(act, this.model.standard);
   }
 
   copy() {
     return pythonOf(this.shown, this.model);
   }
 
-  allows(observer, gain, value) {
-    return this.kernels.allows(observer, gain, value);
-  }
-
   // What is there to show it with.
-
-  ready(settings) {
-    return [settings, ...(settings.kept ? [settings.kept] : [])].every((s) => this.kernels.of(s));
-  }
-
-  prepare(settings) {
-    const wanted = [settings, ...(settings.kept ? [settings.kept] : [])];
-    return Promise.all(wanted.map((s) => this.kernels.prepare(s)));
-  }
-
-  progress() {
-    const { size } = this.kernels.whole;
-    return { done: size, of: this.widget.get("parts").length, reason: this.widget.get("unprinted") };
-  }
-
-  arrive(part, structure) {
-    this.kernels.arrive(part, structure);
-  }
 
   fitted(settings) {
     const refused = this.kernels.refused(settings);
@@ -152,9 +129,5 @@ export class ObserverLab extends Live {
 
   summary(serial) {
     return summaryOf(this.shown, serial, this.model);
-  }
-
-  analysed({ sentences }) {
-    this.view.analysis((sentences ?? []).filter(Boolean));
   }
 }

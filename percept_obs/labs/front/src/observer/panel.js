@@ -1,7 +1,7 @@
 // The controls of the observer lab: each reads from the settings and changes them.
 
 import { checkbox, element, radios, select, slider } from "../common/controls.js";
-import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
+import { Fieldsets, HOLDS, linkToFormula } from "../common/fieldsets.js";
 import { ObserverList } from "../common/observer_list.js";
 
 const OUTPUT_NAMES = { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only" };
@@ -135,11 +135,7 @@ export class Panel extends Fieldsets {
     const hold = select({
       name: "hold",
       label: "Hold",
-      options: [
-        ["zero", "the last sample"],
-        ["first", "a line to the next (not causal)"],
-        ["exact", "the exact signal"],
-      ],
+      options: HOLDS,
       get: () => lab.settings.hold,
       set: (value) => lab.change({ hold: value }, true),
     });
@@ -169,7 +165,7 @@ export class Panel extends Fieldsets {
     const { lab } = this;
     const mode = select({
       name: "start",
-      label: "The estimate starts at",
+      label: "x̂ starts at",
       options: [
         ["own", "first sample and 0"],
         ["zero", "zero"],
@@ -224,25 +220,10 @@ export class Panel extends Fieldsets {
   }
 
   showing() {
-    const { lab, model } = this;
-    const pictures = model.pictures.map((name) =>
-      this.add(
-        checkbox({
-          name: `picture ${name}`,
-          label: PICTURE_NAMES[name],
-          get: () => lab.settings.pictures.includes(name),
-          set: (on) => {
-            const chosen = model.pictures.filter((n) => (n === name ? on : lab.settings.pictures.includes(n)));
-            if (chosen.length) lab.change({ pictures: chosen }, true);
-            else this.refuse("At least one chart stays.");
-          },
-        }),
-      ),
-    );
     return this.fieldset(
       "Pictures",
       { class: "pictures" },
-      element("div", { class: "choices", role: "group", "aria-label": "Time charts" }, ...pictures),
+      this.pictures(PICTURE_NAMES),
       this.number("window", { label: "window", unit: "s", low: 0.5, high: 30, step: 0.5, least: 0.1, most: 200 }),
       this.number("threshold", { label: "threshold of |w|", low: 0, high: 0.5, step: 0.005, least: 0, most: 10 }),
     );

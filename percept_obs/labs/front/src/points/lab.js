@@ -20,7 +20,7 @@ const FARTHEST = 1000;
 export class PointsLab extends Live {
   constructor(widget, place) {
     super(widget);
-    this.functions = new Functions(this.model);
+    this.kernels = new Functions(this.model);
     this.engine = new Engine(this.model);
     this.ghostEngine = new Engine(this.model);
     this.bound = { of: null, rate: null };
@@ -47,7 +47,7 @@ export class PointsLab extends Live {
 
   /** Move a point in the image, with its depth kept. */
   movePoint(k, [y1, y2]) {
-    const functions = this.functions.of(this.settings);
+    const functions = this.kernels.of(this.settings);
     if (k >= this.settings.points.length || !functions) return;
     this.put(k, Array.from(functions.locate([y1, y2, this.depthOf(k)], new Float64Array(3))));
   }
@@ -94,9 +94,8 @@ export class PointsLab extends Live {
     this.change({ turning: 0, input: 0, velocity }, true);
   }
 
-  act(preset, number) {
-    this.before ??= this.settings;
-    this.replace(settingsOf(preset.acts[number], this.model.standard));
+  afterAct(act) {
+    return settingsOf(act, this.model.standard);
   }
 
   copy() {
@@ -105,33 +104,17 @@ export class PointsLab extends Live {
 
   // What is there to show it with.
 
-  ready(settings) {
-    return this.wanted(settings).every((s) => this.functions.of(s));
-  }
-
-  prepare(settings) {
-    return Promise.all(this.wanted(settings).map((s) => this.functions.prepare(s)));
-  }
-
-  wanted(settings) {
-    return settings.kept ? [settings, settings.kept] : [settings];
-  }
-
   progress() {
     return { done: 0, of: 1, reason: "The page prepares these equations." };
-  }
-
-  fitted(settings) {
-    return settings;
   }
 
   // What is shown.
 
   show(settings) {
     const { kept } = settings;
-    if (kept && this.ghost?.settings !== kept) this.ghost = this.ghostEngine.run(kept, this.functions.of(kept));
+    if (kept && this.ghost?.settings !== kept) this.ghost = this.ghostEngine.run(kept, this.kernels.of(kept));
     if (!kept) this.ghost = null;
-    return this.engine.run(settings, this.functions.of(settings));
+    return this.engine.run(settings, this.kernels.of(settings));
   }
 
   /** The guaranteed rate of decay, if Python has told it of what is shown. */
@@ -183,9 +166,9 @@ export class PointsLab extends Live {
     return summaryOf(this.shown, serial, this.model);
   }
 
-  analysed({ sentences, bound }) {
-    this.view.analysis((sentences ?? []).filter(Boolean));
-    this.bound = { of: this.settings, rate: bound ?? null };
+  analysed(analysis) {
+    super.analysed(analysis);
+    this.bound = { of: this.settings, rate: analysis.bound ?? null };
     this.schedule();
   }
 }

@@ -1,7 +1,7 @@
 // The controls of the lab of many points: each reads from the settings and changes them.
 
-import { button, checkbox, element, radios, select, slider } from "../common/controls.js";
-import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
+import { button, element, radios, select, slider } from "../common/controls.js";
+import { Fieldsets, HOLDS, linkToFormula } from "../common/fieldsets.js";
 import { PointList } from "./point_list.js";
 
 const STATES = [
@@ -182,34 +182,15 @@ export class Panel extends Fieldsets {
       this.number("period", { label: "period", unit: "s", low: 0.01, high: 0.2, log: true, least: 0.005, most: 1 }),
       this.number("dropout", { label: "lost samples", low: 0, high: 0.9, step: 0.01, least: 0, most: 0.95 }),
       this.number("view", { label: "sees |y| up to", low: 0.2, high: 4, step: 0.05, least: 0.1, most: 100 }),
-      this.choice("hold", "between samples", [
-        ["exact", "the exact signal"],
-        ["zero", "the last sample"],
-        ["first", "a line to the next (not causal)"],
-      ]),
+      this.choice("hold", "Hold", HOLDS),
     );
   }
 
   showing() {
-    const { lab, model } = this;
-    const pictures = model.pictures.map((name) =>
-      this.add(
-        checkbox({
-          name: `picture ${name}`,
-          label: PICTURE_NAMES[name],
-          get: () => lab.settings.pictures.includes(name),
-          set: (on) => {
-            const chosen = model.pictures.filter((n) => (n === name ? on : lab.settings.pictures.includes(n)));
-            if (chosen.length) lab.change({ pictures: chosen }, true);
-            else this.refuse("At least one chart stays.");
-          },
-        }),
-      ),
-    );
     return this.fieldset(
       "Pictures",
       {},
-      element("div", { class: "choices", role: "group", "aria-label": "Time charts" }, ...pictures),
+      this.pictures(PICTURE_NAMES),
       this.number("duration", { label: "duration", unit: "s", low: 4, high: 60, step: 1, least: 1, most: 120 }),
       this.number("window", { label: "window T", unit: "s", low: 0.5, high: 20, step: 0.5, least: 0.1, most: 120 }),
     );

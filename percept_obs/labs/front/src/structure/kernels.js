@@ -1,6 +1,6 @@
 // The functions that settings need: of the point, of the choice of unknowns, of the observers.
 
-import { Modules } from "../common/modules.js";
+import { PrintedKernels } from "../common/kernels.js";
 
 /** Name of a choice, as in choices.py: its unknowns, and whether d_s is known from an earlier stage only. */
 export function keyOf({ unknown, earlier }) {
@@ -14,20 +14,12 @@ export function isZero(settings, name) {
 }
 
 /** All functions of a model; most choices follow after it has been opened. */
-export class StructureKernels {
-  constructor(model, load) {
-    this.model = model;
-    this.modules = new Modules(load);
-    this.whole = new Set();
-    this.waiters = [];
-  }
-
+export class StructureKernels extends PrintedKernels {
   /** Take the choices, or the loops for a number of unknowns. */
   arrive(part, texts) {
     if (part === "choices") this.model.choices = texts;
     else this.model.kernels[parseInt(part, 10)] = texts;
-    this.whole.add(part);
-    for (const retry of this.waiters.splice(0)) retry();
+    this.came(part);
   }
 
   /** Why a choice is impossible; empty if it is not, or not known yet. */
@@ -68,20 +60,8 @@ export class StructureKernels {
     return { ...point, ...choice, ...guard, observers };
   }
 
-  /** Wait for what settings need, and load it. */
-  async prepare(settings) {
-    while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
-    await Promise.all(this.needed(settings).map(([key, texts]) => this.modules.prepare(key, texts)));
-  }
-
-  /** Whether an observer's gain may have this value. */
-  allows(observer, gain, value) {
-    const functions = this.modules.get(`gains of ${observer}`);
-    return !functions || functions[`allow_${gain}`]([value], [0])[0] === 1;
-  }
-
   needed(settings) {
-    const { plant, project, swinging, choices, kernels, observers } = this.model;
+    const { plant, project, swinging, choices, kernels } = this.model;
     const point = ["point", { plant, project, swinging }];
     if (this.refusal(settings)) return [point];
     const count = settings.unknown.length;
@@ -95,7 +75,7 @@ export class StructureKernels {
       const { run, start, estimate, variances, gap, fastest } = kernels[count].observers[name];
       const texts = { run, start, estimate, variances, gap, fastest };
       groups.push([`${count} ${name}`, Object.fromEntries(Object.entries(texts).filter(([, text]) => text))]);
-      groups.push([`gains of ${name}`, Object.fromEntries(observers[name].gains.map((g) => [`allow_${g.name}`, g.allowed]))]);
+      groups.push(this.gains(name));
     }
     return groups;
   }

@@ -51,42 +51,12 @@ export class StructureLab extends Live {
     if (Math.abs(y1) <= 1000 && Math.abs(y2) <= 1000) this.change({ ybar: [y1, y2, this.settings.ybar[2]] });
   }
 
-  act(preset, number) {
-    this.before ??= this.settings;
-    this.replace(settingsAfter(preset.acts[number], this.model.standard));
+  afterAct(act) {
+    return settingsAfter(act, this.model.standard);
   }
 
   copy() {
     return pythonOf(this.shown, this.model);
-  }
-
-  allows(observer, gain, value) {
-    return this.kernels.allows(observer, gain, value);
-  }
-
-  // What is there to show it with.
-
-  ready(settings) {
-    return [settings, ...(settings.kept ? [settings.kept] : [])].every((s) => this.kernels.of(s));
-  }
-
-  prepare(settings) {
-    const wanted = [settings, ...(settings.kept ? [settings.kept] : [])];
-    return Promise.all(wanted.map((s) => this.kernels.prepare(s)));
-  }
-
-  progress() {
-    const { size } = this.kernels.whole;
-    return { done: size, of: this.widget.get("parts").length, reason: this.widget.get("unprinted") };
-  }
-
-  arrive(part, texts) {
-    this.kernels.arrive(part, texts);
-  }
-
-  /** An impossible choice is shown with its reason, so that no settings are changed. */
-  fitted(settings) {
-    return settings;
   }
 
   // What is shown.
@@ -143,9 +113,5 @@ export class StructureLab extends Live {
   summary(serial) {
     const { shown } = this;
     return shown.refusal ? { serial, refusal: shown.refusal } : summaryOf(shown, serial, this.model);
-  }
-
-  analysed({ sentences }) {
-    this.view.analysis((sentences ?? []).filter(Boolean));
   }
 }

@@ -1,7 +1,7 @@
 // The controls of the structure lab: each reads from the settings and changes them.
 
 import { checkbox, element, select, slider } from "../common/controls.js";
-import { Fieldsets, linkToFormula } from "../common/fieldsets.js";
+import { Fieldsets, HOLDS, linkToFormula } from "../common/fieldsets.js";
 import { ObserverList } from "../common/observer_list.js";
 
 const PICTURE_NAMES = {
@@ -174,36 +174,17 @@ export class StructurePanel extends Fieldsets {
         ["own", "the first sample"],
         ["zero", "zero"],
       ]),
-      choose("hold", "Hold", [
-        ["zero", "the last sample"],
-        ["first", "a line to the next (not causal)"],
-        ["exact", "the exact signal"],
-      ]),
+      choose("hold", "Hold", HOLDS),
       this.number("step", { label: "longest step", unit: "s", low: 1e-4, high: 0.01, log: true, least: 1e-5, most: 0.1, allowed: (v) => this.fits({ step: v }) }),
       this.number("tolerance", { label: "tolerance", low: 1e-4, high: 1, log: true, least: 1e-6, most: 10 }),
     );
   }
 
   showing() {
-    const { lab, model } = this;
-    const pictures = model.pictures.map((name) =>
-      this.add(
-        checkbox({
-          name: `picture ${name}`,
-          label: PICTURE_NAMES[name],
-          get: () => lab.settings.pictures.includes(name),
-          set: (on) => {
-            const chosen = model.pictures.filter((n) => (n === name ? on : lab.settings.pictures.includes(n)));
-            if (chosen.length) lab.change({ pictures: chosen }, true);
-            else this.refuse("At least one chart stays.");
-          },
-        }),
-      ),
-    );
     return this.fieldset(
       "Pictures",
       { class: "pictures" },
-      element("div", { class: "choices", role: "group", "aria-label": "Time charts" }, ...pictures),
+      this.pictures(PICTURE_NAMES),
     );
   }
 }
