@@ -25,7 +25,7 @@ from percept_obs.surfaces import BehindCamera
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
-EVENTS, CHUNKS = 5000, 5
+EVENTS, CHUNKS, SAMPLES = 5000, 5, 4000
 COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
@@ -55,7 +55,7 @@ def fresh(lab):
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
     opening = state(fresh)
     for seed in range(CHUNKS):
-        found = fresh.evaluate(FUZZ, [seed, EVENTS // CHUNKS])
+        found = fresh.evaluate(FUZZ, [seed, EVENTS // CHUNKS, SAMPLES])
         assert found["wrong"] == []
         rested(fresh, 60)
         shown = state(fresh)

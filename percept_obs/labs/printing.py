@@ -1,15 +1,18 @@
-"""Texts for the page, printed once for every lab by a process of its own, so that no cell waits for sympy."""
+"""Texts for the page, printed once by a process of its own and then kept, so that no cell waits for sympy."""
 
 from __future__ import annotations
 
 import atexit
+import hashlib
 import json
 import os
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from importlib import import_module
+from contextlib import suppress
+from importlib import import_module, metadata
+from pathlib import Path
 from typing import Any
 
 Texts = dict[str, Any]
@@ -94,10 +97,37 @@ def _printed_beside(module: str, keys: Sequence[str]) -> Iterator[tuple[str, Tex
 
 
 def main(module: str, *keys: str) -> None:
-    """Print a line of JSON for each key: the key and its texts."""
-    texts_of = import_module(module).texts_of
+    """Print a line of JSON for each key: the key and its texts, which are kept for the next time."""
+    folder = kept_in(module)
     for key in keys:
-        print(json.dumps([key, texts_of(key)]), flush=True)
+        file = folder / f"{key}.json"
+        try:
+            text = file.read_text(encoding="utf-8")
+            json.loads(text)
+        except (OSError, ValueError):
+            text = json.dumps(import_module(module).texts_of(key))
+            with suppress(OSError):
+                _write(file, text)
+        print(f"[{json.dumps(key)}, {text}]", flush=True)
+
+
+def kept_in(module: str) -> Path:
+    """The folder of the texts that this very package prints: where a line of it differs, the folder does."""
+    import pooch
+
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256(metadata.version("sympy").encode())
+    for path in sorted(package.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return Path(pooch.os_cache("percept_obs")) / "labs" / f"{module} {digest.hexdigest()[:16]}"
+
+
+def _write(file: Path, text: str) -> None:
+    """Write a file at once, since another lab may read it meanwhile."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    new = file.with_suffix(f".{os.getpid()}")
+    new.write_text(text, encoding="utf-8")
+    new.replace(file)
 
 
 if __name__ == "__main__":
