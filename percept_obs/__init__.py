@@ -27,9 +27,10 @@ from percept_obs.points import (
     track_points,
 )
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.run import Run
 from percept_obs.structure import StructureAndMotion, record_structure
 from percept_obs.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
-from percept_obs.tracking import DoesNotFit, Run, track
+from percept_obs.tracking import DoesNotFit, track
 from percept_obs.two_stage import semigeneral
 
 __version__ = "0.1.0"

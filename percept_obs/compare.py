@@ -15,7 +15,8 @@ from percept_obs.compile import WORTH_COMPILING
 from percept_obs.least_squares import WindowEstimate
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
-from percept_obs.tracking import Run, track
+from percept_obs.run import Run
+from percept_obs.tracking import track
 
 if TYPE_CHECKING:
     import pandas as pd

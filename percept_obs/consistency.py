@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from percept_obs.tracking import Run
+from percept_obs.run import Run
 
 Array = NDArray[np.float64]
 

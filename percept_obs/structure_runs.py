@@ -20,8 +20,9 @@ from percept_obs.observers import (
 )
 from percept_obs.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
 from percept_obs.recording import Recording
+from percept_obs.run import Run
 from percept_obs.structure import DepthSource, LinearView, StructureAndMotion, linear_view, record_structure
-from percept_obs.tracking import Run, track
+from percept_obs.tracking import track
 from percept_obs.two_stage import SemigeneralRun, semigeneral
 
 if TYPE_CHECKING:

@@ -29,7 +29,8 @@ from percept_obs.observers import (
     spica,
 )
 from percept_obs.recording import Recording
-from percept_obs.tracking import DoesNotFit, Run
+from percept_obs.run import Run
+from percept_obs.tracking import DoesNotFit
 
 if TYPE_CHECKING:
     import pandas as pd

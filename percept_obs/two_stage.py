@@ -14,8 +14,9 @@ from percept_obs.forms import CanonicalForm
 from percept_obs.motion import Motion, rigid
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
+from percept_obs.run import Run
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
-from percept_obs.tracking import Run, track
+from percept_obs.tracking import track
 
 Array = NDArray[np.float64]
 

@@ -25,6 +25,7 @@ LAYERS = (
     ("points.gramian", "points.ray", "points.tracking", "points.utias"),
     ("points.run",),
     ("least_squares", "observability", "tracking"),
+    ("run",),
     ("scenarios", "datasets", "points.scenarios"),
     ("points.recording", "points.conditions", "structure"),
     ("structure.simulation",),

@@ -21,8 +21,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.consistency import claimed_interval
+from percept_obs.run import Run
 from percept_obs.surfaces import POINT, ImagingSurface
-from percept_obs.tracking import Run
 from percept_obs.views import View
 
 Array = NDArray[np.float64]

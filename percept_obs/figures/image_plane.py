@@ -39,7 +39,7 @@ from percept_obs.forms import NotAffine
 from percept_obs.observability import instantaneous
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Recording
-from percept_obs.tracking import Run
+from percept_obs.run import Run
 
 NEARBY = 0.6
 """How far outside the path, in sides of its box, the focus of expansion may lie to be shown in its place."""

@@ -33,8 +33,8 @@ from percept_obs.figures.base import (
     words,
 )
 from percept_obs.recording import Recording
+from percept_obs.run import Run
 from percept_obs.surfaces import ImagingSurface
-from percept_obs.tracking import Run
 
 
 def compare(

@@ -28,7 +28,7 @@ from percept_obs.figures.base import (
     span,
 )
 from percept_obs.recording import Recording
-from percept_obs.tracking import Run
+from percept_obs.run import Run
 
 _CORNERS = [(1, 0.75, 2), (-1, 0.75, 2), (-1, -0.75, 2), (1, -0.75, 2)]
 _EDGES = [edge for corner in _CORNERS for edge in ((0, 0, 0), corner)]

@@ -35,7 +35,7 @@ from percept_obs.figures.base import (
     span,
     words,
 )
-from percept_obs.tracking import Run
+from percept_obs.run import Run
 
 RESIDUALS: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "linestyle": "-"},

@@ -16,7 +16,7 @@ from percept_obs.labs.structures import observer_of
 from percept_obs.observability import windowed
 from percept_obs.observers.base import hats
 from percept_obs.recording import Recording
-from percept_obs.tracking import Run
+from percept_obs.run import Run
 
 INSTANTS = 200
 """At how many instants of the window the error dynamics are linearised, at most."""

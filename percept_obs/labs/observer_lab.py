@@ -34,8 +34,9 @@ from percept_obs.labs.structures import (
 from percept_obs.labs.tracks import track_for_the_page, with_affine_motion
 from percept_obs.motion import affine
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.run import SETTLED_PART, VERDICTS, Run
 from percept_obs.surfaces import BehindCamera, plane
-from percept_obs.tracking import SETTLED_PART, VERDICTS, Run, StepTooLong, track
+from percept_obs.tracking import StepTooLong, track
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}

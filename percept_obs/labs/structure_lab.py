@@ -32,6 +32,7 @@ from percept_obs.labs.printing import Printing
 from percept_obs.labs.sampling import samples_in_front
 from percept_obs.motion import Motion, rigid
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform
+from percept_obs.run import SETTLED_PART, VERDICTS, Run
 from percept_obs.structure import (
     COROLLARIES,
     QUANTITIES,
@@ -42,7 +43,7 @@ from percept_obs.structure import (
     record_structure,
 )
 from percept_obs.surfaces import BehindCamera, pinhole
-from percept_obs.tracking import LARGEST_STEP_RATE, SETTLED_PART, TOO_LONG, VERDICTS, Run, StepTooLong, track
+from percept_obs.tracking import LARGEST_STEP_RATE, TOO_LONG, StepTooLong, track
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 HOLDS = ("zero", "first", "exact")

@@ -36,9 +36,10 @@ from percept_obs.papers.base import (
 )
 from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Camera, Recording, Uniform, record
+from percept_obs.run import Run
 from percept_obs.scenarios import ma2005_eq35, ma2005_eq36
 from percept_obs.surfaces import POINT, X, Y, Z, pinhole
-from percept_obs.tracking import Run, track
+from percept_obs.tracking import track
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 FORMS = {"y1 alone": SYSTEM.measure("y1"), "y1, y2": SYSTEM.measure("y1", "y2")}

@@ -17,7 +17,8 @@ from percept_obs.points.recording import PointsRecording
 from percept_obs.points.run import PointsRun
 from percept_obs.points.weights import Weight
 from percept_obs.recording import halves, step_grid
-from percept_obs.tracking import LONGEST_STEP, DoesNotFit, Hold
+from percept_obs.run import Hold
+from percept_obs.tracking import LONGEST_STEP, DoesNotFit
 
 Array = NDArray[np.float64]
 

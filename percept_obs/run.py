@@ -1,0 +1,251 @@
+"""A run: what an observer made of a recording, its errors, and in words how it went."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.compile import vectorised
+from percept_obs.observers.base import Observer
+from percept_obs.recording import Recording
+
+Array = NDArray[np.float64]
+Hold = Literal["zero", "first", "exact"]
+
+SETTLED_PART = 0.1
+"""Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
+
+VERDICTS = MappingProxyType(
+    {
+        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; choose smaller gains or shorter steps",
+        "followed": "followed {time} s; no truth to compare with",
+        "outside": "not converged: the error of {hidden} ends at {error}, outside {tolerance}",
+        "late": (
+            "not converged yet: the error of {hidden} is within {tolerance} only since {time} s, too short before the "
+            "end to be sure of"
+        ),
+        "converged": "converged: the error of {hidden} stays within {tolerance} after {time} s",
+        "reset once": "; driven to the bound and reset once, at {time} s",
+        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
+        "gap": "; no estimate from {begin} to {end} s, for {reason}",
+        "more gaps": ", and in {count} more gaps",
+    }
+)
+"""What a verdict says, by what happened; live labs use the same words."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """An observer's estimates at the samples of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    observer : Observer
+    estimate : array of shape (K, n)
+        Estimates of the surface's coordinates; NaN from `diverged_at` on.
+    state : array of shape (K, s)
+        The observer's state.
+    resets : array
+        Times, in seconds, at which the estimate was reset.
+    diverged_at : float or None
+        When the state stopped being finite, in seconds.
+    hold : "zero", "first" or "exact"
+        How samples were held between them.
+    lacking : array of shape (K,) of int
+        Which of `Observer.gaps` leaves the hidden coordinates without an estimate, counted from 1; 0 where none does.
+    """
+
+    recording: Recording
+    observer: Observer
+    estimate: Array
+    state: Array
+    resets: Array
+    diverged_at: float | None
+    hold: Hold
+    lacking: NDArray[np.int_]
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples in seconds, shape (K,)."""
+        return self.recording.time
+
+    @property
+    def truth(self) -> Array:
+        """True coordinates, shape (K, n).
+
+        Raises
+        ------
+        ValueError
+            If the recording has none.
+        """
+        if self.recording.truth is None:
+            raise ValueError("the recording has no truth to compare with; give it one, or look at the innovation")
+        return self.recording.truth
+
+    @cached_property
+    def error(self) -> Array:
+        """Truth minus estimate, shape (K, n)."""
+        return self.truth - self.estimate
+
+    @cached_property
+    def innovation(self) -> Array:
+        """Samples minus estimates of the measured outputs, shape (K, n1); NaN where a sample was lost."""
+        names = [symbol.name for symbol in self.observer.form.coordinates]
+        measured = self.observer.form.measured
+        columns = [self.recording.names.index(name) for name in measured]
+        return self.recording.outputs[:, columns] - self.estimate[:, [names.index(name) for name in measured]]
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Covariance of the estimate that the observer claims, shape (K, n, n).
+
+        Raises
+        ------
+        ValueError
+            If the observer claims none.
+        """
+        observer = self.observer
+        if observer.covariance is None:
+            raise ValueError(f"the {observer.name} observer claims no covariance; the extended Kalman filter does")
+        entries = vectorised(observer.equations.state, list(observer.covariance))(*self.state.T)
+        return np.stack(entries, axis=-1).reshape(len(self.state), *observer.covariance.shape)
+
+    @cached_property
+    def normalised_innovation(self) -> Array:
+        """Squared innovation before the update, over the variance that was claimed for it, shape (K,).
+
+        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost.
+        With the residual r after the update, its covariance R - P and r = R S^-1 (innovation), the squared innovation
+        is r^T (R - P)^-1 r.
+
+        Raises
+        ------
+        ValueError
+            If the observer claims no covariance or has no measurement update.
+        """
+        measured = self._columns(self.observer.form.measured)
+        claimed = self.covariance[:, measured][:, :, measured]
+        variance = dict((gain.name, gain.value) for gain in self.observer.gains).get("noise_variance")
+        if variance is None or not self.observer.equations.update:
+            raise ValueError(f"the {self.observer.name} observer has no measurement update")
+        residual = self.innovation[:, :, None]
+        left = variance * np.eye(len(measured)) - claimed
+        return (np.swapaxes(residual, 1, 2) @ np.linalg.solve(left, residual))[:, 0, 0]
+
+    @cached_property
+    def points(self) -> Array:
+        """Estimated positions in metres, shape (K, 3); see `distance` for those that are not finite."""
+        known = np.isfinite(self.estimate).all(axis=1, keepdims=True)
+        return np.where(known, self.recording.surface.locate(self.estimate), np.nan)
+
+    @cached_property
+    def distance(self) -> Array:
+        """Estimated depth or range in metres, shape (K,).
+
+        Infinite where the estimated inverse distance is not positive, so that the point would not be in front of the
+        camera; NaN where there is no finite estimate, as from `diverged_at` on.
+        """
+        inverse = self.recording.surface.inverse(self.estimate)
+        none = np.where(np.isfinite(inverse), np.inf, np.nan)
+        return np.divide(1, inverse, out=none, where=np.isfinite(inverse) & (inverse > 0))
+
+    @cached_property
+    def gaps(self) -> list[tuple[float, float]]:
+        """Times in seconds of every gap's first and last sample, where the hidden coordinates have no estimate.
+
+        Their estimates are NaN there, although the observer runs on; `reasons` says why.
+        """
+        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in self._stretches]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why each of the `gaps` is there."""
+        return [self.observer.gaps[self.lacking[k] - 1].reason for k, _ in self._stretches]
+
+    @cached_property
+    def _stretches(self) -> list[tuple[int, int]]:
+        """First sample of every gap, and the first one after it."""
+        edges = np.flatnonzero(np.diff(self.lacking, prepend=0, append=0))
+        return [(int(k), int(end)) for k, end in pairwise(edges) if self.lacking[k]]
+
+    def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
+        """When the error entered the tolerance for good.
+
+        Parameters
+        ----------
+        tolerance : float
+            Bound on the error's absolute value; positive.
+        *names : str
+            Coordinates that count; the hidden ones when left out.
+
+        Returns
+        -------
+        float
+            Seconds since the first sample; infinite if the error is outside at the end.
+        """
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+        outside: NDArray[np.bool_] = ~np.all(np.abs(self.error[:, self._columns(names)]) < tolerance, axis=1)
+        if outside[-1]:
+            return math.inf
+        last = np.flatnonzero(outside)
+        return float(self.time[last[-1] + 1] - self.time[0]) if len(last) else 0.0
+
+    def rms(self, begin: float = -math.inf, end: float = math.inf, *names: str) -> float:
+        """Root mean square of the error between two times, over the hidden coordinates or those named."""
+        part = (self.time >= begin) & (self.time <= end)
+        if not part.any():
+            raise ValueError(f"no sample lies between {begin} and {end} s")
+        return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
+
+    def verdict(self, tolerance: float = 0.05) -> str:
+        """What happened, in words.
+
+        An estimate has converged if its error stayed within the tolerance for at least the last tenth of the run.
+        """
+        if self.diverged_at is not None:
+            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}")
+        besides = ""
+        if len(self.resets):
+            which = "reset once" if len(self.resets) == 1 else "reset often"
+            besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
+        for reason in dict.fromkeys(self.reasons):
+            gaps = [gap for gap, why in zip(self.gaps, self.reasons, strict=True) if why == reason]
+            begin, end = (f"{time:.3g}" for time in gaps[0])
+            besides += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
+            if len(gaps) > 1:
+                besides += VERDICTS["more gaps"].format(count=len(gaps) - 1)
+        length = float(self.time[-1] - self.time[0])
+        if self.recording.truth is None:
+            return VERDICTS["followed"].format(time=f"{length:.3g}") + besides
+        settled = self.settling_time(tolerance)
+        if math.isinf(settled):
+            which = "outside"
+        else:
+            which = "converged" if length - settled >= SETTLED_PART * length else "late"
+        words = VERDICTS[which].format(
+            hidden=", ".join(self.observer.form.hidden),
+            error=f"{float(np.abs(self.error[-1, self._columns(())]).max()):.2g}",
+            tolerance=f"{tolerance:g}",
+            time=f"{settled:.3g}",
+        )
+        return words + besides
+
+    def _columns(self, names: Sequence[str]) -> list[int]:
+        known = [symbol.name for symbol in self.observer.form.coordinates]
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            raise ValueError(f"there is no coordinate {', '.join(unknown)}; there are {', '.join(known)}")
+        return [known.index(name) for name in names or self.observer.form.hidden]
+
+    def __repr__(self) -> str:
+        return f"<Run of the {self.observer.name} observer on {self.recording.source}: {self.verdict()}>"
