@@ -1,10 +1,6 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
-from percept_obs import scenarios
-from percept_obs.consistency import check_consistency
-from percept_obs.forms import CanonicalForm, NotAffine, PartitionedSystem
-from percept_obs.motion import Motion, affine, linear, rigid
-from percept_obs.observability import instantaneous, windowed
+from percept_obs.observability.pointwise import instantaneous, windowed
 from percept_obs.observers import (
     Observer,
     ekf,
@@ -17,7 +13,6 @@ from percept_obs.observers import (
     smo,
     with_point,
 )
-from percept_obs.perspective import PerspectiveSystem
 from percept_obs.points import (
     PointsForm,
     PointsRecording,
@@ -26,12 +21,16 @@ from percept_obs.points import (
     record_points,
     track_points,
 )
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
-from percept_obs.run import Run
+from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
 from percept_obs.structure import StructureAndMotion, record_structure
-from percept_obs.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
-from percept_obs.tracking import DoesNotFit, track
-from percept_obs.two_stage import semigeneral
+from percept_obs.structure.stages import semigeneral
+from percept_obs.studies.consistency import check_consistency
+from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
+from percept_obs.system.motion import Motion, affine, linear, rigid
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
+from percept_obs.tracking.following import DoesNotFit, track
+from percept_obs.tracking.run import Run
 
 __version__ = "0.1.0"
 

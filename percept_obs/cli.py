@@ -74,13 +74,13 @@ def check(options: argparse.Namespace) -> int:
 
 def compare(options: argparse.Namespace) -> int:
     """Run every observer on the same noisy recordings of Ma's examples, from a start of zero, and print a table."""
-    from percept_obs.compare import compare, described, summary
-    from percept_obs.motion import affine
     from percept_obs.observers import OBSERVERS, NeedsMoreOutputs
-    from percept_obs.perspective import PerspectiveSystem
     from percept_obs.recording import Camera, Uniform, record
-    from percept_obs.scenarios import ma2005_eq35, ma2005_eq36
-    from percept_obs.surfaces import pinhole
+    from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
+    from percept_obs.studies.comparison import compare, described, summary
+    from percept_obs.system.motion import affine
+    from percept_obs.system.perspective import PerspectiveSystem
+    from percept_obs.system.surfaces import pinhole
 
     scenario = {"35": ma2005_eq35, "36": ma2005_eq36}[options.example]()
     form = PerspectiveSystem(affine(), pinhole()).measure(*options.outputs.split("+"))

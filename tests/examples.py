@@ -13,7 +13,7 @@ from percept_obs import (
     plane,
     rigid,
 )
-from percept_obs.surfaces import X, Y, Z
+from percept_obs.system.surfaces.base import X, Y, Z
 
 AFFINE = PerspectiveSystem(affine(), pinhole())
 BOTH = AFFINE.measure("y1", "y2")

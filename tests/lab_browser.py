@@ -9,13 +9,13 @@ from conftest import missing
 from jupyter_harness import open_notebook, run_all
 from lab_settings import FRONT
 
-from percept_obs.labs.observer_lab import observer_lab
+from percept_obs.labs.observer.lab import observer_lab
 
 KERNEL = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
 
 OPEN = """
 import json, pathlib
-from percept_obs.labs.observer_lab import observer_lab
+from percept_obs.labs.observer.lab import observer_lab
 lab = observer_lab({arguments})
 def keep(change):
     pathlib.Path("state.new").write_text(json.dumps(lab.settings))

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 import percept_obs.labs
-from percept_obs.labs.observer_lab import runs
-from percept_obs.labs.structures import BY_NAME, KEYS, OUTPUTS, OWN_SWITCH, SURFACES, WAYS, key_of, texts_of
-from percept_obs.motion import affine
-from percept_obs.tracking import StepTooLong, track
+from percept_obs.labs.observer.lab import runs
+from percept_obs.labs.observer.texts import BY_NAME, KEYS, OUTPUTS, OWN_SWITCH, SURFACES, WAYS, key_of, texts_of
+from percept_obs.system.motion import affine
+from percept_obs.tracking.following import StepTooLong, track
 
 FRONT = Path(percept_obs.labs.__file__).parent / "front"
 

@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 from lab_settings import FRONT
 
-from percept_obs.labs.points_lab import HOLDS, STARTS, STATES, WEIGHTS
+from percept_obs.labs.points.lab import HOLDS, STARTS, STATES, WEIGHTS
 
 NOISY = {"kind": "uniform", "size": 0.01}
 ONE = {"points": [[0.0, 1.2, 2.5]]}

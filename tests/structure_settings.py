@@ -8,9 +8,9 @@ from functools import lru_cache
 import numpy as np
 from lab_settings import FRONT
 
-from percept_obs.labs.choices import CHOICES, OBSERVERS, PARTS, texts_of
-from percept_obs.labs.structure_lab import case_of, runs
-from percept_obs.tracking import StepTooLong
+from percept_obs.labs.structure.lab import case_of, runs
+from percept_obs.labs.structure.texts import CHOICES, OBSERVERS, PARTS, texts_of
+from percept_obs.tracking.following import StepTooLong
 
 EVERY = list(OBSERVERS)
 NOISY = {"kind": "uniform", "size": 1e-4, "depth": 1e-5}

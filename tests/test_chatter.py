@@ -7,8 +7,8 @@ import pytest
 from examples import BOTH, ZERO
 
 from percept_obs import record, scenarios
-from percept_obs.chatter import METHODS, chatter, effort
 from percept_obs.observers import range_identification, sliding_mode
+from percept_obs.studies.chatter import METHODS, chatter, effort
 
 EQ35 = scenarios.ma2005_eq35()
 FROM_ZERO = dict(zip(("y1", "y2", "y3"), ZERO, strict=True))

@@ -8,8 +8,8 @@ from examples import BOTH, NOISY, ONE, ZERO
 
 from percept_obs import Camera, ekf, ibo, pinhole, record, scenarios, smo, track
 from percept_obs.cli import main
-from percept_obs.compare import best_setting, compare, relative_distance_errors, summary
 from percept_obs.recording import Recording
+from percept_obs.studies.comparison import best_setting, compare, relative_distance_errors, summary
 
 RECORDINGS = [record(scenarios.ma2005_eq35(), 5, NOISY, seed=s) for s in range(3)]
 

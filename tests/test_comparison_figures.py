@@ -6,9 +6,9 @@ from examples import BOTH, NOISY, ONE, ZERO
 from matplotlib.figure import Figure as MatplotlibFigure
 
 from percept_obs import figures, record, scenarios
-from percept_obs.chatter import chatter, effort
-from percept_obs.compare import compare, summary
 from percept_obs.observers import de_luca, extended_kalman, identifier_based, sliding_mode
+from percept_obs.studies.chatter import chatter, effort
+from percept_obs.studies.comparison import compare, summary
 
 RECORDINGS = [record(scenarios.ma2005_eq35(), 5, NOISY, seed) for seed in range(4)]
 OBSERVERS = {

@@ -10,10 +10,10 @@ from examples import BOTH, NOISY, ON_SPHERE, ONE, ZERO
 from javascript import solve_in_node
 from scipy.integrate import solve_ivp
 
-import percept_obs.tracking as tracking
+import percept_obs.tracking.following as tracking
 from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, kernels, solve, source
-from percept_obs.equations import Equations
+from percept_obs.compile.equations import Equations
 from percept_obs.observers import OBSERVERS, integral_sliding_mode, linear_approximation, range_identification
 
 x, y, u, k, c = sp.symbols("x y u k c", real=True)

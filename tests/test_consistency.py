@@ -8,7 +8,7 @@ from examples import BOTH, ONE, ZERO
 from scipy.stats import chi2
 
 from percept_obs import Camera, Gaussian, check_consistency, ekf, ibo, record, scenarios, track
-from percept_obs.consistency import claimed_distance, claimed_interval
+from percept_obs.studies.consistency import claimed_distance, claimed_interval
 
 SIGMA = 0.01
 CAMERA = Camera(period=0.05, noise=Gaussian(SIGMA))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from utias_folder import utias_folder
 
-from percept_obs.datasets import DatasetUnavailable, UtiasTables, find_utias, utias_tables
+from percept_obs.recording.utias import DatasetUnavailable, UtiasTables, find_utias, utias_tables
 
 Values = NDArray[np.float64]
 

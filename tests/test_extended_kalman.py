@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from percept_obs import Camera, Gaussian, ekf, record, scenarios, track
 from percept_obs.compile import Table, solve
-from percept_obs.forms import partition
+from percept_obs.system.forms import partition
 
 EQ35 = scenarios.ma2005_eq35()
 

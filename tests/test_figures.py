@@ -32,7 +32,7 @@ from percept_obs import (
     track,
     windowed,
 )
-from percept_obs.consistency import claimed_distance
+from percept_obs.studies.consistency import claimed_distance
 
 NOISY = Camera(noise=Uniform(0.01))
 COARSE = Camera(period=0.05, noise=Uniform(0.01))

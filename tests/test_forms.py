@@ -7,7 +7,7 @@ import sympy as sp
 from examples import AFFINE, BOTH, MOTIONS, ON_SPHERE, ONE, OTHER, SURFACES
 
 from percept_obs import NotAffine, PerspectiveSystem
-from percept_obs.forms import partition
+from percept_obs.system.forms import partition
 
 OUTPUTS = [("y1",), ("y2",), ("y1", "y2"), ("y2", "y1")]
 FLAT = {name: surface for name, surface in SURFACES.items() if name != "sphere"}

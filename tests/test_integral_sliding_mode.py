@@ -21,10 +21,11 @@ from percept_obs.observers.integral_sliding_mode import (
     tolerable_amplification,
     ultimate_bound,
 )
-from percept_obs.pixels import CHWA_CAMERA, SignalToNoise
-from percept_obs.recovery import elapsed
+from percept_obs.observers.inversion import elapsed
 from percept_obs.structure import COROLLARIES, PatchDepth, grid_patch, record_structure
-from percept_obs.tracking import StepTooLong
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
+from percept_obs.structure.scenarios import chwa2019_crossing, chwa2019_experiment, chwa2019_simulation
+from percept_obs.tracking.following import StepTooLong
 
 ZERO = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0}
 FORM = COROLLARIES[0].choice().form
@@ -126,7 +127,7 @@ def assert_only_the_start_is_missing(run, latest):
 @pytest.mark.parametrize("switch", ["ideal", LAYER])
 @pytest.mark.parametrize("section", EXPERIMENT)
 def test_the_five_cases_of_the_experiment(section, switch, hold):
-    setup = scenarios.chwa2019_experiment(section)
+    setup = chwa2019_experiment(section)
     run = track(record_structure(setup, 3), ismo(setup.choice.form, switch), ZERO, hold=hold, **fine)
     found, true = quantities(run)
     assert_only_the_start_is_missing(run, 0.55)
@@ -139,7 +140,7 @@ def test_the_five_cases_of_the_experiment(section, switch, hold):
 
 
 def test_the_first_values_of_the_scale():
-    setup = scenarios.chwa2019_experiment("IV.A")
+    setup = chwa2019_experiment("IV.A")
     for switch, early in ((LAYER, 10.3711), ("ideal", 10.3709)):
         run = track(record_structure(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="exact", **fine)
         assert run.estimate[500, 3] == pytest.approx(early, abs=1e-3)
@@ -148,7 +149,7 @@ def test_the_first_values_of_the_scale():
 
 def test_a_held_sample_shifts_the_scale_as_is_told_beside_the_claim():
     """Read right after a sample has arrived, the innovation stands at the top of the saw tooth that holding makes."""
-    setup = scenarios.chwa2019_experiment("IV.A")
+    setup = chwa2019_experiment("IV.A")
     shifts = []
     for switch, shifted in ((LAYER, 10.557), ("ideal", 10.651)):
         run = track(record_structure(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="zero", **fine)
@@ -168,7 +169,7 @@ def test_a_long_hold_never_settles_as_is_told_beside_the_claim():
 
 @pytest.mark.slow
 def test_sixty_seconds():
-    setup = scenarios.chwa2019_experiment("IV.A")
+    setup = chwa2019_experiment("IV.A")
     recording, form = record_structure(setup, 60), setup.choice.form
     last = recording.time >= 50
 
@@ -185,8 +186,8 @@ def test_sixty_seconds():
 
 
 def test_a_step_that_is_too_long_is_noticed_before_the_run(monkeypatch):
-    recording = record_structure(scenarios.chwa2019_experiment("IV.A"), 1, Camera(period=0.01))
-    monkeypatch.setattr("percept_obs.tracking.solve", lambda *_: pytest.fail("the run has begun"))
+    recording = record_structure(chwa2019_experiment("IV.A"), 1, Camera(period=0.01))
+    monkeypatch.setattr("percept_obs.tracking.following.solve", lambda *_: pytest.fail("the run has begun"))
     with pytest.raises(StepTooLong, match=r"from 0 s on, the integral sliding mode .* part decays with 450"):
         track(recording, ismo(FORM, LAYER))
 
@@ -199,7 +200,7 @@ def test_the_sign_has_no_fastest_rate_and_the_ideal_switch_a_slow_one():
 @pytest.mark.slow
 def test_the_sign_chatters_by_gamma_squared_c_times_the_step():
     """A step on the wrong side of s = 0 changes v by gamma^2 c h, and that is the chatter of ghat, and d_s follows."""
-    setup = scenarios.chwa2019_experiment("IV.A")
+    setup = chwa2019_experiment("IV.A")
     observer = ismo(setup.choice.form, "sign")
     symbols = (*observer.equations.state, *FORM.x1, *FORM.parameters)
     learned = vectorised(symbols, list(surfaces(observer)[3]), observer.gain_values)
@@ -226,7 +227,7 @@ VARYING = ("V.A", "VI.A")
 @pytest.mark.parametrize("angular_velocity", [(0.0, 0.0, 0.0), (0.1, -0.2, 0.3)], ids=["w = 0", "w"])
 @pytest.mark.parametrize("section", [*VARYING, "IV.A", "IV.B", "V.B", "VI.B", "VI.C"])
 def test_velocities_that_vary(section, angular_velocity):
-    setup = scenarios.chwa2019_simulation(section, angular_velocity)
+    setup = chwa2019_simulation(section, angular_velocity)
     recording = record_structure(setup)
     run = track(recording, ismo(setup.choice.form), ZERO, hold="first", **fine)
     found, true = quantities(run)
@@ -249,7 +250,7 @@ def ranges(run):
     ("start", "begins"), [(ZERO, 0.589), (None, 0.137)], ids=["from zero", "from the first sample"]
 )
 def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, begins):
-    setup = scenarios.chwa2019_crossing()
+    setup = chwa2019_crossing()
     observer = ismo(setup.choice.form, switch)
     run = track(record_structure(setup), observer, start, hold="first", **fine)
     assert run.gaps[0] == (0, pytest.approx(begins, abs=0.002))
@@ -271,7 +272,7 @@ def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, be
 
 @pytest.mark.slow
 def test_noise_needs_a_wider_gap():
-    setup = scenarios.chwa2019_crossing()
+    setup = chwa2019_crossing()
     patch = PatchDepth(grid_patch(1.0, 5))
     recording = record_structure(setup, pixels=CHWA_CAMERA, ratio=SignalToNoise(110), depth=patch, seed=1)
     noise = (recording.outputs - recording.truth[:, :3]).std(axis=0).max()
@@ -289,7 +290,7 @@ def test_noise_needs_a_wider_gap():
 
 def test_the_bound_of_the_theorem_holds():
     """|se| ends within atanh(alpha) / c, alpha = |g| / gamma."""
-    setup = scenarios.chwa2019_experiment("IV.A")
+    setup = chwa2019_experiment("IV.A")
     recording = record_structure(setup, 3)
     for switch in ("ideal", LAYER):
         observer = ismo(setup.choice.form, switch)

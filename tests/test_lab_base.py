@@ -9,8 +9,9 @@ import sympy as sp
 from conftest import missing
 from lab_settings import FRONT
 
-from percept_obs.labs import base, markup
-from percept_obs.labs.observer_lab import observer_lab
+from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs.shared import lab as base
+from percept_obs.labs.shared import markup
 
 BUILT_FROM = ("package.json", "package-lock.json", "eslint.config.js")
 

@@ -15,11 +15,11 @@ from lab_settings import (
 )
 from utias_folder import utias_folder
 
-from percept_obs.datasets import load_utias
-from percept_obs.labs.observer_lab import observer_lab, runs
-from percept_obs.labs.structures import KEYS, OWN_SWITCH, WAYS, texts_of
-from percept_obs.observability import windowed
-from percept_obs.surfaces import BehindCamera
+from percept_obs.labs.observer.lab import observer_lab, runs
+from percept_obs.labs.observer.texts import KEYS, OWN_SWITCH, WAYS, texts_of
+from percept_obs.observability.pointwise import windowed
+from percept_obs.recording.utias import load_utias
+from percept_obs.system.surfaces import BehindCamera
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
 

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from percept_obs import PerspectiveSystem, affine, pinhole
-from percept_obs.labs.lecture import cascade_equations, equations_of, kalman_equations
+from percept_obs.labs.shared.equations import cascade_equations, equations_of, kalman_equations
 from percept_obs.observers import OBSERVERS, extended_kalman, linear_approximation
 from percept_obs.observers.base import hats
 

@@ -4,11 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from percept_obs.labs import printing
-from percept_obs.labs.observer_lab import observer_lab
-from percept_obs.labs.structures import texts_of
+from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs.observer.texts import texts_of
+from percept_obs.labs.shared import printing
 
-STRUCTURES = "percept_obs.labs.structures"
+STRUCTURES = "percept_obs.labs.observer.texts"
 KEYS = ["pinhole y1+y2", "chained y2"]
 
 

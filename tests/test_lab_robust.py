@@ -19,8 +19,8 @@ from lab_browser import (
 )
 from lab_settings import ALL, assert_follows_python
 
-from percept_obs.labs.observer_lab import runs
-from percept_obs.surfaces import BehindCamera
+from percept_obs.labs.observer.lab import runs
+from percept_obs.system.surfaces import BehindCamera
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

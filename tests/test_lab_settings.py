@@ -7,11 +7,11 @@ import pytest
 from utias_folder import utias_folder
 
 from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
-from percept_obs.datasets import load_utias
-from percept_obs.labs.observer_lab import PICTURES, observer_lab
-from percept_obs.labs.structures import BY_NAME, KEYS, SURFACES, WAYS, texts_of
-from percept_obs.perspective import PerspectiveSystem
-from percept_obs.surfaces import BehindCamera, pinhole
+from percept_obs.labs.observer.lab import PICTURES, observer_lab
+from percept_obs.labs.observer.texts import BY_NAME, KEYS, SURFACES, WAYS, texts_of
+from percept_obs.recording.utias import load_utias
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import BehindCamera, pinhole
 
 NOISY = {"kind": "uniform", "size": 0.01}
 
@@ -202,7 +202,7 @@ def test_the_analysis_says_what_python_found(settings, words):
 
 def test_an_observer_of_which_python_has_nothing_to_say_is_not_run(monkeypatch):
     lab = observer_lab(observers=["linear_approximation", "range_identification", "immersion_and_invariance"])
-    monkeypatch.setattr("percept_obs.labs.observer_lab.track", lambda *_: pytest.fail("it was run"))
+    monkeypatch.setattr("percept_obs.labs.observer.lab.track", lambda *_: pytest.fail("it was run"))
     lab.summary = {"serial": 1}
     assert len(lab.analysis["sentences"]) == 1
 

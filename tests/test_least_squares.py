@@ -6,8 +6,8 @@ from examples import NOISY, SURFACES
 from utias_folder import utias_folder
 
 from percept_obs import Camera, Recording, Scenario, affine, pinhole, record, rigid, scenarios
-from percept_obs.datasets import load_utias
-from percept_obs.least_squares import moving_window_least_squares
+from percept_obs.recording.utias import load_utias
+from percept_obs.studies.least_squares import moving_window_least_squares
 
 
 @pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)

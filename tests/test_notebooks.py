@@ -22,7 +22,7 @@ from nbclient.exceptions import CellExecutionError
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from utias_folder import utias_folder
 
-from percept_obs.labs.observer_lab import observer_lab
+from percept_obs.labs.observer.lab import observer_lab
 
 NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
 

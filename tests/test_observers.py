@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 
 from percept_obs import Camera, NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
 from percept_obs.compile import vectorised
-from percept_obs.forms import partition
 from percept_obs.observers import (
     OBSERVERS,
     NeedsMoreOutputs,
@@ -26,6 +25,7 @@ from percept_obs.observers import (
     spica,
 )
 from percept_obs.observers.base import Gain, hats, sigma2
+from percept_obs.system.forms import partition
 
 LEARNERS = (range_identification, integral_sliding_mode)
 """Observers that learn w^T x2, which must then determine x2."""

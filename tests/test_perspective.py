@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from percept_obs import PerspectiveSystem, affine, chained, pinhole, plane
 from percept_obs.compile import vectorised
-from percept_obs.surfaces import X, Y, Z
+from percept_obs.system.surfaces.base import X, Y, Z
 
 number = st.floats(-1, 1)
 point = st.tuples(st.floats(-1, 1), st.floats(0.5, 1.5), st.floats(2, 4))

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from percept_obs import PointsForm, affine, chained, linear, pinhole, plane, rigid
-from percept_obs.motion import Motion
 from percept_obs.points import (
     NotLinear,
     UnseenDirection,
@@ -18,7 +17,8 @@ from percept_obs.points import (
     rigid_body,
 )
 from percept_obs.points.directions import in_words, mainly
-from percept_obs.surfaces import POINT
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT
 
 y1, y2 = sp.symbols("y1 y2", real=True)
 SURFACES = {

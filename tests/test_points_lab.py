@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from points_settings import CASES, as_array, random_settings, run_in_node
 
-from percept_obs.labs.points_lab import PICTURES, points_lab, recording_of, run_of
-from percept_obs.labs.points_model import MOST_POINTS, STATES, form_of, state_of
+from percept_obs.labs.points.lab import PICTURES, points_lab, recording_of, run_of
+from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
+from percept_obs.observability.gramian import gramian
 from percept_obs.points import kernel
-from percept_obs.points.gramian import gramian
 from percept_obs.points.manoeuvre import Manoeuvre
 
 

@@ -10,7 +10,7 @@ from lab_browser import OPEN, assert_python_has, centre, control, rested, write_
 from lab_settings import FRONT
 from points_settings import as_array
 
-from percept_obs.labs.points_lab import points_lab, run_of
+from percept_obs.labs.points.lab import points_lab, run_of
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

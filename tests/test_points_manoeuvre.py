@@ -5,9 +5,9 @@ import pytest
 import sympy as sp
 
 from percept_obs import Camera, PointsScenario, record_points
-from percept_obs.motion import TIME
 from percept_obs.points import rigid_body
 from percept_obs.points.manoeuvre import PATH, SPIN, TURNING, Manoeuvre
+from percept_obs.system.motion import TIME
 
 
 def path_at(time):

@@ -24,7 +24,7 @@ from percept_obs import (
 from percept_obs.points import constant, independent_points, kernel, lyapunov, riccati, rigid_body, scheduled
 from percept_obs.points.recording import LeavesEveryBound
 from percept_obs.points.scenarios import moving_body
-from percept_obs.tracking import DoesNotFit
+from percept_obs.tracking.following import DoesNotFit
 
 ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])
 

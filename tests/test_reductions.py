@@ -7,7 +7,6 @@ from examples import BOTH, ONE, OTHER
 from scipy.linalg import expm, solve_continuous_are
 
 from percept_obs.compile import Table, solve
-from percept_obs.forms import partition
 from percept_obs.observers import (
     de_luca,
     extended_kalman,
@@ -18,6 +17,7 @@ from percept_obs.observers import (
     sliding_mode,
     spica,
 )
+from percept_obs.system.forms import partition
 
 FORMS = {"y1": ONE, "y2": OTHER, "y1+y2": BOTH}
 each_form = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)

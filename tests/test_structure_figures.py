@@ -9,6 +9,7 @@ from examples import BOTH
 from percept_obs import figures, record, scenarios, track
 from percept_obs.observers import ekf, ismo
 from percept_obs.structure import linear_view, record_structure, seen_as
+from percept_obs.structure.scenarios import chwa2019_experiment
 
 ZERO = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0}
 fine = {"hold": "first", "step": 1e-3, "language": "python"}
@@ -16,7 +17,7 @@ fine = {"hold": "first", "step": 1e-3, "language": "python"}
 
 @pytest.fixture(scope="module")
 def recording():
-    return record_structure(scenarios.chwa2019_experiment("IV.A"), 1.5)
+    return record_structure(chwa2019_experiment("IV.A"), 1.5)
 
 
 @pytest.fixture(scope="module")
@@ -64,9 +65,9 @@ def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run)
 
 
 def test_what_does_not_belong_together_is_refused(recording, run):
-    other = record_structure(scenarios.chwa2019_experiment("V.B"), 1.5)
+    other = record_structure(chwa2019_experiment("V.B"), 1.5)
     elsewhere = track(other, ismo(other.surface.form), ZERO, **fine)
-    blind = seen_as(recording, recording.surface, scenarios.chwa2019_experiment("IV.A").scenario.motion)
+    blind = seen_as(recording, recording.surface, chwa2019_experiment("IV.A").scenario.motion)
     point = track(record(scenarios.ma2005_eq35(), 1), ismo(BOTH))
     for runs, labels, message in (
         ([], None, "there are no runs"),

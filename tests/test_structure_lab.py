@@ -17,12 +17,12 @@ from structure_settings import (
     structure_runs_of,
 )
 
-from percept_obs.labs.choices import CHOICES, PARTS, general_form, key_of, refused, texts_of
-from percept_obs.labs.structure_lab import choice_of, runs, structure_lab
+from percept_obs.labs.structure.lab import choice_of, runs, structure_lab
+from percept_obs.labs.structure.texts import CHOICES, PARTS, general_form, key_of, refused, texts_of
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion, corollary_of
-from percept_obs.tracking import StepTooLong
+from percept_obs.tracking.following import StepTooLong
 
-pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::percept_obs.tracking.StepTooLong")]
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::percept_obs.tracking.following.StepTooLong")]
 
 POSSIBLE = [u for n in (1, 2, 3) for u in combinations(QUANTITIES, n) if key_of(u, False) not in refused()]
 

@@ -25,7 +25,7 @@ from lab_browser import (
 )
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.structure_lab import choice_of, structure_lab
+from percept_obs.labs.structure.lab import choice_of, structure_lab
 from percept_obs.structure import ImpossibleChoice
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]

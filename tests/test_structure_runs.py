@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from percept_obs import scenarios
 from percept_obs.structure import PatchDepth, grid_patch, record_structure
-from percept_obs.structure_runs import FIGURES, PROPOSED, STAND_IN, competitors, figure_runs, scale_spread
+from percept_obs.structure.competitors import FIGURES, PROPOSED, STAND_IN, competitors, figure_runs, scale_spread
+from percept_obs.structure.scenarios import chwa2019_experiment
 
 pytestmark = pytest.mark.slow
 
@@ -56,7 +56,7 @@ def test_scatter_grows_with_time_unless_the_slope_stays():
 
 def test_filters_need_to_know_the_noise():
     with pytest.raises(ValueError, match="the recording has none; record it with noise"):
-        competitors(record_structure(scenarios.chwa2019_experiment("IV.A"), 1))
+        competitors(record_structure(chwa2019_experiment("IV.A"), 1))
 
 
 @pytest.mark.parametrize("number", FIGURES)

@@ -19,9 +19,7 @@ from percept_obs import (
     scenarios,
     track,
 )
-from percept_obs.least_squares import moving_window_least_squares
 from percept_obs.observers import OBSERVERS, NotIntegrable, ekf, immersion_and_invariance, ismo
-from percept_obs.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
 from percept_obs.structure import (
     COROLLARIES,
     GivenDepth,
@@ -36,8 +34,11 @@ from percept_obs.structure import (
     record_structure,
     seen_as,
 )
+from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
+from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
+from percept_obs.studies.least_squares import moving_window_least_squares
 
-CASE = scenarios.chwa2019_experiment("IV.A")
+CASE = chwa2019_experiment("IV.A")
 STILL = (0.0, 0.0, 0.0)
 W = (0.1, -0.2, 0.3)
 
@@ -56,7 +57,7 @@ def test_a_recording_of_a_choice_holds_what_it_may_know():
     assert [s.name for s in recording.motion.parameters] == ["w1", "w2", "w3", "v_c1"]
     np.testing.assert_allclose(recording.truth[0, :3], [0.32, 0.30, 0.05])
     np.testing.assert_allclose(recording.points[0], np.array([0.32, 0.30, 1]) / 0.52)
-    known = record_structure(scenarios.chwa2019_experiment("VI.B"), 1)
+    known = record_structure(chwa2019_experiment("VI.B"), 1)
     assert known.surface.scale == 10.4
     np.testing.assert_allclose(known.truth[0, 3:], [0, -0.22, -0.23])
 
@@ -79,16 +80,16 @@ def test_every_observer_runs_on_the_form_as_it_is(make):
 @pytest.mark.parametrize("angular_velocity", [STILL, W], ids=["w = 0", "w"])
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0.3, -0.2, 1)], ids=["facing", "tilted"])
 def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, normal):
-    setup = scenarios.chwa2019_simulation("V.A", angular_velocity)
+    setup = chwa2019_simulation("V.A", angular_velocity)
     recording = record_structure(setup, 2, depth=PatchDepth(grid_patch(0.4, 3, normal)))
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
 
 
 def test_the_size_gives_it_to_a_camera_that_does_not_turn():
     size = SizeDepth(grid_patch(0.4))
-    recording = record_structure(scenarios.chwa2019_simulation("V.A"), 2, depth=size)
+    recording = record_structure(chwa2019_simulation("V.A"), 2, depth=size)
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
-    turned = record_structure(scenarios.chwa2019_simulation("V.A", W), 2, depth=size)
+    turned = record_structure(chwa2019_simulation("V.A", W), 2, depth=size)
     assert np.abs(turned.outputs[:, 2] / turned.truth[:, 2] - 1).max() > 0.01
 
 
@@ -112,7 +113,7 @@ def test_pictures_without_the_object_are_lost():
     dropped = record_structure(CASE, 1, Camera(1e-3, dropout=0.3), seed=2)
     assert np.isnan(dropped.outputs[:, 0]).mean() == pytest.approx(0.3, abs=0.05)
     with pytest.raises(ValueError, match="outside the first picture"):
-        record_structure(scenarios.chwa2019_simulation("V.A"), 1, pixels=small)
+        record_structure(chwa2019_simulation("V.A"), 1, pixels=small)
 
 
 def test_bias_and_drift_do_what_the_sensitivity_says():
@@ -157,9 +158,9 @@ def test_fewer_unknowns_are_found_in_the_least_squares_sense():
 
 
 def test_seen_as_another_choice():
-    recording = record_structure(scenarios.chwa2019_experiment("IV.B"), 1)
+    recording = record_structure(chwa2019_experiment("IV.B"), 1)
     fifth = COROLLARIES[4].choice(scale=10.4)
-    motion = scenarios.chwa2019_experiment("IV.B").scenario.motion
+    motion = chwa2019_experiment("IV.B").scenario.motion
     again = seen_as(recording, fifth, motion, 10.4)
     np.testing.assert_array_equal(again.outputs, recording.outputs)
     np.testing.assert_allclose(again.truth[:, 3:], [[-0.22, -0.23, 0]] * 1001)
@@ -173,7 +174,7 @@ def test_the_filter_on_the_linear_view_is_the_kalman_filter():
     from scipy.linalg import expm
 
     period, R, Q2, P0 = 0.01, 1e-2, 1.0, 100.0
-    recording = linear_view(record_structure(scenarios.chwa2019_simulation("IV.A", W), 1, Camera(period), seed=4))
+    recording = linear_view(record_structure(chwa2019_simulation("IV.A", W), 1, Camera(period), seed=4))
     form = recording.surface.form
     observer = ekf(form, noise_variance=R, hidden_process_noise=Q2, hidden_variance=P0, measured_variance=1.0)
     run = track(recording, observer, step=1e-3)
@@ -224,9 +225,9 @@ def test_scenarios_that_make_no_sense_are_refused():
         with pytest.raises(ValueError, match="holds no two pictures"):
             record_structure(CASE, duration)
     with pytest.raises(ValueError, match=r"there is no case 'V.A'; there are IV.A"):
-        scenarios.chwa2019_experiment("V.A")
+        chwa2019_experiment("V.A")
     with pytest.raises(ValueError, match="needs a positive third component"):
-        scenarios.chwa2019_simulation("V.A", (0.1, 0, 0))
+        chwa2019_simulation("V.A", (0.1, 0, 0))
 
 
 @pytest.mark.parametrize(

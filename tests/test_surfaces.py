@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from percept_obs import BehindCamera, ImagingSurface, chained, pinhole, plane
-from percept_obs.surfaces import X, Y, Z
+from percept_obs.system.surfaces.base import X, Y, Z
 
 coordinate = st.floats(-3, 3)
 point = st.tuples(coordinate, st.floats(0.2, 3), st.floats(1.5, 9))

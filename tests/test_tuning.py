@@ -7,10 +7,10 @@ import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, ZERO
 
 from percept_obs import record, scenarios, track
-from percept_obs.compare import relative_distance_errors
-from percept_obs.least_squares import moving_window_least_squares
 from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, range_identification
-from percept_obs.tuning import HAND_HELD, choose_and_report, grid, side_by_side
+from percept_obs.studies.comparison import relative_distance_errors
+from percept_obs.studies.least_squares import moving_window_least_squares
+from percept_obs.studies.tuning import HAND_HELD, choose_and_report, grid, side_by_side
 
 FOUR = [record(scenarios.ma2005_eq35(), 3, replace(NOISY, period=0.05), seed) for seed in range(4)]
 CHOOSING, REPORTING = FOUR[:2], FOUR[2:]

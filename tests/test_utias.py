@@ -9,11 +9,11 @@ import pytest
 from utias_folder import utias_folder
 
 from percept_obs import PerspectiveSystem, ekf, ibo, pinhole, rigid, track
-from percept_obs.compare import best_setting, relative_distance_errors
-from percept_obs.datasets import load_utias
-from percept_obs.least_squares import moving_window_least_squares
 from percept_obs.observers import OBSERVERS, immersion_and_invariance
-from percept_obs.tuning import choose_and_report, side_by_side
+from percept_obs.recording.utias import load_utias
+from percept_obs.studies.comparison import best_setting, relative_distance_errors
+from percept_obs.studies.least_squares import moving_window_least_squares
+from percept_obs.studies.tuning import choose_and_report, side_by_side
 
 FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 IBO_SETTINGS = [

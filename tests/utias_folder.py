@@ -24,7 +24,7 @@ def utias_folder(*tables: str) -> Path:
 
     message = (
         f"{', '.join(wanted)} not found in {' or '.join(map(str, folders))}; set PERCEPT_OBS_UTIAS to "
-        "a folder that holds them (percept_obs.datasets.find_utias() fetches dataset3.mat; the tables "
+        "a folder that holds them (percept_obs.recording.utias.find_utias() fetches dataset3.mat; the tables "
         "come with the project's data)"
     )
     if os.environ.get("CI", "").lower() == "true":

@@ -10,8 +10,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.compile.base import Text, refuse_what_differs
-from percept_obs.equations import Equations
+from percept_obs.compile.equations import Equations
+from percept_obs.compile.loop import Text, refuse_what_differs
 
 Array = NDArray[np.float64]
 

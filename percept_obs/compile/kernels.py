@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.compile.base import source
-from percept_obs.equations import Equations
+from percept_obs.compile.equations import Equations
+from percept_obs.compile.loop import source
 
 Array = NDArray[np.float64]
 

@@ -20,10 +20,10 @@ from matplotlib.axes import Axes
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.consistency import claimed_interval
-from percept_obs.run import Run
-from percept_obs.surfaces import POINT, ImagingSurface
-from percept_obs.views import View
+from percept_obs.studies.consistency import claimed_interval
+from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.system.view import View
+from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
 

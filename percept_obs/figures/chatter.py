@@ -9,8 +9,8 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.chatter import Effort
 from percept_obs.figures.base import WIDTH, Figure, drawn, legend_above, letter, style, tidy
+from percept_obs.studies.chatter import Effort
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,9 +24,9 @@ def chatter(
     Parameters
     ----------
     errors : mapping of labels to tables
-        From `percept_obs.chatter.chatter`; the last coordinate, the inverse distance, is drawn.
+        From `percept_obs.studies.chatter.chatter`; the last coordinate, the inverse distance, is drawn.
     efforts : mapping of labels to Effort
-        From `percept_obs.chatter.effort`.  Curves with the same label look the same on both sides.
+        From `percept_obs.studies.chatter.effort`.  Curves with the same label look the same on both sides.
     axes : two axes, optional
         New ones when left out.
 

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from percept_obs.compare import summary
 from percept_obs.figures.base import BLACK, SKY, VERMILLION, WIDTH, Figure, drawn, finite, tidy
+from percept_obs.studies.comparison import summary
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,7 +34,7 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Figur
     Parameters
     ----------
     table : pandas.DataFrame
-        From `percept_obs.compare.compare`.
+        From `percept_obs.studies.comparison.compare`.
     axes : two axes, optional
         For settling time and error; new ones when left out.
 

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from percept_obs.captions import place_in_words, recording_of, story
 from percept_obs.compile import vectorised
 from percept_obs.figures.base import (
     BLACK,
@@ -35,11 +34,12 @@ from percept_obs.figures.base import (
     span,
     tidy,
 )
-from percept_obs.forms import NotAffine
-from percept_obs.observability import instantaneous
-from percept_obs.perspective import PerspectiveSystem
+from percept_obs.figures.labels import place_in_words, recording_of, story
+from percept_obs.observability.pointwise import instantaneous
 from percept_obs.recording import Recording
-from percept_obs.run import Run
+from percept_obs.system.forms import NotAffine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.tracking.run import Run
 
 NEARBY = 0.6
 """How far outside the path, in sides of its box, the focus of expansion may lie to be shown in its place."""

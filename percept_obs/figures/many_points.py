@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from percept_obs.captions import labels_for
 from percept_obs.figures.base import (
     BLACK,
     COLOURS,
@@ -28,8 +27,9 @@ from percept_obs.figures.base import (
     style,
     tidy,
 )
+from percept_obs.figures.labels import labels_for
+from percept_obs.observability.gramian import DecayBound, Gramian, true_images
 from percept_obs.points import PointsRecording, PointsRun
-from percept_obs.points.gramian import DecayBound, Gramian, true_images
 
 
 def points_in_image(data: PointsRun | PointsRecording, ax: Axes | None = None) -> Figure:

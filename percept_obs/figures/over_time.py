@@ -7,8 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.captions import labels_for, list_of_runs, same_point, story, time_in_words
-from percept_obs.consistency import claimed_distance
 from percept_obs.figures.base import (
     TRUTH,
     Array,
@@ -32,9 +30,11 @@ from percept_obs.figures.base import (
     style,
     words,
 )
+from percept_obs.figures.labels import labels_for, list_of_runs, same_point, story, time_in_words
 from percept_obs.recording import Recording
-from percept_obs.run import Run
-from percept_obs.surfaces import ImagingSurface
+from percept_obs.studies.consistency import claimed_distance
+from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.tracking.run import Run
 
 
 def compare(

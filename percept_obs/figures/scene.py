@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.captions import place_in_words, recording_of, story
 from percept_obs.figures.base import (
     BLACK,
     BLUE,
@@ -27,8 +26,9 @@ from percept_obs.figures.base import (
     not_a_strip,
     span,
 )
+from percept_obs.figures.labels import place_in_words, recording_of, story
 from percept_obs.recording import Recording
-from percept_obs.run import Run
+from percept_obs.tracking.run import Run
 
 _CORNERS = [(1, 0.75, 2), (-1, 0.75, 2), (-1, -0.75, 2), (1, -0.75, 2)]
 _EDGES = [edge for corner in _CORNERS for edge in ((0, 0, 0), corner)]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.captions import story, time_in_words
 from percept_obs.figures.base import (
     BLUE,
     ESTIMATE,
@@ -35,7 +34,8 @@ from percept_obs.figures.base import (
     span,
     words,
 )
-from percept_obs.run import Run
+from percept_obs.figures.labels import story, time_in_words
+from percept_obs.tracking.run import Run
 
 RESIDUALS: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "linestyle": "-"},

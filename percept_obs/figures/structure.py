@@ -20,8 +20,8 @@ from percept_obs.figures.base import (
     span,
     style,
 )
-from percept_obs.run import Run
 from percept_obs.structure import LinearView, StructureAndMotion
+from percept_obs.tracking.run import Run
 
 
 def quantities(

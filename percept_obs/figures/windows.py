@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from percept_obs.captions import labels_for
-from percept_obs.consistency import Consistency
 from percept_obs.figures.base import (
     BLACK,
     BLUE,
@@ -25,7 +23,9 @@ from percept_obs.figures.base import (
     style,
     tidy,
 )
-from percept_obs.observability import Excitation
+from percept_obs.figures.labels import labels_for
+from percept_obs.observability.pointwise import Excitation
+from percept_obs.studies.consistency import Consistency
 
 
 def excitation(

@@ -1,1 +1,7 @@
-"""Labs: what may be moved, and what follows from it at once.  One lab a file."""
+"""Live labs: what may be moved, and what follows from it at once.  One folder a lab."""
+
+from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs.points.lab import points_lab
+from percept_obs.labs.structure.lab import structure_lab
+
+__all__ = ["observer_lab", "points_lab", "structure_lab"]

@@ -1,6 +1,5 @@
 """Observers, one family a file."""
 
-from percept_obs.forms import NeedsMoreOutputs
 from percept_obs.observers.base import About, Gain, Observer, noise_bias, with_point
 from percept_obs.observers.de_luca import de_luca, spica
 from percept_obs.observers.extended_kalman import ekf, extended_kalman
@@ -10,6 +9,7 @@ from percept_obs.observers.integral_sliding_mode import integral_sliding_mode, i
 from percept_obs.observers.linear_approximation import lao, linear_approximation
 from percept_obs.observers.range_identification import range_identification, rio
 from percept_obs.observers.sliding_mode import sliding_mode, smo
+from percept_obs.system.forms import NeedsMoreOutputs
 
 OBSERVERS = (
     identifier_based,

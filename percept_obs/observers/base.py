@@ -15,10 +15,10 @@ from sympy.logic.boolalg import Boolean
 from sympy.solvers.solveset import NonlinearError
 
 from percept_obs.compile import right_hand_side, vectorised
-from percept_obs.equations import Equations, Expressions, Symbols
-from percept_obs.forms import CanonicalForm, PartitionedSystem
-from percept_obs.motion import Motion
-from percept_obs.recovery import Gap, largest
+from percept_obs.compile.equations import Equations, Expressions, Symbols
+from percept_obs.observers.inversion import Gap, largest
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.motion import Motion
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm, PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import About, Gain, Observer, hats, innovation, output_injection
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 H, Lam = sp.symbols("H Lambda", real=True)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import About, Gain, Observer, hats
+from percept_obs.system.forms import PartitionedSystem
 
 R, Q, Q2, P1, P2 = sp.symbols("R Q Q2 P01 P02", real=True)
 

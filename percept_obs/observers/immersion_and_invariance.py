@@ -6,9 +6,9 @@ from itertools import combinations
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm, PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import About, Gain, Observer, hats
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 lam = sp.Symbol("lambda", real=True)
 

@@ -6,8 +6,7 @@ import math
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import CanonicalForm, PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import (
     RECOVERY_GAIN,
     About,
@@ -17,8 +16,9 @@ from percept_obs.observers.base import (
     hats,
     innovation,
 )
-from percept_obs.recovery import Gap, elapsed, first_innovation, recovered, starting
-from percept_obs.switching import Switch, switch_named
+from percept_obs.observers.inversion import Gap, elapsed, first_innovation, recovered, starting
+from percept_obs.observers.switching import Switch, switch_named
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 k1, k2, gamma, a, b, delta = sp.symbols("k1 k2 gamma a b delta", real=True)
 c = sp.Symbol("c", real=True)

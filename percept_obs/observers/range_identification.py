@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import RECOVERY_GAIN, About, Gain, Observer, hats, innovation
-from percept_obs.recovery import recovered
-from percept_obs.switching import switch_named
+from percept_obs.observers.inversion import recovered
+from percept_obs.observers.switching import switch_named
+from percept_obs.system.forms import PartitionedSystem
 
 alpha, k, gamma, delta = sp.symbols("alpha k gamma delta", real=True)
 

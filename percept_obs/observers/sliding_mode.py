@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.equations import Equations
-from percept_obs.forms import PartitionedSystem
+from percept_obs.compile.equations import Equations
 from percept_obs.observers.base import (
     BOUND_GAINS,
     NOISE_GAIN,
@@ -18,7 +17,8 @@ from percept_obs.observers.base import (
     noise_bias,
     output_injection,
 )
-from percept_obs.switching import switch_named
+from percept_obs.observers.switching import switch_named
+from percept_obs.system.forms import PartitionedSystem
 
 alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
 

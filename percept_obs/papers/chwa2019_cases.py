@@ -7,7 +7,6 @@ from itertools import permutations
 
 import sympy as sp
 
-from percept_obs.motion import rigid
 from percept_obs.papers.base import (
     Check,
     Entry,
@@ -24,7 +23,8 @@ from percept_obs.papers.base import (
     vectors,
 )
 from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
-from percept_obs.structure.base import OUTPUTS, d_s
+from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.system.motion import rigid
 
 ORDERS = tuple(map("".join, permutations("123")))
 _, _, ybar3 = OUTPUTS

@@ -7,7 +7,6 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.motion import rigid
 from percept_obs.papers.base import (
     Entry,
     Finding,
@@ -22,10 +21,12 @@ from percept_obs.papers.base import (
     less,
     vectors,
 )
-from percept_obs.perspective import PerspectiveSystem
 from percept_obs.structure import COROLLARIES, scaled_dynamics
-from percept_obs.structure.base import OUTPUTS, d_s
-from percept_obs.surfaces import POINT, X, Y, Z, pinhole
+from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.system.motion import rigid
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+from percept_obs.system.surfaces.base import POINT, X, Y, Z
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
 

@@ -12,7 +12,6 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.forms import CanonicalForm
 from percept_obs.observers.base import Observer
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
 from percept_obs.papers.base import (
@@ -30,6 +29,7 @@ from percept_obs.papers.base import (
     judged,
     vanishes,
 )
+from percept_obs.system.forms import CanonicalForm
 
 t = sp.Symbol("t", real=True)
 ybar, yhat, Omega, g, ghat, v, u, s = sp.symbols("ybar yhat Omega g ghat v u s", real=True)

@@ -24,14 +24,14 @@ from percept_obs.papers.base import (
     judged,
     not_checkable,
 )
-from percept_obs.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.recording import Camera
-from percept_obs.run import Run
-from percept_obs.scenarios import chwa2019_experiment
 from percept_obs.structure import COROLLARIES, record_structure
-from percept_obs.structure.base import OUTPUTS, d_s
-from percept_obs.surfaces import POINT, pinhole
-from percept_obs.tracking import track
+from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
+from percept_obs.structure.scenarios import chwa2019_experiment
+from percept_obs.system.surfaces import POINT, pinhole
+from percept_obs.tracking.following import track
+from percept_obs.tracking.run import Run
 
 y01, y02, y03, ybar01, ybar02, ybar03 = sp.symbols("y_01 y_02 y_03 ybar_01 ybar_02 ybar_03", real=True)
 ghat01, ghat02, ghat03, yhat01, yhat02, yhat03 = sp.symbols(

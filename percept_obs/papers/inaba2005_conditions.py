@@ -6,7 +6,8 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.motion import linear
+from percept_obs.observability.gramian import gramian as windowed
+from percept_obs.observability.gramian import linear_gramian as windowed_linear
 from percept_obs.papers.base import (
     Check,
     Entry,
@@ -24,10 +25,9 @@ from percept_obs.papers.base import (
     vanishes,
 )
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, record_points
-from percept_obs.points.gramian import gramian as windowed
-from percept_obs.points.gramian import linear_gramian as windowed_linear
 from percept_obs.points.scenarios import along_the_line_of_sight
-from percept_obs.surfaces import pinhole
+from percept_obs.system.motion import linear
+from percept_obs.system.surfaces import pinhole
 
 BLOCK = point_block(pinhole())
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.motion import linear
 from percept_obs.papers.base import (
     Entry,
     Finding,
@@ -27,7 +26,8 @@ from percept_obs.papers.base import (
     vectors,
 )
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger
-from percept_obs.surfaces import POINT, pinhole
+from percept_obs.system.motion import linear
+from percept_obs.system.surfaces import POINT, pinhole
 
 # Numbers
 xi_11, xi_21, xi_31, xi_12, xi_22, xi_32 = XI = sp.symbols("xi_11 xi_21 xi_31 xi_12 xi_22 xi_32", real=True)

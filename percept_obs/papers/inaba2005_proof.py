@@ -8,7 +8,6 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.motion import linear
 from percept_obs.papers.base import (
     Entry,
     Finding,
@@ -32,7 +31,8 @@ from percept_obs.papers.base import (
     vectors,
 )
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block
-from percept_obs.surfaces import pinhole
+from percept_obs.system.motion import linear
+from percept_obs.system.surfaces import pinhole
 
 # Numbers
 t, t0, s, tau, T = sp.symbols("t t0 s tau T", real=True)

@@ -12,7 +12,7 @@ import sympy as sp
 from numpy.typing import NDArray
 from scipy.integrate import simpson
 
-from percept_obs.motion import linear
+from percept_obs.observability.gramian import Gramian, gramian
 from percept_obs.papers.base import (
     Check,
     Entry,
@@ -40,9 +40,9 @@ from percept_obs.points import (
     scheduled,
     track_points,
 )
-from percept_obs.points.gramian import Gramian, gramian
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import Camera
+from percept_obs.system.motion import linear
 
 Array = NDArray[np.float64]
 

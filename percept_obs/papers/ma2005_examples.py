@@ -10,7 +10,6 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.motion import affine
 from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.base import M, gamma
 from percept_obs.observers.identifier_based import A, G, P
@@ -34,12 +33,14 @@ from percept_obs.papers.base import (
     not_checkable,
     separates,
 )
-from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Camera, Recording, Uniform, record
-from percept_obs.run import Run
-from percept_obs.scenarios import ma2005_eq35, ma2005_eq36
-from percept_obs.surfaces import POINT, X, Y, Z, pinhole
-from percept_obs.tracking import track
+from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+from percept_obs.system.surfaces.base import POINT, X, Y, Z
+from percept_obs.tracking.following import track
+from percept_obs.tracking.run import Run
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 FORMS = {"y1 alone": SYSTEM.measure("y1"), "y1, y2": SYSTEM.measure("y1", "y2")}

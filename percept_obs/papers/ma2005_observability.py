@@ -10,9 +10,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.forms import CanonicalForm
-from percept_obs.motion import affine
-from percept_obs.observability import instantaneous, windowed
+from percept_obs.observability.pointwise import instantaneous, windowed
 from percept_obs.observers import identifier_based
 from percept_obs.observers.base import M, gamma
 from percept_obs.papers.base import (
@@ -37,12 +35,14 @@ from percept_obs.papers.base import (
     vectors,
     weakened,
 )
-from percept_obs.perspective import PerspectiveSystem
 from percept_obs.recording import Recording, Scenario, record
-from percept_obs.run import Run
-from percept_obs.scenarios import ma2005_eq35, ma2005_eq36
-from percept_obs.surfaces import pinhole
-from percept_obs.tracking import track
+from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+from percept_obs.tracking.following import track
+from percept_obs.tracking.run import Run
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 BOTH, FIRST = SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1")

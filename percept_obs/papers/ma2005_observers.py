@@ -7,8 +7,6 @@ from functools import cache, partial
 
 import sympy as sp
 
-from percept_obs.forms import CanonicalForm
-from percept_obs.motion import affine
 from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.base import M, gamma, hats, sigma2
 from percept_obs.observers.identifier_based import A, G, P
@@ -30,8 +28,10 @@ from percept_obs.papers.base import (
     vanishes,
     vectors,
 )
-from percept_obs.perspective import PerspectiveSystem
-from percept_obs.surfaces import pinhole
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 BOTH, FIRST, SECOND = SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1"), SYSTEM.measure("y2")

@@ -7,7 +7,6 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.motion import affine
 from percept_obs.papers.base import (
     Entry,
     Finding,
@@ -21,8 +20,10 @@ from percept_obs.papers.base import (
     judged,
     vanishes,
 )
-from percept_obs.perspective import PerspectiveSystem
-from percept_obs.surfaces import POINT, X, Y, Z, chained, pinhole, plane
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import chained, pinhole, plane
+from percept_obs.system.surfaces.base import POINT, X, Y, Z
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 CHAINED = PerspectiveSystem(affine(), chained())

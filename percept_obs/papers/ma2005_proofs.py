@@ -8,8 +8,6 @@ from functools import cache, partial
 
 import sympy as sp
 
-from percept_obs.forms import CanonicalForm
-from percept_obs.motion import affine
 from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.base import sigma2
 from percept_obs.observers.identifier_based import A, G, P
@@ -38,8 +36,10 @@ from percept_obs.papers.base import (
     vectors,
     weakened,
 )
-from percept_obs.perspective import PerspectiveSystem
-from percept_obs.surfaces import pinhole
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 FORMS = (SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1"), SYSTEM.measure("y2"))

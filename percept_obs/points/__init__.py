@@ -5,10 +5,10 @@ from percept_obs.points.bodies import body_with_origin, independent_points, rigi
 from percept_obs.points.conditions import Conditions
 from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
+from percept_obs.points.lyapunov_matrix import Weight, constant, lyapunov, riccati, scheduled
 from percept_obs.points.recording import PointsRecording, PointsScenario, Sighting, record_points
 from percept_obs.points.run import PointsRun
 from percept_obs.points.tracking import track_points
-from percept_obs.points.weights import Weight, constant, lyapunov, riccati, scheduled
 
 __all__ = [
     "Conditions",

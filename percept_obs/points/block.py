@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from percept_obs.surfaces import POINT, ImagingSurface
+from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
 class NotLinear(ValueError):

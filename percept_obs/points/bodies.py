@@ -8,9 +8,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.motion import Motion, bound
 from percept_obs.points.form import PointsForm
-from percept_obs.surfaces import ImagingSurface, pinhole
+from percept_obs.system.motion import Motion, bound
+from percept_obs.system.surfaces import ImagingSurface, pinhole
 
 AXES = "xyz"
 

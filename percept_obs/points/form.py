@@ -13,11 +13,11 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile import vectorised
-from percept_obs.derivation import Derivation, Step, equals
-from percept_obs.motion import Motion
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
-from percept_obs.surfaces import POINT, ImagingSurface, pinhole
+from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

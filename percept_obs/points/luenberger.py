@@ -10,7 +10,7 @@ import sympy as sp
 
 from percept_obs.observers.base import About, hats
 from percept_obs.points.form import PointsForm
-from percept_obs.points.weights import Weight, weight
+from percept_obs.points.lyapunov_matrix import Weight, weight
 
 ABOUT = About(
     "Luenberger-type observer",

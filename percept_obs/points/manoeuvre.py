@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from percept_obs.motion import TIME as t
+from percept_obs.system.motion import TIME as t
 
 Vectors = tuple[tuple[sp.Expr, ...], ...]
 

@@ -9,10 +9,10 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from percept_obs.derivation import Derivation, Step, equals
 from percept_obs.points.block import point_block
 from percept_obs.points.form import PointsForm
-from percept_obs.surfaces import pinhole
+from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.surfaces import pinhole
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from percept_obs.points.conditions import Conditions, conditions
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.recording import PointsRecording
-from percept_obs.run import Hold
+from percept_obs.tracking.run import Hold
 
 Array = NDArray[np.float64]
 

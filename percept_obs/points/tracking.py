@@ -13,12 +13,12 @@ from scipy.sparse.csgraph import connected_components
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import Language, advance, arrays, choose
 from percept_obs.points.luenberger import LuenbergerObserver
+from percept_obs.points.lyapunov_matrix import Weight
 from percept_obs.points.recording import PointsRecording
 from percept_obs.points.run import PointsRun
-from percept_obs.points.weights import Weight
 from percept_obs.recording import halves, step_grid
-from percept_obs.run import Hold
-from percept_obs.tracking import LONGEST_STEP, DoesNotFit
+from percept_obs.tracking.following import LONGEST_STEP, DoesNotFit
+from percept_obs.tracking.run import Hold
 
 Array = NDArray[np.float64]
 

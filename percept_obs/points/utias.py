@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from percept_obs.datasets import LONGEST_GAP, PIXEL_SIGMA, utias_tables
-from percept_obs.motion import rigid
 from percept_obs.points.bodies import independent_points
 from percept_obs.points.recording import PointsRecording
+from percept_obs.recording.utias import LONGEST_GAP, PIXEL_SIGMA, utias_tables
+from percept_obs.system.motion import rigid
 
 
 def load_utias_points(

@@ -1,6 +1,6 @@
 """Recordings: what a camera leaves behind, from a simulation or from the world."""
 
-from percept_obs.recording.base import Recording, halves, step_grid
+from percept_obs.recording.recording import Recording, halves, step_grid
 from percept_obs.recording.simulation import (
     NO_NOISE,
     PLANT_STEP,

@@ -12,10 +12,10 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile import Table, solve
-from percept_obs.equations import Equations
-from percept_obs.motion import Motion
-from percept_obs.recording.base import Recording, halves, step_grid
-from percept_obs.surfaces import POINT, BehindCamera, ImagingSurface
+from percept_obs.compile.equations import Equations
+from percept_obs.recording.recording import Recording, halves, step_grid
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 
 Array = NDArray[np.float64]
 Seed = np.random.Generator | int

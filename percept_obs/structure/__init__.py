@@ -1,6 +1,6 @@
 """Structure and motion from a scaled inverse depth: choices of what is known, and their canonical forms."""
 
-from percept_obs.structure.base import (
+from percept_obs.structure.choice import (
     QUANTITIES,
     ImpossibleChoice,
     ScaledDynamics,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import permutations
 
-from percept_obs.structure.base import StructureAndMotion
+from percept_obs.structure.choice import StructureAndMotion
 
 
 @dataclass(frozen=True)

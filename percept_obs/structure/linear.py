@@ -10,9 +10,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.forms import CanonicalForm
-from percept_obs.motion import rigid
-from percept_obs.structure.base import StructureAndMotion, d_s
+from percept_obs.structure.choice import StructureAndMotion, d_s
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import rigid
 
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 

@@ -9,11 +9,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.motion import Motion
-from percept_obs.pixels import PixelCamera, SignalToNoise, apparent_size, homography
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Seed, seeded
-from percept_obs.structure.base import OUTPUTS, StructureAndMotion
+from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
 from percept_obs.structure.linear import LinearView
+from percept_obs.structure.pixels import PixelCamera, SignalToNoise, apparent_size, homography
+from percept_obs.system.motion import Motion
 
 Array = NDArray[np.float64]
 NAMES = tuple(symbol.name for symbol in OUTPUTS)

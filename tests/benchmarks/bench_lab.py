@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from jupyter_harness import jupyterlab, lab_page, open_notebook
 from lab_browser import OPEN, rested, write_notebook
 
-from percept_obs.labs.structures import BY_NAME
+from percept_obs.labs.observer.texts import BY_NAME
 
 SECONDS = 5
 BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monotonic() < end:\n    pass"

@@ -12,8 +12,6 @@ import argparse
 import sys
 
 from percept_obs import Camera, PerspectiveSystem, Uniform, affine, pinhole, record, scenarios, track
-from percept_obs.chatter import METHODS, chatter, effort
-from percept_obs.compare import compare, described, summary
 from percept_obs.observers import (
     OBSERVERS,
     de_luca,
@@ -25,6 +23,8 @@ from percept_obs.observers import (
     sliding_mode,
     spica,
 )
+from percept_obs.studies.chatter import METHODS, chatter, effort
+from percept_obs.studies.comparison import compare, described, summary
 
 EQ35 = scenarios.ma2005_eq35()
 SYSTEM = PerspectiveSystem(affine(), pinhole())

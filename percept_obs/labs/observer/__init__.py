@@ -1,0 +1,1 @@
+"""The lab of one point, a camera, and any of the observers."""

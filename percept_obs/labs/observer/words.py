@@ -1,0 +1,139 @@
+"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, the honesty of a filter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache, reduce
+
+import numpy as np
+import sympy as sp
+from scipy.linalg import expm
+from scipy.stats import chi2
+
+from percept_obs.compile import vectorised
+from percept_obs.labs.observer.texts import observer_of
+from percept_obs.observability.pointwise import windowed
+from percept_obs.observers.base import hats
+from percept_obs.recording import Recording
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.tracking.run import Run
+
+INSTANTS = 200
+"""At how many instants of the window the error dynamics are linearised, at most."""
+
+Structure = tuple[str, tuple[str, ...], str, str]
+"""Names of a surface, of the measured outputs, of an observer, and of its way to switch."""
+
+
+def excitation_in_words(form: CanonicalForm, recording: Recording, window: float) -> str:
+    """What the outputs alone tell over any window of this length, in seconds."""
+    least = windowed(form, recording, window).least
+    start = f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}"
+    if least > 1e-6:
+        return f"{start}: persistently excited, so the outputs alone tell the hidden part."
+    return f"{start}: not excited; one direction is seen only through the dynamics g, or not at all."
+
+
+def has_words(structure: Structure) -> bool:
+    """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
+    observer = observer_of(*structure)
+    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(structure)
+
+
+def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+    """What is to be said of one observer's run; nothing where it diverged."""
+    if run.diverged_at is not None:
+        return []
+    if run.observer.covariance is not None:
+        return [_claim_in_words(run), _honesty_in_words(run)]
+    if run.recording.truth is None or not _can_be_linearised(structure):
+        return []
+    return _error_in_words(structure, run, window)
+
+
+def _claim_in_words(run: Run) -> str:
+    spread = 2 * float(np.sqrt(max(0.0, run.covariance[-1, -1, -1])))
+    return f"{run.observer.name}: it claims to know the inverse distance to within {spread:.2g} (2σ) at the end."
+
+
+def _honesty_in_words(run: Run) -> str:
+    """The test of the normalised innovation: its mean per degree of freedom, against that of an honest filter."""
+    start = f"{run.observer.name}: normalised innovation test"
+    try:
+        # the estimate starts from the first sample, which therefore tells nothing
+        squares = run.normalised_innovation[1:]
+    except np.linalg.LinAlgError:
+        return f"{start}: impossible, its covariance is singular."
+    squares = squares[np.isfinite(squares)]
+    degrees = len(squares) * len(run.observer.form.measured)
+    if not degrees:
+        return f"{start}: impossible, there is no complete sample after the first."
+    mean = float(squares.sum()) / degrees
+    low, high = (float(bound) / degrees for bound in chi2.interval(0.95, degrees))
+    if mean > high:
+        verdict = "overconfident: its errors are larger than it claims; doubt the motion (Q) or the samples (R) more"
+    elif mean < low:
+        verdict = "too modest: its errors are smaller than it claims; its noise variance (R) is larger than the noise's"
+    else:
+        verdict = "honest: its errors are as large as it claims"
+    return (
+        f"{start}: {mean:.3g} per degree of freedom, where 95 % of honest filters lie from {low:.3g} to {high:.3g}. "
+        f"It is {verdict}."
+    )
+
+
+def _can_be_linearised(structure: Structure) -> bool:
+    """Whether the estimate is a part of the state, and the flow smooth where the error is zero."""
+    observer = observer_of(*structure)
+    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and structure[-1] != "sign"
+
+
+@lru_cache
+def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
+    """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
+    observer = observer_of(*structure)
+    form, equations = observer.form, observer.equations
+    truth = (*form.x1, *form.x2)
+    estimate = equations.state[: len(truth)]
+    flow = sp.ImmutableMatrix(equations.flow[: len(truth)])
+    variance = next((gain.symbol for gain in observer.gains if gain.name == "noise_variance"), sp.Dummy())
+    found = [*flow.jacobian(estimate), *flow.diff(variance)]
+    there = dict(zip(estimate, truth, strict=True))
+    symbols = (*truth, *equations.state[len(truth) :], *form.parameters, *equations.gains)
+    return vectorised(symbols, [entry.subs(there, simultaneous=True) for entry in found])
+
+
+def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+    """How a small error grows or shrinks, and where noise pushes it, from the flow linearised at the truth."""
+    observer, recording = run.observer, run.recording
+    assert recording.truth is not None
+    names = [s.name for s in observer.form.coordinates]
+    order = [names.index(name) for name in (*observer.form.measured, *observer.form.hidden)]
+    size = len(names)
+    late = np.flatnonzero(run.time >= run.time[-1] - window)
+    part = late[np.unique(np.linspace(0, len(late) - 1, INSTANTS).astype(int))]
+    known = np.broadcast_to(recording.motion.known(run.time[part]), (len(part), 12))
+    shape = [recording.surface.values[s] for s in recording.surface.parameters]
+    gains = {gain.name: gain.value for gain in observer.gains}
+    others = run.state[part, size:]
+    entries = _at_the_truth(structure)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
+    J = np.stack(entries[: size**2], axis=-1).reshape(-1, size, size)
+    with np.errstate(all="ignore"):  # what grows beyond all numbers is said so below
+        steps = expm(J[:-1] * np.diff(run.time[part])[:, None, None])
+        carried = np.eye(size) if not len(steps) else reduce(lambda before, step: step @ before, steps)
+    factor = float(np.linalg.norm(carried, 2)) if np.isfinite(carried).all() else np.inf
+    roots = ", ".join(f"{root:.3g}" for root in np.linalg.eigvals(J[-1]))
+    does = "shrinks to" if factor < 1 else "may grow to"
+    sentences = [
+        f"{observer.name}: its error dynamics end with the eigenvalues {roots} per second; over the last {window:g} s "
+        f"a small error {does} {factor:.2g} of its size."
+    ]
+    left = gains.get("noise_variance", 0.0) - (recording.noise_variance or 0.0)
+    push = left * np.array([entry[-1] for entry in entries[size**2 :]])
+    if np.abs(push).max() > 0:
+        name, size_of = names[order[int(np.abs(push).argmax())]], push[np.abs(push).argmax()]
+        sentences.append(
+            f"{observer.name}: at the end noise pushes the estimate of {name} by {size_of:.2g} per second on average; "
+            f"noise_variance takes it out where it equals the noise's variance, {recording.noise_variance or 0.0:.3g}."
+        )
+    return sentences

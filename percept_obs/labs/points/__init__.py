@@ -1,0 +1,1 @@
+"""The lab of many points of one state."""

@@ -1,0 +1,156 @@
+"""What the page needs to simulate and to observe many points: layouts, the block of one point, known coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from percept_obs.compile import function_source
+from percept_obs.labs.shared.markup import dotted, formula, markup, row
+from percept_obs.points import PointsForm, body_with_origin, independent_points, point_block, rigid_body
+from percept_obs.points.kernel import arrays
+from percept_obs.points.manoeuvre import PATH, SHARES, SPIN, TURNING, Manoeuvre, velocities
+from percept_obs.system.motion import TIME, rigid
+from percept_obs.system.surfaces import pinhole
+
+Texts = dict[str, Any]
+
+MOST_POINTS = 8
+LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("spin", "beta"), ("input", "gamma"))}
+"""Letters of a manoeuvre's shares in the equations."""
+
+SURFACE = pinhole()
+
+
+def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
+    """Points that rest in the world; a body's angular velocity does not concern them."""
+    return independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), points)
+
+
+STATES: Mapping[str, Callable[..., PointsForm]] = MappingProxyType(
+    {"body": rigid_body, "independent": _own_motion, "origin": body_with_origin}
+)
+"""States to choose from: functions of the number of points and of velocities, as `rigid_body` takes them."""
+
+
+def form_of(state: str, points: int, manoeuvre: Manoeuvre) -> PointsForm:
+    """The form of a state whose camera and body move by a manoeuvre."""
+    return STATES[state](points, *manoeuvre.velocities)
+
+
+def state_of(form: PointsForm, places: Any) -> np.ndarray:
+    """The smallest state whose points are at these places, shape (n,).
+
+    Parameters
+    ----------
+    form : PointsForm
+    places : array of shape (p, 3)
+        Metres, in the camera's frame.
+    """
+    return np.linalg.pinv(form.blocks.reshape(-1, form.states)) @ np.ravel(places)
+
+
+@lru_cache(maxsize=1)
+def model_for_the_page() -> Texts:
+    """Everything that does not depend on the settings."""
+    block = point_block(SURFACE)
+    distance = sp.Symbol("distance", real=True)
+    place = tuple(entry * distance for entry in SURFACE.ray)
+    return {
+        "states": {name: _state_for_the_page(name) for name in STATES},
+        "block": {"N": _numbers(block.N), "l": _numbers(block.l)[0]},
+        "locate": function_source((*SURFACE.image_coordinates, distance), place),
+        "equations": _equations(),
+        "letters": {symbol.name: markup(LETTERS.get(symbol.name, symbol)) for symbol in SHARES},
+        "mostPoints": MOST_POINTS,
+    }
+
+
+def _state_for_the_page(name: str) -> Texts:
+    """The layouts of a state for each number of points, and its coefficients as a function of time."""
+    vectors = [sp.ImmutableMatrix(sp.symbols(f"{letter}1:4", real=True)) for letter in ("w_c", "v_c", "w_b")]
+    form = STATES[name](MOST_POINTS, *vectors)
+    entries = [entry for vector in velocities() for entry in vector]
+    known = dict(zip((s for vector in vectors for s in vector), entries, strict=True))
+    coefficients = tuple(expression.xreplace(known) for expression in form.layout.expressions)
+    extra = form.states - 3 * MOST_POINTS
+    return {
+        "coefficients": function_source((TIME, *SHARES), coefficients),
+        "width": len(coefficients),
+        "layouts": [_layout(form, extra, points) for points in range(1, MOST_POINTS + 1)],
+    }
+
+
+def _layout(form: PointsForm, extra: int, points: int) -> Texts:
+    """Where a state's coefficients stand when it has so many of the points."""
+    states = np.arange(3 * points + extra)
+    part = arrays(form, states, np.arange(points))
+    numbers = {name: getattr(part, name).tolist() for name in part._fields if name not in ("N", "l")}
+    return {**numbers, "names": [form.names[k] for k in states]}
+
+
+def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:
+    return np.array(matrix, dtype=float).tolist()
+
+
+def _equations() -> list[Texts]:
+    """The observer, its error, the bookkeeping of P, and what is known of the motion, as MathML."""
+    n, m = sp.symbols("n m", integer=True, positive=True)
+    x, v, e, rho = (sp.MatrixSymbol(name, size, 1) for name, size in (("xhat", n), ("v", n), ("e", m), ("rho", n)))
+    A, P, P0, S = (sp.MatrixSymbol(name, n, n) for name in ("A", "P", "P_0", "S"))
+    B, C = sp.MatrixSymbol("B", m, m), sp.MatrixSymbol("C", m, n)
+    forgetting, decrease = sp.symbols("lambda q", positive=True)
+    kept = {"forgetting": forgetting, "decrease": decrease}
+    K = P.I * C.T * B.T
+    block, xi = point_block(SURFACE), sp.Matrix(sp.symbols("xihat1:4", real=True))
+    innovation = sp.Matrix(block.y) * (block.l * xi)[0] - block.N * xi
+    observer = [
+        formula(dotted(x), A * x + v + K * e),
+        row("for each point", formula(sp.Symbol("B_k"), block.B), ",", formula(sp.Symbol("e_k"), innovation)),
+    ]
+    computed = [
+        row("Lyapunov", formula(dotted(P), -A.T * P - P * A - decrease * sp.Identity(n), kept)),
+        row("Riccati", formula(dotted(P), -A.T * P - P * A + S - forgetting * (P - P0), kept)),
+    ]
+    return [
+        {"title": "The observer", "lines": observer},
+        {"title": "Its error", "lines": [formula(dotted(rho), A * rho - K * B * C * rho)]},
+        {"title": "P, where it is computed", "lines": computed},
+        {"title": "The motion of camera and body", "lines": _motion_in_lines()},
+    ]
+
+
+def _motion_in_lines() -> list[str]:
+    """What camera and body are known to do, with a letter for each share."""
+    letters = {symbol.name: LETTERS.get(symbol.name, symbol) for symbol in SHARES}
+    constant = [letters[f"v{k}"] for k in (1, 2, 3)]
+    w, W, r, v = sp.symbols("w W r v")
+    times = [dotted(r), "<mo>-</mo>", markup(W), markup(r)]
+    return [
+        formula(w, _share(letters["turning"], TURNING), letters),
+        row("input", formula(r, _decimal(sp.Matrix(PATH)))),
+        row(
+            f"{markup(v)}<mo>=</mo>",
+            markup(letters["input"], letters),
+            "<mo>(</mo>",
+            *times,
+            "<mo>)</mo><mo>+</mo>",
+            markup(sp.Matrix(constant), letters),
+        ),
+        row("body", formula(sp.Symbol("w_b"), _share(letters["spin"], SPIN), letters)),
+    ]
+
+
+def _share(letter: sp.Symbol, vector: tuple[sp.Expr, ...]) -> sp.MatMul:
+    return sp.MatMul(letter, _decimal(sp.Matrix(vector)), evaluate=False)
+
+
+def _decimal(matrix: sp.Matrix) -> sp.Matrix:
+    """Fractions as decimals, which are easier to read in a matrix."""
+    fractions = [number for number in matrix.atoms(sp.Rational) if not number.is_integer]
+    return matrix.xreplace({number: sp.Float(number, 3) for number in fractions})

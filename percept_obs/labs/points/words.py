@@ -1,0 +1,71 @@
+"""What Python adds to a run of many points in words: inequalities, the guaranteed decay, what the points would tell."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from percept_obs.observability.gramian import decay_bound, gramian, linear_gramian
+from percept_obs.points import PointsRun
+from percept_obs.points.ray import ray_turning
+
+BOUND_WINDOW = 4.0
+"""Seconds of the windows over which the decay is bounded; longer ones promise less, for corrections hide more."""
+
+STILL = 1e-6
+"""rad/s below which a ray rests."""
+
+
+def in_words(run: PointsRun, window: float) -> dict[str, Any]:
+    """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed.
+
+    Parameters
+    ----------
+    run : PointsRun
+    window : float
+        Seconds of the Gramian's windows; a shorter run is one window.
+    """
+    recording = run.recording
+    window = min(window, float(run.time[-1]))
+    told = gramian(recording, window)
+    sentences = []
+    if not told.holds:
+        pair = linear_gramian(recording, window)
+        if pair.holds:
+            sentences.append(
+                "With their depths the points would tell everything, with a smallest eigenvalue of "
+                f"{pair.least:.2g}: the pair (C, A) is uniformly observable, and only the images do not show it."
+            )
+    bound = None
+    if len(run.kept):
+        sentences.append(f"{run.conditions().verdict()}.".replace("(15)", "Inequality (15)", 1))
+        bound, sentence = _guaranteed(run, told.holds, window)
+        sentences.append(sentence)
+    sentences.append(_turning(run))
+    return {"sentences": sentences, "bound": bound}
+
+
+def _guaranteed(run: PointsRun, seen: bool, window: float) -> tuple[float | None, str]:
+    """What the proof of Theorem 3.4 promises of this run."""
+    if not seen:
+        return None, "Theorem 3.4 guarantees no decay here, for it needs (14)."
+    try:
+        rate = decay_bound(run.recording, run.observer, min(window, BOUND_WINDOW)).rate
+    except ValueError:
+        return None, "Theorem 3.4 guarantees no rate here, for it needs a given P that meets (15)."
+    return rate, f"The proof of Theorem 3.4 guarantees that errors decay by {rate:.2g} per second on average."
+
+
+def _turning(run: PointsRun) -> str:
+    """How fast rays turn, which no constant P outruns."""
+    recording = run.recording
+    assert recording.truth is not None
+    turning = ray_turning(recording.form, recording.time, recording.truth).mean(axis=0)
+    slowest = int(np.argmin(turning))
+    if turning[slowest] < STILL:
+        return f"The input turns no ray of point {slowest + 1}, so that nothing carries an error along it across."
+    return (
+        f"The input turns the rays by {turning[slowest]:.2g} rad/s on average (least, point {slowest + 1}): about "
+        "as fast, and no faster, may the error of one point decay with a constant P."
+    )

@@ -1,0 +1,171 @@
+"""Observers' equations in the letters of the lecture, for w, phi and g of any system, as MathML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from itertools import combinations
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.labs.shared.markup import after, dotted, formula, markup, row, words
+from percept_obs.observers import Observer, extended_kalman, linear_approximation
+from percept_obs.observers.base import hats
+from percept_obs.observers.inversion import elapsed
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import affine
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+
+Matrices = dict[str, Any]
+"""Right-hand sides by what they give: a letter, its rate (x') or its value after an update (x+)."""
+
+
+def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str, Any]]:
+    """An observer's equations as MathML, a line each: with all terms, and without those of gains that may be 0.
+
+    Parameters
+    ----------
+    make : function of a form
+    **switch : str
+        Which switch it is made with, if it has several.
+
+    Returns
+    -------
+    list of {"zero": names of gains, "lines": MathML}
+        In the order in which they are to be tried: the last one is without zeros.
+    """
+    if make in IN_MATRICES:
+        observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+        lines = partial(IN_MATRICES[make], {gain.name: gain.symbol for gain in observer.gains})
+    else:
+        observer = make(lecture_form(), **switch)
+        lines = partial(in_scalars, observer)
+    optional = {gain.name: gain.symbol for gain in observer.gains if gain.value == 0}
+    subsets = [names for size in range(len(optional), -1, -1) for names in combinations(optional, size)]
+    return [{"zero": list(names), "lines": lines(zero=[optional[name] for name in names])} for names in subsets]
+
+
+def lecture_form() -> CanonicalForm:
+    """One measured and one hidden coordinate, with functions that stand for any system's w, phi and g."""
+    x1, x2 = sp.symbols("x1 x2", real=True)
+    blocks = (("w", (x1,)), ("phi", (x1,)), ("g", (x1, x2)))
+    w, phi, g = (sp.ImmutableMatrix([[sp.Function(name, real=True)(*of)]]) for name, of in blocks)
+    return CanonicalForm((x1,), (x2,), w, phi, g, (), (x1, x2))
+
+
+def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
+    """A line for each of an observer's equations.
+
+    Parameters
+    ----------
+    observer : Observer
+    zero : sequence of sympy symbols
+        Gains that are 0, so that their terms are left out.
+    """
+    form, equations = observer.form, observer.equations
+    letters = {gain.name: gain.symbol for gain in observer.gains}
+    derived = {
+        hat: estimate
+        for hat, estimate in zip(hats(form.coordinates), observer.estimate, strict=True)
+        if hat not in equations.state
+    }
+    short = {estimate: hat for hat, estimate in derived.items() if estimate not in form.x1}
+    flow = [rate.subs(dict.fromkeys(zero, 0)).subs(short) for rate in equations.flow]
+    lines = [formula(dotted(s), rate, letters) for s, rate in zip(equations.state, flow, strict=True)]
+    lines += [formula(hat, estimate, letters) for hat, estimate in derived.items()]
+    starts = zip(equations.state, observer.start, strict=True)
+    begun = [formula(s, value, letters) for s, value in starts if value in letters.values()]
+    if begun:
+        lines.append(row("at the start", *_listed(begun)))
+    for gap in observer.gaps:
+        in_time = gap.condition.has(elapsed)  # a condition that is long and of no use by hand
+        where = (
+            [f"no estimate while {gap.reason}"] if in_time else ["no estimate where", markup(gap.condition, letters)]
+        )
+        lines.append(row(*where))
+    if equations.reset:
+        changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
+        after_it = [formula(after(s), new, letters) for s, new in changed]
+        lines.append(row("when", markup(equations.reset_condition, letters), "then", *_listed(after_it)))
+    return lines
+
+
+def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, doubt: Any, R: Any) -> Matrices:
+    """The extended Kalman filter for an output y = c^T x: flow, innovation, its variance s, gain k, update."""
+    k, e, s = (sp.MatrixSymbol(letter, *shape) for letter, shape in (("k", x.shape), ("e", (1, 1)), ("s", (1, 1))))
+    return {
+        "x'": f,
+        "P'": F * P + P * F.T + doubt,
+        "e": y - c.T * x,
+        "s": c.T * P * c + R,
+        "k": P * c * s**-1,
+        "x+": x + k * e,
+        "P+": P - k * c.T * P,
+    }
+
+
+def cascade_equations(x: Any, P: Any, F: Any, f: Any, C: Any, y: Any, one: Any, Q: Any, R: Any) -> Matrices:
+    """One filter of the linear approximation observer: innovation, gain K, flow."""
+    K, e = sp.MatrixSymbol("K", x.shape[0], y.shape[0]), sp.MatrixSymbol("e", *y.shape)
+    return {
+        "e": y - C * x,
+        "K": P * C.T / R,
+        "x'": F * x + f + K * e,
+        "P'": F * P + P * F.T + Q * one - K * C * P,
+    }
+
+
+def _listed(formulas: list[str]) -> list[str]:
+    return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]
+
+
+def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
+    n = sp.Symbol("n", integer=True, positive=True)
+    x, F, P, c = (sp.MatrixSymbol(name, n, width) for name, width in (("xhat", 1), ("F", n), ("P", n), ("c", 1)))
+    # f names the system's rate as a whole, (w^T x2 + phi, g)
+    rate, y = sp.MatrixSymbol("f", n, 1), sp.MatrixSymbol("y", 1, 1)
+    doubts = (("process_noise", sp.Identity(n)), ("hidden_process_noise", sp.MatrixSymbol("I_2", n, n)))
+    doubt = sum((letters[q] * ones for q, ones in doubts if letters[q] not in zero), sp.ZeroMatrix(n, n))
+    R = sp.MatrixSymbol(letters["noise_variance"].name, 1, 1)
+    rows = kalman_equations(x, P, F, rate, c, y, doubt, R)
+    at_estimate = sp.Function("f")(sp.Symbol("xhat"))
+    start = sp.diag(letters["measured_variance"], letters["hidden_variance"])
+    return [
+        row(formula(dotted(x), at_estimate), "with", formula(F, sp.Derivative(at_estimate, sp.Symbol("xhat")))),
+        row(formula(dotted(P), rows["P'"], letters), *_where_hidden(letters["hidden_process_noise"] in zero)),
+        row("at a sample of an output", formula("<mi>y</mi>", c.T * sp.MatrixSymbol("x", n, 1))),
+        row(formula("<mi>e</mi>", rows["e"]), ",", formula("<mi>s</mi>", rows["s"], letters)),
+        row(formula("<mi>k</mi>", rows["k"]), ",", formula(after(x), rows["x+"]), ",", formula(after(P), rows["P+"])),
+        row("at the start", formula(P, start, letters)),
+    ]
+
+
+def _where_hidden(unused: bool) -> list[str]:
+    ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
+    return [] if unused else ["with", ones, "for measured and hidden"]
+
+
+def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
+    n, m = sp.symbols("n m", integer=True, positive=True)
+    x, F, P = (sp.MatrixSymbol(f"{s}_i", n, width) for s, width in (("xhat", 1), ("F", n), ("P", n)))
+    rate, C, y = sp.MatrixSymbol("f_0", n, 1), sp.MatrixSymbol("C", m, n), sp.MatrixSymbol("y", m, 1)
+    Q, R, P0 = (letters[name] for name in ("process_weight", "measurement_weight", "start_weight"))
+    rows = cascade_equations(x, P, F, rate, C, y, sp.Identity(n), Q, R)
+    J, before = sp.Function("J"), sp.Symbol("xhat_i-1")
+    frozen = sp.Matrix([[0, sp.Symbol("w^T")], [0, (J(0) + J(before)) / 2]])
+    return [
+        row("for i = 1, 2, ...:", formula(dotted(x), rows["x'"]), ",", formula("<mi>e</mi>", rows["e"])),
+        row(formula(F, frozen), ",", formula(sp.Symbol("J"), sp.Derivative(sp.Function("g")(X2), X2)), ",", _OFFSET),
+        row(formula("<mi>K</mi>", rows["K"], letters), ",", formula(dotted(P), rows["P'"], letters)),
+        row("at the start", formula(P, P0 * sp.Identity(n), letters)),
+    ]
+
+
+X2 = sp.Symbol("x2")
+_OFFSET = formula(sp.Symbol("f_0"), sp.Matrix([sp.Symbol("phi"), sp.Function("g")(0)]))
+IN_MATRICES: Mapping[Callable[..., Observer], Callable[..., list[str]]] = {
+    extended_kalman: _kalman_lines,
+    linear_approximation: _cascade_lines,
+}

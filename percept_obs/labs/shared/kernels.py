@@ -1,0 +1,78 @@
+"""An observer in the texts that the page runs and shows: what is known of it, its gains, its loop."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.compile import function_source, source
+from percept_obs.labs.shared.markup import markup
+from percept_obs.observers import Gain, Observer
+from percept_obs.observers.base import hats
+from percept_obs.observers.inversion import elapsed, first_innovation
+
+Texts = dict[str, Any]
+
+
+def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:
+    """What is known about an observer, its gains, and its equations in the lecture's letters.
+
+    Parameters
+    ----------
+    ways : mapping of names of switches to observers
+    equations : mapping of the same names to equations
+    """
+    whole = with_all_gains(ways)
+    about = whole.about
+    return {
+        "title": whole.name,
+        "about": about and {"title": about.title, "source": about.source, "needs": about.needs, "claim": about.claim},
+        "gains": [gain_for_the_page(gain) for gain in whole.gains],
+        "ways": {way: [gain.name for gain in made.gains] for way, made in ways.items()},
+        "equations": dict(equations),
+    }
+
+
+def with_all_gains(ways: Mapping[str, Observer]) -> Observer:
+    """The observer that has the gains of every way in which it switches."""
+    return max(ways.values(), key=lambda observer: len(observer.gains))
+
+
+def gain_for_the_page(gain: Gain) -> Texts:
+    """A gain, and a function that says whether a value is allowed."""
+    return {
+        "name": gain.name,
+        "letter": markup(gain.symbol),
+        "value": gain.value,
+        "low": gain.low,
+        "high": gain.high,
+        "meaning": gain.meaning,
+        "allowed": function_source((gain.symbol,), (sp.Piecewise((1, gain.condition), (0, True)),)),
+        "condition": "" if gain.condition == sp.true else str(gain.condition),
+        "reason": gain.reason,
+    }
+
+
+def kernel_for_the_page(observer: Observer) -> Texts:
+    """An observer's loop, start and estimate for one structure, and what limits them."""
+    form, equations = observer.form, observer.equations
+    known = (*form.x1, *form.parameters, *equations.gains)
+    claimed, fastest = observer.covariance, observer.fastest
+    conditions = [(k, gap.condition) for k, gap in enumerate(observer.gaps, 1)]
+    begun = (elapsed, *first_innovation(form)) if observer.gaps else ()
+    return {
+        "gains": [gain.name for gain in observer.gains],
+        "run": source(equations, "javascript"),
+        "states": len(equations.state),
+        "start": function_source((*known, *hats(form.coordinates)), observer.start),
+        "estimate": function_source((*known, *equations.state), observer.estimate),
+        "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
+        "gap": None
+        if not conditions
+        else function_source((*known, *equations.state, *begun), (sp.Piecewise(*conditions, (0, True)),)),
+        "gapReasons": [gap.reason for gap in observer.gaps],
+        "fastest": fastest and function_source((elapsed, *equations.gains), (fastest.rate,)),
+        "remedy": fastest and fastest.remedy,
+    }

@@ -1,0 +1,202 @@
+"""What the page needs for any choice of unknowns: what it stands for, why it is refused, and its observers' loops.
+
+Omega_g is Omega3 times a matrix of known signals, whatever the choice.  The loops are printed with that matrix as
+parameters, so that one for each number of unknowns serves every choice.  Kept apart from the widgets, so that another
+process can print it: see printing.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
+from itertools import combinations, permutations
+from types import MappingProxyType
+
+import sympy as sp
+
+from percept_obs.compile import function_source, source
+from percept_obs.compile.equations import Equations
+from percept_obs.labs.shared.equations import equations_of
+from percept_obs.labs.shared.kernels import Texts, kernel_for_the_page, observer_for_the_page
+from percept_obs.labs.shared.markup import formula, markup
+from percept_obs.observers import Observer, de_luca, extended_kalman, identifier_based, integral_sliding_mode
+from percept_obs.observers.integral_sliding_mode import IDEAL
+from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
+from percept_obs.system.forms import CanonicalForm, partition
+from percept_obs.system.motion import rigid
+from percept_obs.system.surfaces import POINT, pinhole
+
+MOTION = rigid()
+_ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
+LARGEST = 3
+"""How many unknowns there are at most."""
+
+OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
+    {
+        "ideal": ("ISMO, ideal switch", partial(integral_sliding_mode, switch=IDEAL)),
+        "layer": ("ISMO, boundary layer", partial(integral_sliding_mode, switch="hyperbolic tangent")),
+        "sign": ("ISMO, sign", partial(integral_sliding_mode, switch="sign")),
+        "extended_kalman": ("extended Kalman filter", extended_kalman),
+        "identifier_based": ("identifier-based", identifier_based),
+        "de_luca": ("De Luca", de_luca),
+    }
+)
+"""Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
+
+SWING = constant, amplitude, rate, phase, time = sp.symbols("constant amplitude rate phase t", real=True)
+SWINGING = constant + amplitude * sp.sin(rate * time + phase)
+"""A component of a velocity that swings around a constant."""
+
+PHASES = {"v_c": (sp.pi / 2, 0, 0), "v_p": (0, sp.pi / 2, 0)}
+"""Where each component begins to swing, so that the camera circles and the object wanders."""
+
+CHOICES = "choices"
+PARTS = (CHOICES, *(f"{n} unknown" for n in range(LARGEST, 0, -1)))
+"""Names of the parts that are printed beside."""
+
+
+def key_of(unknown: tuple[str, ...] | list[str], earlier: bool) -> str:
+    """Name of a choice: its unknowns, and whether d_s is known from an earlier stage only."""
+    kept = ["earlier"] if earlier and "d_s" not in unknown else []
+    return " ".join([*(name for name in QUANTITIES if name in unknown), *kept])
+
+
+@lru_cache
+def general_form(count: int) -> CanonicalForm:
+    """The form of any choice with so many unknowns: what multiplies theta in d_s (v_p - v_c) stands as parameters."""
+    theta = sp.symbols(f"theta1:{count + 1}", real=True)
+    M = sp.ImmutableMatrix(3, count, sp.symbols(f"M1:4(1:{count + 1})", real=True))
+    m = sp.ImmutableMatrix(sp.symbols("m1:4", real=True))
+    dynamics = scaled_dynamics()
+    moved = dynamics.rotation * sp.ImmutableMatrix(_ROTATION) + dynamics.object * (M * sp.ImmutableMatrix(theta) + m)
+    outputs = StructureAndMotion(QUANTITIES[:1]).image_coordinates
+    rate = sp.ImmutableMatrix([*moved.expand(), *sp.zeros(count, 1)])
+    names = [symbol.name for symbol in outputs]
+    return partition((*outputs, *theta), rate, names, (*_ROTATION, *M, *m)).canonical_form()
+
+
+@lru_cache
+def observer_of(name: str, count: int = LARGEST) -> Observer:
+    """An observer of any choice with so many unknowns."""
+    return OBSERVERS[name][1](general_form(count))
+
+
+def model_for_the_page() -> Texts:
+    """What depends on no choice: the point's loop, the pinhole, the observers, and why choices are refused."""
+    rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
+    surface = pinhole()
+    return {
+        "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
+        "project": function_source(POINT, (*surface.image, surface.distance)),
+        "swinging": function_source(SWING, (SWINGING,)),
+        "phases": {name: [float(phase) for phase in phases] for name, phases in PHASES.items()},
+        "observers": {
+            name: {**observer_for_the_page({"": observer_of(name)}, {"": equations_of(make)}), "title": title}
+            for name, (title, make) in OBSERVERS.items()
+        },
+        "quantities": QUANTITIES,
+        "refused": refused(),
+        "corollaries": [
+            {"number": c.number, "section": c.section, "camera": c.camera, "object": c.object, "words": str(c)}
+            for c in COROLLARIES
+        ],
+    }
+
+
+def refused() -> dict[str, str]:
+    """Choices that are refused whatever the velocities are, with the reasons."""
+    found: Texts = {}
+    for count in range(len(QUANTITIES) + 1):
+        for unknown in combinations(QUANTITIES, count):
+            try:
+                StructureAndMotion(unknown)
+            except ImpossibleChoice as error:
+                found |= {key_of(unknown, earlier): str(error) for earlier in (False, True)}
+    return found
+
+
+@lru_cache
+def corollaries() -> dict[str, tuple[int, tuple[str, ...]]]:
+    """By a choice's name: the corollary that states it, and the velocities that it wants to be zero."""
+    cases = [(c.number, c.choice("".join(axes))) for c in COROLLARIES for axes in permutations("123")]
+    return {key_of(case.unknown, "d_s" in case.earlier): (number, case.zero) for number, case in cases}
+
+
+def choice_for_the_page(unknown: tuple[str, ...], earlier: bool) -> Texts:
+    """A choice in formulas, and as a function that turns velocities into the parameters of the general form."""
+    choice = StructureAndMotion(unknown, earlier=("d_s",) if earlier else ())
+    M, m = choice.translation
+    alone = _velocities_that_must_not_all_be_zero(choice)
+    number, zero = corollaries().get(key_of(unknown, earlier), (None, ()))
+    letters = {symbol.name: symbol for symbol in (*choice.form.parameters, *choice.image_coordinates)}
+    scale = sp.Symbol("d_s", real=True)
+    return {
+        "unknown": choice.unknown,
+        "scaled": [bool(theta.has(scale)) for theta in choice.theta],
+        "square": choice.form.w.is_square,
+        "theta": [markup(theta) for theta in choice.theta],
+        "signals": function_source((scale, *MOTION.parameters), (*M, *m, *choice.theta)),
+        "determinant": _determinant(choice, letters),
+        "zeroSet": choice.zero_set,
+        "alone": alone,
+        "withoutThem": _refusal(unknown, alone) if alone else "",
+        "corollary": number,
+        "zero": zero,
+        "formulas": [
+            formula(_OMEGA_G, choice.form.w.T, letters),
+            formula(sp.Symbol("Omega"), choice.form.phi, letters),
+        ],
+    }
+
+
+_OMEGA_G = "<msub><mi>Ω</mi><mi>g</mi></msub>"
+
+
+def _velocities_that_must_not_all_be_zero(choice: StructureAndMotion) -> list[str]:
+    if "d_s" not in choice.unknown:
+        return []
+    return sorted(s.name for velocity in choice.known_velocity for s in velocity.free_symbols)
+
+
+def _refusal(unknown: tuple[str, ...], zero: list[str]) -> str:
+    try:
+        StructureAndMotion(unknown, tuple(zero))
+    except ImpossibleChoice as error:
+        return str(error)
+    raise AssertionError(f"{unknown} is possible although {zero} are zero")
+
+
+def _determinant(choice: StructureAndMotion, letters: dict[str, sp.Symbol]) -> str:
+    """The determinant as a formula; where it is long, in the differences of the velocities."""
+    determinant, square = choice.determinant, choice.form.w.is_square
+    if square:
+        return formula("<mrow><mi>det</mi><mo>&#8289;</mo>" + _OMEGA_G + "</mrow>", determinant, letters)
+    differences = sp.symbols("delta1:4", real=True)
+    shifted = {c: d + o for c, d, o in zip(CAMERA, differences, OBJECT, strict=True)}
+    left = f"<mrow><mi>det</mi><mo>(</mo><msubsup><mi>Ω</mi><mi>g</mi><mi>T</mi></msubsup>{_OMEGA_G}<mo>)</mo></mrow>"
+    return formula(left, sp.factor(determinant.xreplace(shifted).expand()), letters)
+
+
+def kernels_for_the_page(count: int, observers: tuple[str, ...] = tuple(OBSERVERS)) -> Texts:
+    """The loops of observers for so many unknowns, and what guards the recovery of theta."""
+    form = general_form(count)
+    numerator, determinant = form.cramer
+    size = sp.sqrt(sum(entry**2 for entry in numerator))
+    return {
+        "guard": function_source((*form.x1, *form.parameters), (size, determinant)),
+        "observers": {name: kernel_for_the_page(observer_of(name, count)) for name in observers},
+    }
+
+
+def texts_of(part: str) -> Texts:
+    """Texts of the part with this name."""
+    if part != CHOICES:
+        return kernels_for_the_page(int(part.split()[0]))
+    found: Texts = {}
+    for count in range(1, LARGEST + 1):
+        for unknown in combinations(QUANTITIES, count):
+            for earlier in (False, True):
+                key = key_of(unknown, earlier)
+                if key not in refused() and key not in found:
+                    found[key] = choice_for_the_page(unknown, earlier)
+    return found

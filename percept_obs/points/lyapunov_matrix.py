@@ -1,0 +1,194 @@
+"""The free parameter P of the Luenberger-type observer: constant, scheduled, or computed while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.system.motion import Signal
+
+Array = NDArray[np.float64]
+
+DIFFERENCE = 1e-5
+"""Half of the time, in seconds, over which a scheduled P is differenced."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weight:
+    """How P moves: given over time, or P' = -A^T P - P A + information S - forgetting (P - start) - decrease.
+
+    Parameters
+    ----------
+    name : str
+    start : array of shape (n, n), or a number for its multiple of the identity
+        P at the first sample, and of points that begin anew.
+    information, forgetting : float
+        Unused where P is given.
+    decrease : array of shape (n, n), or a number
+        Unused where P is given.
+    schedule : Signal, optional
+        P over time, row by row (or one number), where it is given.
+    """
+
+    name: str
+    start: Any
+    information: float = 0.0
+    forgetting: float = 0.0
+    decrease: Any = 0.0
+    schedule: Signal | None = None
+
+    @property
+    def computed(self) -> bool:
+        """Whether P is computed while the observer runs."""
+        return self.schedule is None
+
+    @property
+    def constant(self) -> bool:
+        """Whether P is given and stays."""
+        return self.schedule is not None and self.schedule.constant
+
+    @property
+    def couples(self) -> NDArray[np.bool_]:
+        """Which states P may couple, shape (n, n)."""
+        if self.schedule is None:
+            return np.asarray((self.start != 0) | (self.decrease != 0))
+        if callable(self.schedule.samples):
+            return np.ones(self.start.shape, dtype=bool)
+        return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
+
+    def sized(self, states: int) -> Weight:
+        """The same for a number of states.
+
+        Raises
+        ------
+        ValueError
+            If a matrix has another shape, or is not symmetric, finite and positive (semi-)definite.
+        """
+        if self.schedule is not None:
+            start = None if callable(self.schedule.samples) else self.schedule.samples[0]
+            if start is not None and start.size not in (1, states**2):
+                raise ValueError(f"P is scheduled with {start.size} entries; expected 1 or {states} x {states}")
+            for k, row in enumerate(() if callable(self.schedule.samples) else self.schedule.samples):
+                _definite(_square(row, states), f"P, sample {k},")
+            return replace(self, start=np.eye(states), decrease=np.zeros((states, states)))
+        start, decrease = (_square(value, states) for value in (self.start, self.decrease))
+        _definite(start, "P")
+        _definite(decrease, "the decrease of P", semi=True)
+        return replace(self, start=start, decrease=decrease)
+
+    def at(self, times: ArrayLike) -> Array:
+        """A given P at the given times, shape (T, n, n), or (1, n, n) when constant."""
+        assert self.schedule is not None
+        rows = self.schedule.at(times)
+        return np.stack([_square(row, len(self.start)) for row in rows])
+
+    def rate(self, times: ArrayLike) -> Array:
+        """Derivative of a given P at the given times, shape (T, n, n)."""
+        assert self.schedule is not None
+        times = np.atleast_1d(np.asarray(times, dtype=float))
+        if self.schedule.constant:
+            return np.zeros((len(times), *self.start.shape))
+        low, high = times - DIFFERENCE, times + DIFFERENCE
+        if self.schedule.times is not None:
+            low, high = (np.clip(t, self.schedule.times[0], self.schedule.times[-1]) for t in (low, high))
+        return (self.at(high) - self.at(low)) / (high - low)[:, None, None]
+
+
+def constant(P: ArrayLike = 1.0) -> Weight:
+    """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity."""
+    return Weight("constant P", None, schedule=Signal(np.ravel(np.asarray(P, dtype=float))))
+
+
+def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> Weight:
+    """P given over time.
+
+    Parameters
+    ----------
+    P : function of a time, or array of shape (K, n, n) or (K,)
+        Symmetric positive definite; numbers are multiples of the identity.
+    times : array of shape (K,), optional
+        Times in seconds of the samples, linear between them.
+
+    Raises
+    ------
+    ValueError
+        If samples and times do not fit.
+    """
+    if callable(P):
+        return Weight("scheduled P", None, schedule=Signal(P))
+    samples = np.asarray(P, dtype=float)
+    if times is None:
+        raise ValueError("samples of P need their times=; a P that stays is constant(P)")
+    return Weight("scheduled P", None, schedule=Signal(samples.reshape(len(samples), -1), np.asarray(times)))
+
+
+def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> Weight:
+    """P from the Lyapunov equation P' = -A^T P - P A - decrease, which meets (15) with room for the decrease.
+
+    Parameters
+    ----------
+    start : array of shape (n, n) or float
+        Symmetric positive definite.
+    decrease : array of shape (n, n) or float
+        Symmetric positive semidefinite.  P stays positive only while the start outweighs what it takes away.
+    """
+    return Weight("Lyapunov", start, decrease=decrease)
+
+
+def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> Weight:
+    """P from P' = -A^T P - P A + S - forgetting (P - start), S = C^T B^T B C; its inverse solves a Riccati equation.
+
+    P gathers what the images told, as the information matrix of least squares does, and forgets it exponentially, but
+    for its start: so it stays bounded above and, for points out of sight as well, below.
+
+    Parameters
+    ----------
+    start : array of shape (n, n) or float
+        Symmetric positive definite: how much the start is trusted, against images seen for a second.
+    forgetting : float
+        In 1/s, not negative.
+
+    Raises
+    ------
+    ValueError
+        If the forgetting is negative or not finite.
+
+    Notes
+    -----
+    Where A^T start + start A = 0, as for rotations and a multiple of the identity, P >= start at all times, and
+    A^T P + P A + P' = S - forgetting (P - start) <= S: the weaker condition holds with epsilon = 1, instead of (15).
+    """
+    if not (np.isfinite(forgetting) and forgetting >= 0):
+        raise ValueError(f"the forgetting is {forgetting} 1/s; it must be finite and not negative")
+    return Weight("Riccati", start, information=1.0, forgetting=float(forgetting))
+
+
+def weight(P: Any) -> Weight:
+    """What `luenberger` takes for P: a Weight, a function of time, an array or a number."""
+    if isinstance(P, Weight):
+        return P
+    return scheduled(P) if callable(P) else constant(P)
+
+
+def _square(value: ArrayLike, states: int) -> Array:
+    array = np.asarray(value, dtype=float)
+    if array.size == 1:
+        return float(array.ravel()[0]) * np.eye(states)
+    if array.size != states**2:
+        raise ValueError(f"P has shape {array.shape}; expected a number or {(states, states)}")
+    return array.reshape(states, states)
+
+
+def _definite(matrix: Array, what: str, semi: bool = False) -> None:
+    if not np.isfinite(matrix).all() or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max(initial=1e-300):
+        raise ValueError(f"{what} must be a finite symmetric matrix")
+    least = float(np.linalg.eigvalsh(matrix)[0])
+    if least < (-1e-12 if semi else 0) or (least == 0 and not semi):
+        raise ValueError(
+            f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite, "
+            "for V = rho^T P rho is to measure the error"
+        )

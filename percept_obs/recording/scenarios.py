@@ -1,0 +1,35 @@
+"""Ma's examples, by name."""
+
+from __future__ import annotations
+
+from percept_obs.recording import Scenario
+from percept_obs.system.motion import affine
+from percept_obs.system.surfaces import ImagingSurface, pinhole
+
+_FIRST_ROWS = [[-0.2, 0.4, -0.6], [0.1, -0.2, 0.3]]
+_TRANSLATION = [0.5, 0.25, 0.3]
+_START = (1.0, 1.5, 2.5)
+
+
+def ma2005_eq35(surface: ImagingSurface | None = None) -> Scenario:
+    """A point that comes near the focus of expansion once, and stays excited (Ma 2005, (35), p. 70)."""
+    return _ma2005("35", [0.3, -0.4, 0.4], surface)
+
+
+def ma2005_eq36(surface: ImagingSurface | None = None) -> Scenario:
+    """A point that moves away without end (Ma 2005, (36), p. 71)."""
+    return _ma2005("36", [-0.4, 0.4, -0.4], surface)
+
+
+def _ma2005(number: str, third_row: list[float], surface: ImagingSurface | None) -> Scenario:
+    motion = affine([*_FIRST_ROWS, third_row], _TRANSLATION)
+    return Scenario(f"Ma 2005 ({number})", motion, _START, 80.0, surface or pinhole(), f"Ma et al. 2005, ({number})")
+
+
+def planar() -> Scenario:
+    """A point that circles on a plane through the camera, seen on the line y2 = 0.5 (Ma 2005, Fig. 2, p. 65).
+
+    The paper gives no numbers: here the point keeps Y = Z / 2 and circles around (1, 2, 4) in 15.7 s.
+    """
+    motion = affine([[0.0, 0.4, -0.6], [0.2, -0.2, 0.1], [0.4, -0.4, 0.2]], [1.6, -0.2, -0.4])
+    return Scenario("planar motion", motion, (1.0, 1.25, 2.5), 40.0, pinhole(), "after Ma et al. 2005, Fig. 2")

@@ -1,0 +1,372 @@
+"""Structure and motion from a scaled inverse depth: which unknowns a choice of known ones leaves observable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.compile import vectorised
+from percept_obs.system.forms import CanonicalForm, partition
+from percept_obs.system.motion import Motion, Signal, rigid
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+from percept_obs.system.view import View
+
+Array = NDArray[np.float64]
+
+y1, y2, ybar3 = OUTPUTS = sp.symbols("y1 y2 ybar3", real=True)
+d_s = sp.Symbol("d_s", real=True)
+_ROTATION, _CAMERA, _OBJECT = (rigid().parameters[k : k + 3] for k in (0, 3, 6))
+
+QUANTITIES = (d_s.name, *(symbol.name for symbol in (*_CAMERA, *_OBJECT)))
+"""What may be unknown: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
+
+
+class ImpossibleChoice(ValueError):
+    """These unknowns cannot be told apart, or what is said of them is contradictory."""
+
+
+@dataclass(frozen=True)
+class ScaledDynamics:
+    """Rate of ybar = (y1, y2, ybar3), with ybar3 = y3 / d_s (Chwa 2019, (5)-(7), p. 4).
+
+        ybar' = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s
+
+    Parameters
+    ----------
+    camera, rotation, object : matrices of shape (3, 3)
+        Omega1, the matrix that multiplies w in Omega2, and Omega3.
+    """
+
+    camera: sp.ImmutableMatrix
+    rotation: sp.ImmutableMatrix
+    object: sp.ImmutableMatrix
+
+    @property
+    def rate(self) -> sp.ImmutableMatrix:
+        """Time derivative of ybar."""
+        translation = self.camera * sp.ImmutableMatrix(_CAMERA) + self.object * sp.ImmutableMatrix(_OBJECT)
+        return (self.rotation * sp.ImmutableMatrix(_ROTATION) + d_s * translation).expand()
+
+    def _repr_latex_(self) -> str:
+        names = (r"\Omega_1", r"\Omega_2 = \Omega_\omega \omega,\quad \Omega_\omega", r"\Omega_3")
+        matrices = map(sp.latex, (self.camera, self.rotation, self.object))
+        return r"$\displaystyle " + r",\quad ".join(map(" = ".join, zip(names, matrices, strict=True))) + "$"
+
+
+@lru_cache(maxsize=1)
+def scaled_dynamics() -> ScaledDynamics:
+    """The dynamics of the scaled inverse depth, derived from a rigid motion seen by a pinhole."""
+    system = PerspectiveSystem(rigid(), pinhole())
+    inverse_depth = system.coordinates[-1]
+    scale = sp.diag(1, 1, 1 / d_s)
+    rate = (scale * system.rate.subs(inverse_depth, d_s * ybar3)).expand()
+    camera, rotation, object_ = (rate.jacobian(symbols) for symbols in (_CAMERA, _ROTATION, _OBJECT))
+    return ScaledDynamics((camera / d_s).expand(), rotation, (object_ / d_s).expand())
+
+
+@dataclass(frozen=True)
+class StructureAndMotion:
+    """A choice of what is unknown among the scale, the camera's and the object's velocity.
+
+    The measured rate is linear in at most three unknowns theta, whatever the choice::
+
+        ybar' = Omega_g(ybar) theta + Omega(ybar),      theta' = 0
+
+    so that it is a canonical form with w^T = Omega_g, phi = Omega and g = 0, and is observable where the columns of
+    Omega_g are independent.  With d_s unknown, the velocities in theta are multiplied by it.
+
+    Parameters
+    ----------
+    unknown : tuple of str
+        At most three names of `QUANTITIES`; they are kept in the order of `QUANTITIES`.
+    zero : tuple of str
+        Velocity components known to be zero.  All others that are not unknown are known signals.
+    earlier : tuple of str
+        Known ones that were estimated in an earlier stage.  With d_s among them, the velocities in theta stay
+        multiplied by d_s, and Omega_g free of its error.
+    scale : float, optional
+        d_s in 1/m where it is known.
+
+    Raises
+    ------
+    ImpossibleChoice
+        If the unknowns cannot be told apart, or what is said of a quantity is contradictory.
+
+    Notes
+    -----
+    Chwa 2019, sections IV to VI: the corollaries are seven of these choices.
+    """
+
+    unknown: tuple[str, ...]
+    zero: tuple[str, ...] = ()
+    earlier: tuple[str, ...] = ()
+    scale: float | None = None
+
+    def __post_init__(self) -> None:
+        for group in ("unknown", "zero", "earlier"):
+            names = getattr(self, group)
+            names = (names,) if isinstance(names, str) else tuple(names)
+            strange = [name for name in names if name not in QUANTITIES]
+            if strange:
+                raise ImpossibleChoice(
+                    f"there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
+                )
+            if len(set(names)) != len(names):
+                raise ImpossibleChoice(f"{group} names a quantity twice: {', '.join(names)}")
+            object.__setattr__(self, group, tuple(sorted(names, key=QUANTITIES.index)))
+        reason = self._contradiction() or self._ambiguity()
+        if reason:
+            raise ImpossibleChoice(reason)
+
+    def _contradiction(self) -> str:
+        both = [name for name in self.unknown if name in (*self.zero, *self.earlier)]
+        if both:
+            return f"{', '.join(both)} cannot be unknown and known at once; take it out of one of the lists"
+        if d_s.name in self.zero:
+            return "d_s is one over a distance, so it is not zero; zero names velocity components"
+        if self.scale is not None and d_s.name in self.unknown:
+            return f"d_s cannot be unknown and known to be {self.scale}; leave out one of the two"
+        if self.scale is not None and not (math.isfinite(self.scale) and self.scale > 0):
+            return f"d_s is {self.scale}; it is one over a distance in metres, finite and positive"
+        return ""
+
+    def _ambiguity(self) -> str:
+        """Why the unknowns cannot be told apart; empty if they can."""
+        if not self.unknown:
+            return f"nothing is unknown; name one to three of {', '.join(QUANTITIES)}"
+        if len(self.unknown) > len(OUTPUTS):
+            return (
+                f"{len(self.unknown)} unknowns ({', '.join(self.unknown)}), but ybar has {len(OUTPUTS)} components, "
+                f"which give {len(OUTPUTS)} equations at an instant; know at least "
+                f"{len(self.unknown) - len(OUTPUTS)} of them"
+            )
+        for camera, object_ in zip(_CAMERA, _OBJECT, strict=True):
+            if {camera.name, object_.name} <= set(self.unknown):
+                return (
+                    f"{camera} and {object_} act through their difference only, so det Omega_g is zero everywhere; "
+                    "know one of them"
+                )
+        if d_s.name in self.unknown and not any(self.known_velocity):
+            return (
+                "the scale d_s multiplies every velocity, and none is known that is not zero along an axis without "
+                "an unknown one, so det Omega_g is zero everywhere; know such a velocity, or d_s"
+            )
+        return ""
+
+    @property
+    def known_velocity(self) -> tuple[sp.Expr, ...]:
+        """Components of v_c - v_p along the axes on which both are known, those that are zero left out."""
+        differences = (
+            (camera - object_).xreplace(self._absent)
+            for camera, object_ in zip(_CAMERA, _OBJECT, strict=True)
+            if not {camera.name, object_.name} & set(self.unknown)
+        )
+        return tuple(difference for difference in differences if difference)
+
+    @property
+    def theta(self) -> tuple[sp.Expr, ...]:
+        """What the hidden coordinates of the form stand for, in d_s and the velocities."""
+        scale = d_s if d_s.name in (*self.unknown, *self.earlier) else sp.S.One
+        return tuple(d_s if name == d_s.name else scale * _symbol(name) for name in self.unknown)
+
+    @cached_property
+    def form(self) -> CanonicalForm:
+        """The canonical form, with x1 = ybar and x2 = theta."""
+        return self.split(OUTPUTS, scaled_dynamics().rate, self)
+
+    def split(self, outputs: tuple[sp.Symbol, ...], rate: sp.ImmutableMatrix, view: View) -> CanonicalForm:
+        """The canonical form of measured outputs whose rate is given in d_s and the velocities."""
+        hidden = sp.symbols(f"theta1:{len(self.unknown) + 1}", real=True)
+        rate = rate.xreplace(self._absent).xreplace(self._in_theta(hidden))
+        names = [symbol.name for symbol in outputs]
+        constant = sp.zeros(len(hidden), 1)
+        parameters = (*self._known, *self.parameters)
+        return partition(
+            (*outputs, *hidden), sp.ImmutableMatrix([*rate, *constant]), names, parameters, view
+        ).canonical_form()
+
+    @property
+    def _known(self) -> tuple[sp.Symbol, ...]:
+        """Parameters of the rigid motion that are known signals."""
+        return tuple(s for s in (*_ROTATION, *_CAMERA, *_OBJECT) if s.name not in (*self.unknown, *self.zero))
+
+    def known_motion(self, motion: Motion) -> Motion:
+        """What is known of a rigid motion: the signals of its known parameters.
+
+        Parameters
+        ----------
+        motion : Motion
+            From `rigid`, with numbers; those of unknown quantities are not used and may be anything.
+
+        Raises
+        ------
+        ValueError
+            If the motion is not rigid, or a velocity that is said to be zero is not.
+        """
+        if motion.parameters != rigid().parameters:
+            raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
+        if motion.signal is None:
+            raise ValueError("the motion has no numbers; build it with those that are known, rigid(w, v_c, v_p)")
+        known = [motion.parameters.index(symbol) for symbol in self._known]
+        absent = [motion.parameters.index(symbol) for symbol in self._absent]
+
+        def taken(rows: Array) -> Array:
+            if rows[..., absent].any():
+                raise ImpossibleChoice(
+                    f"{', '.join(self.zero)} are said to be zero, but the motion has values up to "
+                    f"{np.abs(rows[..., absent]).max():.4g} m/s for them; take what is not zero out of zero"
+                )
+            return rows[..., known]
+
+        samples, times = motion.signal.samples, motion.signal.times
+        if callable(samples):
+            signal = Signal(lambda time: taken(np.asarray(samples(time), dtype=float)))
+        else:
+            signal = Signal(taken(samples), times)
+        return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
+
+    def _in_theta(self, hidden: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:
+        """The unknown quantities in terms of theta."""
+        by_name = dict(zip(self.unknown, hidden, strict=True))
+        scale = by_name.get(d_s.name, d_s if d_s.name in self.earlier else sp.S.One)
+        return {_symbol(n): theta if n == d_s.name else theta / scale for n, theta in by_name.items()}
+
+    @property
+    def _absent(self) -> dict[sp.Symbol, sp.Expr]:
+        return dict.fromkeys(map(_symbol, self.zero), sp.S.Zero)
+
+    @property
+    def translation(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        """M and m such that d_s (v_p - v_c) = M theta + m, of shapes (3, n) and (3, 1).
+
+        They hold known signals only, so that Omega_g = Omega3 M for every choice, with the same Omega3.
+        """
+        hidden = sp.ImmutableMatrix(self.form.x2)
+        difference = sp.ImmutableMatrix([d_s * (o - c) for c, o in zip(_CAMERA, _OBJECT, strict=True)])
+        moved = difference.xreplace(self._absent).xreplace(self._in_theta(tuple(hidden))).expand()
+        return moved.jacobian(hidden), moved.xreplace(dict.fromkeys(hidden, sp.S.Zero))
+
+    @cached_property
+    def determinant(self) -> sp.Expr:
+        """What must not vanish: det Omega_g, factored; with fewer unknowns than outputs det(Omega_g^T Omega_g)."""
+        w = self.form.w
+        return sp.factor(w.T.det() if w.is_square else (w * w.T).det())
+
+    @property
+    def condition(self) -> sp.Basic:
+        """The observability condition; it holds where the determinant is not zero, for d_s > 0."""
+        finite = sp.Ne(ybar3, 0)
+        if d_s.name not in self.unknown:
+            return finite
+        return sp.And(finite, sp.Or(*(sp.Ne(velocity, 0) for velocity in self.known_velocity)))
+
+    @property
+    def zero_set(self) -> str:
+        """Where the unknowns are not observable, in words."""
+        far = "where ybar3 = 0: the point is infinitely far"
+        if d_s.name not in self.unknown:
+            return far
+        stands_still = " and ".join(f"{velocity} = 0" for velocity in self.known_velocity)
+        return f"{far}; and where {stands_still}: no known velocity is left that the scale could be compared with"
+
+    def sensitivity(self) -> sp.ImmutableMatrix:
+        """What errors of ybar3 and of its rate do to theta, to first order.
+
+        Returns
+        -------
+        matrix of shape (n, 2)
+            Derivatives of theta, as it is recovered from ybar and its rate, with respect to ybar3 and ybar3', in
+            terms of ybar, theta and the known signals.
+        """
+        numerator, determinant = self.form.cramer
+        changed = self.form.rate[: len(OUTPUTS), :].diff(ybar3)
+        both = sp.ImmutableMatrix.hstack(-numerator * changed, numerator[:, OUTPUTS.index(ybar3)])
+        return (both / determinant).applyfunc(sp.cancel)
+
+    def hidden(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
+        """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
+        times = np.asarray(times, dtype=float)
+        columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
+        return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
+
+    def quantities(self, theta: ArrayLike) -> dict[str, Array]:
+        """The unknown quantities by name, from values of theta.
+
+        Parameters
+        ----------
+        theta : array of shape (..., n)
+
+        Returns
+        -------
+        mapping of names to arrays of shape (...)
+            d_s in 1/m and velocities in m/s, NaN where theta gives no positive d_s, so that no velocity follows.
+
+        Raises
+        ------
+        ValueError
+            If theta has the wrong shape, or d_s was estimated earlier and its value is not set.
+        """
+        theta = np.asarray(theta, dtype=float)
+        if theta.shape[-1:] != (len(self.unknown),):
+            raise ValueError(f"theta has shape {theta.shape}; expected (..., {len(self.unknown)}): {self.theta}")
+        by_name = dict(zip(self.unknown, np.moveaxis(theta, -1, 0), strict=True))
+        if d_s.name not in (*self.unknown, *self.earlier):
+            return by_name
+        scale = by_name.get(d_s.name, self.scale)
+        if scale is None:
+            raise ValueError("the estimate of d_s from the earlier stage is missing; set scale to it")
+        scale = np.where(np.asarray(scale) > 0, scale, np.nan)
+        return {name: scale if name == d_s.name else values / scale for name, values in by_name.items()}
+
+    @property
+    def name(self) -> str:
+        """What is unknown, in words."""
+        return f"scaled pinhole with {', '.join(self.unknown)} unknown"
+
+    @property
+    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols y1, y2, ybar3 of the measured outputs."""
+        return OUTPUTS
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Measured outputs and then theta."""
+        return self.form.coordinates
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """The scale, where it is known."""
+        return () if d_s.name in self.unknown else (d_s,)
+
+    @property
+    def values(self) -> Mapping[sp.Symbol, float]:
+        """The scale's number, if it has one."""
+        return {} if self.scale is None else {d_s: self.scale}
+
+    def fits(self, other: object) -> bool:
+        """Whether what is derived for this choice holds for the other: the same one, with the same scale if any."""
+        return isinstance(other, StructureAndMotion) and self == replace(
+            other, scale=None if self.scale is None else other.scale
+        )
+
+    def inverse(self, coordinates: ArrayLike) -> Array:
+        """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta is missing or d_s <= 0."""
+        ybar, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
+        inverse: Array = self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
+        return np.where(np.isnan(theta).any(axis=-1), np.nan, inverse)
+
+    def locate(self, coordinates: ArrayLike) -> Array:
+        """Points in metres, shape (..., 3), from ybar and theta; infinite where no positive inverse depth follows."""
+        image = np.asarray(coordinates, dtype=float)[..., :2]
+        return pinhole().locate(np.concatenate([image, self.inverse(coordinates)[..., None]], axis=-1))
+
+
+def _symbol(name: str) -> sp.Symbol:
+    return sp.Symbol(name, real=True)

@@ -1,0 +1,162 @@
+"""Chwa's set-ups, by name, each with its source."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from percept_obs.recording import Scenario
+from percept_obs.structure.corollaries import COROLLARIES
+from percept_obs.structure.simulation import StructureScenario
+from percept_obs.system.motion import rigid
+from percept_obs.system.surfaces import pinhole
+
+_STILL = (0.0, 0.0, 0.0)
+
+_CHWA_EXPERIMENT = {
+    "IV.A": (1, (-0.22, -0.23, 0.0), _STILL),
+    "IV.B": (2, (-0.44, -0.47, 0.0), (-0.22, -0.23, 0.0)),
+    "V.B": (4, (-0.44, -0.23, 0.0), (-0.22, 0.0, 0.0)),
+    "VI.B": (6, (-0.44, -0.47, 0.0), (-0.22, -0.23, 0.0)),
+    "VI.C": (7, (-0.44, -0.23, 0.0), (-0.22, 0.0, 0.0)),
+}
+"""Section: corollary, velocities of the camera and of the object in m/s."""
+
+
+def chwa2019_experiment(section: str) -> StructureScenario:
+    """A case of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
+
+    Parameters
+    ----------
+    section : str
+        "IV.A", "IV.B", "V.B", "VI.B" or "VI.C".  In IV.B the camera and the object have other velocities than in IV.A,
+        although they are two stages of one motion; the paper says nothing of it.
+
+    Raises
+    ------
+    ValueError
+        If there is no such case.
+    """
+    number, camera, object_ = _stated(section, _CHWA_EXPERIMENT)
+    name = f"Chwa 2019, experiment {section}"
+    return _structure(name, (0.32, 0.30, 0.05), 10.4, number, (_STILL, camera, object_), "Chwa 2019, VII.B")
+
+
+def _circling(time: float) -> list[float]:
+    """A camera's velocity that varies at up to 1 rad/s and keeps moving away along its axis."""
+    return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 - 0.1 * math.sin(time)]
+
+
+def _wandering(components: int) -> Callable[[float], list[float]]:
+    """An object's velocity that varies at up to 1 rad/s, in the first so many components."""
+
+    def velocity(time: float) -> list[float]:
+        whole = [0.2 * math.sin(0.7 * time), 0.2 * math.cos(time), 0.1 * math.sin(0.5 * time)]
+        return [*whole[:components], *[0.0] * (3 - components)]
+
+    return velocity
+
+
+_CHWA_SIMULATION = {
+    "IV.A": (1, (0.3, 0.2, -0.1), _STILL),
+    "IV.B": (2, (0.3, 0.2, -0.1), _wandering(3)),
+    "V.A": (3, _circling, _wandering(2)),
+    "V.B": (4, lambda t: [0.3 + 0.1 * math.sin(t), 0.3 + 0.1 * math.cos(t), 0.2 * math.sin(0.8 * t)], _wandering(1)),
+    "VI.A": (5, _circling, _wandering(3)),
+    "VI.B": (6, _circling, _wandering(2)),
+    "VI.C": (7, _circling, _wandering(1)),
+}
+
+
+def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL) -> StructureScenario:
+    """A case of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
+
+    The paper states y(0) = (0.4, 0.4, 0.2) and d_s = 4, and no velocities.  Here they vary at up to 1 rad/s where they
+    need not be constant, keep the point in view, and fulfil the case's observability condition at all times.
+
+    Parameters
+    ----------
+    section : str
+        "IV.A", "IV.B", "V.A", "V.B", "VI.A", "VI.B" or "VI.C".
+    angular_velocity : three floats
+        w in rad/s, minus the camera's own; zero in the paper.  If it is not zero, the point starts on its axis, at
+        w / w3 in the image, so that it stays in view; w3 must be positive then.
+
+    Raises
+    ------
+    ValueError
+        If there is no such case, or w3 is not positive.
+    """
+    number, camera, object_ = _stated(section, _CHWA_SIMULATION)
+    w = np.asarray(angular_velocity, dtype=float)
+    image = (0.4, 0.4)
+    if w.any():
+        if not w[2] > 0:
+            raise ValueError(f"the angular velocity {angular_velocity} needs a positive third component, or to be zero")
+        image = (w[0] / w[2], w[1] / w[2])
+    name = f"Chwa 2019, simulation {section}" + (f", w = {tuple(w.tolist())}" if w.any() else "")
+    source = "after Chwa 2019, VII.A; velocities chosen here"
+    return _structure(name, (*image, 0.05), 4.0, number, (tuple(w.tolist()), camera, object_), source)
+
+
+def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenario:
+    """An object that stands still and then moves, with both stages in one motion (Chwa 2019, section IV).
+
+    Parameters
+    ----------
+    set_up : str
+        "simulation": the camera keeps its velocity, and the object begins to wander.  "experiment": the values stated
+        for IV.A and then those for IV.B, so that the camera changes its velocity when the object moves off.
+    moves_at : float
+        Seconds; the paper does not state it.
+
+    Returns
+    -------
+    StructureScenario
+        With the choice of the second stage.
+
+    Raises
+    ------
+    ValueError
+        If there is no such set-up.
+    """
+    cases = {"simulation": _CHWA_SIMULATION, "experiment": _CHWA_EXPERIMENT}
+    stages = [_stated(set_up, cases)[section] for section in ("IV.A", "IV.B")]
+    still, moving = (chwa2019_simulation if set_up == "simulation" else chwa2019_experiment)("IV.A"), stages[1]
+
+    def at(time: float, part: int) -> Any:
+        velocity = stages[time > moves_at][part]
+        return velocity(time - moves_at) if callable(velocity) else velocity
+
+    motion = rigid(_STILL, lambda time: at(time, 1), lambda time: at(time, 2))
+    scenario = replace(still.scenario, name=f"Chwa 2019, {set_up} IV", motion=motion, duration=2 * moves_at)
+    return StructureScenario(scenario, still.scale, COROLLARIES[moving[0] - 1].choice())
+
+
+def chwa2019_crossing() -> StructureScenario:
+    """Corollary 3 with a camera that turns back along its axis, so that v_c3 crosses 0 at 2.1 s and every 3.1 s."""
+
+    def camera(time: float) -> list[float]:
+        return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 * math.sin(time + 1.0)]
+
+    motion = (_STILL, camera, _wandering(2))
+    return _structure("crossing v_c3 = 0", (0.4, 0.4, 0.05), 4.0, 3, motion, "after Chwa 2019, VII.A")
+
+
+def _stated(section: str, cases: dict[str, Any]) -> Any:
+    if section not in cases:
+        raise ValueError(f"there is no case {section!r}; there are {', '.join(cases)}")
+    return cases[section]
+
+
+def _structure(
+    name: str, ybar: tuple[float, ...], scale: float, number: int, velocities: tuple[Any, ...], source: str
+) -> StructureScenario:
+    """A point that starts at the given (y1, y2, ybar3), in the case of a corollary."""
+    depth = 1 / (scale * ybar[2])
+    scenario = Scenario(name, rigid(*velocities), (ybar[0] * depth, ybar[1] * depth, depth), 10.0, pinhole(), source)
+    return StructureScenario(scenario, scale, COROLLARIES[number - 1].choice())

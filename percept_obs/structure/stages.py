@@ -1,0 +1,135 @@
+"""Structure and motion of an object that first stands still and then moves, in two stages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.observers import Observer, integral_sliding_mode
+from percept_obs.recording import Recording
+from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
+from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.motion import Motion, rigid
+from percept_obs.tracking.following import track
+from percept_obs.tracking.run import Run
+
+Array = NDArray[np.float64]
+
+_CAMERA, _OBJECT = (tuple(s.name for s in rigid().parameters[k : k + 3]) for k in (3, 6))
+
+
+@dataclass(frozen=True, eq=False)
+class SemigeneralRun:
+    """What two observers found, one after the other.
+
+    Parameters
+    ----------
+    static, moving : Run
+        Of the time in which the object stands still, and of that in which it moves.
+    found : mapping of names to floats
+        What the first stage handed on: d_s in 1/m and camera velocities in m/s.
+    """
+
+    static: Run
+    moving: Run
+    found: dict[str, float]
+
+    @cached_property
+    def object_velocity(self) -> Array:
+        """Estimates of v_p in m/s at the samples of the second stage, shape (K, 3)."""
+        choice = self.moving.recording.surface
+        assert isinstance(choice, StructureAndMotion)
+        velocities = choice.quantities(self.moving.estimate[:, -len(choice.unknown) :])
+        return np.stack([velocities[name] for name in _OBJECT], axis=-1)
+
+
+def semigeneral(
+    recording: Recording,
+    motion: Motion,
+    moves_at: float,
+    choice: StructureAndMotion | None = None,
+    make: Callable[[CanonicalForm], Observer] = integral_sliding_mode,
+    camera: Literal["kept", "given"] = "kept",
+    average: float = 0.5,
+    scale: float | None = None,
+    **settings: Any,
+) -> SemigeneralRun:
+    """Estimate d_s and the camera's velocity while the object stands still, and then the object's velocity.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of (y1, y2, ybar3), through both stages.
+    motion : Motion
+        From `rigid`.  Known are its angular velocity and what `choice` knows of the camera's velocity; the rest is not
+        used unless the truth is asked for, or the camera's velocity is given.
+    moves_at : float
+        When the object starts to move, in seconds.
+    choice : StructureAndMotion, optional
+        What is unknown in the first stage; that of corollary 1 with v_c1 known when left out.
+    make : function of a form
+        The observer of both stages.
+    camera : "kept" or "given"
+        Whether the camera keeps the velocity that the first stage found, or its velocity in the second stage is given
+        anew by `motion`.
+    average : float
+        Seconds before `moves_at` over which the first stage's estimates are averaged to be handed on; 0 for the last
+        ones alone.
+    scale : float, optional
+        The true d_s, if the runs are to be compared with the truth.
+    **settings
+        Passed to `track`, such as ``hold`` and ``step``.
+
+    Returns
+    -------
+    SemigeneralRun
+
+    Raises
+    ------
+    ValueError
+        If `moves_at` leaves one of the stages without two samples, `camera` is neither word, or the first stage has no
+        estimate of a positive d_s to hand on.
+
+    Notes
+    -----
+    Chwa 2019, section IV, corollaries 1 and 2, pp. 6-7.
+    """
+    choice = choice or COROLLARIES[0].choice()
+    if camera not in ("kept", "given"):
+        raise ValueError(f"the camera {camera!r} is neither 'kept' nor 'given'")
+    begin, end = recording.time[[1, -2]]
+    if not begin <= moves_at <= end:
+        raise ValueError(f"the object moves at {moves_at} s; each stage needs two samples: {begin:.4g} to {end:.4g} s")
+    first = seen_as(recording.between(-np.inf, moves_at), choice, motion, scale)
+    static = track(first, make(choice.form), **settings)
+    last = static.estimate[static.time >= moves_at - average - 1e-9, -len(choice.unknown) :]
+    usable = last[np.isfinite(last).all(axis=1)]
+    found = {n: float(v) for n, v in choice.quantities(usable.mean(axis=0)).items()} if len(usable) else {}
+    if not found.get("d_s", np.nan) > 0:
+        raise ValueError(
+            f"in the last {average} s before {moves_at} s there is no estimate of a positive d_s ({static.verdict()}); "
+            "let the first stage last longer, or average less"
+        )
+    second = StructureAndMotion(_OBJECT, earlier=choice.unknown, scale=found["d_s"])
+    believed = second.known_motion(_with_velocities(motion, found) if camera == "kept" else motion)
+    rest = replace(seen_as(recording.between(moves_at, np.inf), second, motion, scale), motion=believed)
+    return SemigeneralRun(static, track(rest, make(second.form), **settings), found)
+
+
+def _with_velocities(motion: Motion, found: dict[str, float]) -> Motion:
+    """The motion with the camera's velocities that were found, and with an object about which nothing is said."""
+
+    def velocities(time: float) -> dict[str, float]:
+        known = dict(zip((s.name for s in motion.parameters), motion.known(time)[0].tolist(), strict=True))
+        return known | found
+
+    return rigid(
+        lambda time: motion.known(time)[0, :3],
+        lambda time: [velocities(time)[name] for name in _CAMERA],
+        (0.0, 0.0, 0.0),
+    )

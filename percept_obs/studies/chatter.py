@@ -1,0 +1,163 @@
+"""What a switching observer does to integration: chatter at fixed steps, and ever shorter steps of adaptive solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.observers.base import Observer, with_point
+from percept_obs.recording import Recording, Scenario, step_grid
+from percept_obs.tracking.following import track
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+METHODS = ("RK45", "LSODA", "Radau")
+"""Adaptive solvers of scipy: explicit, switching by stiffness, implicit."""
+
+
+def chatter(
+    recording: Recording,
+    observer: Observer,
+    steps: Sequence[float],
+    start: Mapping[str, float] | Sequence[float] | None = None,
+    after: float = 0.0,
+) -> pd.DataFrame:
+    """Errors of an observer that knows the exact signal, at several steps of integration.
+
+    What remains of them is the integration's: where a sign is integrated, a step that crosses its jump pushes the wrong
+    way for a part of the step, so that the estimate never comes to rest on the switching surface.  With the step h and
+    the size gamma of the sign,
+
+    - a sign in the rate of the estimate (the sliding mode observer) leaves errors proportional to gamma h;
+    - a sign in the rate of its rate (the range identification observer) makes the estimate oscillate: a crossing feeds
+      in the energy gamma h v for the speed v, and the damping c takes c v^3 / gamma, which balance at
+      v = gamma sqrt(h / c).  The hidden part is read from that speed, so its error is proportional to sqrt(h).
+
+    Parameters
+    ----------
+    recording : Recording
+        From a simulation.
+    observer : Observer
+    steps : sequence of float
+        Longest steps in seconds; a sample always ends one.
+    start : see `track`
+    after : float
+        Seconds from which on errors count.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a step: step (s, the longest that was taken), and the root mean square error of every coordinate, by
+        its name.
+
+    Raises
+    ------
+    ValueError
+        If there is no step, or one is not positive.
+    """
+    import pandas as pd
+
+    if not len(steps):
+        raise ValueError("there are no steps to compare; give some, in seconds")
+    names = [symbol.name for symbol in observer.form.coordinates]
+    begin, end = recording.time[0] + after, recording.time[-1]
+    rows = []
+    for step in steps:
+        run = track(recording, observer, start, "exact", step=step)
+        taken = float(np.diff(step_grid(recording.time, step)[0]).max())
+        rows.append({"step": taken} | {name: run.rms(begin, end, name) for name in names})
+    return pd.DataFrame(rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Effort:
+    """How an adaptive solver got on.
+
+    Parameters
+    ----------
+    method : str
+        The solver's name in scipy.
+    time : array of shape (N + 1,)
+        The ends of its steps in seconds.
+    evaluations : array of shape (N + 1,)
+        How often the right-hand side had been evaluated by then.
+    finished : bool
+        Whether it reached the end before it was out of evaluations.
+    """
+
+    method: str
+    time: Array
+    evaluations: NDArray[np.int_]
+    finished: bool
+
+    @property
+    def steps(self) -> Array:
+        """Lengths of the steps in seconds, shape (N,)."""
+        return np.diff(self.time)
+
+
+def effort(
+    scenario: Scenario,
+    observer: Observer,
+    duration: float,
+    method: str = "RK45",
+    start: Mapping[str, float] | None = None,
+    tolerance: float = 1e-6,
+    most: int = 20_000,
+) -> Effort:
+    """Let one of scipy's adaptive solvers integrate point and observer together, without noise and resets.
+
+    At each crossing of a jump the solver finds an error that its order does not explain, and shortens the step until
+    the jump weighs no more than the tolerance.  Once the observer slides, crossings never end (Filippov 1988).
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With a constant motion.
+    observer : Observer
+    duration : float
+        Seconds.
+    method : str
+        One of `METHODS`.
+    start : mapping of coordinate names to estimates, optional
+    tolerance : float
+        Relative and absolute.
+    most : int
+        Evaluations after which it gives up.
+
+    Returns
+    -------
+    Effort
+
+    Raises
+    ------
+    ValueError
+        If the method has no such name, or the duration or the tolerance is not positive.
+    """
+    from scipy import integrate
+
+    if method not in METHODS:
+        raise ValueError(f"the method {method!r} is none of {', '.join(METHODS)}")
+    if not (np.isfinite([duration, tolerance]).all() and duration > 0 and tolerance > 0 and most > 0):
+        raise ValueError(f"duration {duration} s, tolerance {tolerance} and {most} evaluations must be positive")
+    point = scenario.coordinates([0.0])[0]
+    known = dict(zip((symbol.name for symbol in scenario.surface.coordinates), point.tolist(), strict=True))
+    outputs = {name: known[name] for name in observer.form.measured}
+    inside = observer.initial_state(outputs, start or {}, scenario.motion.values | dict(observer.form.values))
+    form = observer.form
+    outside = [known[symbol.name] for symbol in (*form.x1, *form.x2)]
+    flow = with_point(observer).lambdify(scenario.motion)
+    solver = getattr(integrate, method)(flow, 0.0, [*outside, *inside], duration, rtol=tolerance, atol=tolerance)
+    times, evaluations = [0.0], [solver.nfev]
+    while solver.status == "running" and solver.nfev < most:
+        solver.step()
+        times.append(float(solver.t))
+        evaluations.append(int(solver.nfev))
+    return Effort(method, np.array(times), np.array(evaluations), solver.status == "finished")

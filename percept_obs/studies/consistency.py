@@ -1,0 +1,176 @@
+"""What a filter claims to know, and whether its innovations bear the claim out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from percept_obs.tracking.run import Run
+
+Array = NDArray[np.float64]
+
+DEVIATIONS = 2.0
+"""Claimed standard deviations to either side of an estimate: 95 % of a normal distribution."""
+
+
+def claimed_interval(run: Run) -> tuple[Array, Array]:
+    """Ends of the interval of two claimed standard deviations around the estimate.
+
+    Returns
+    -------
+    low, high : arrays of shape (K, n)
+        NaN where the run has diverged.
+
+    Raises
+    ------
+    ValueError
+        If the observer claims no covariance.
+    """
+    variances = np.diagonal(run.covariance, axis1=1, axis2=2)
+    spread = DEVIATIONS * np.sqrt(np.maximum(variances, 0))  # round-off may leave one a little below zero
+    return run.estimate - spread, run.estimate + spread
+
+
+def claimed_distance(run: Run) -> tuple[Array, Array]:
+    """Ends of the same interval as a distance in metres.
+
+    An interval of the inverse distance that reaches zero stands for distances without an upper end.
+
+    Returns
+    -------
+    low, high : arrays of shape (K,)
+        `high` is infinite where the interval reaches zero, and both are where it is not positive at all; NaN where
+        the run has diverged.
+
+    Raises
+    ------
+    ValueError
+        If the observer claims no covariance.
+    """
+    low, high = (end[:, -1] for end in claimed_interval(run))
+    nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
+    return nearest, farthest
+
+
+@dataclass(frozen=True, eq=False)
+class Consistency:
+    """Whether normalised innovations are as large as they should be.
+
+    If the filter's claims are right they are distributed as chi-squared with `outputs` degrees of freedom, each
+    independent of the others, so N times the mean of N of them is chi-squared with N `outputs`.
+
+    Parameters
+    ----------
+    time : array of shape (K,)
+        When there was a sample of all outputs, in seconds.
+    normalised : array of shape (K,)
+        Normalised innovations.
+    outputs : int
+        Number of measured outputs, which is the mean to be expected.
+    samples : int
+        N, the number of samples that a moving average holds.
+    confidence : float
+        Probability of the two-sided intervals.
+    """
+
+    time: Array
+    normalised: Array
+    outputs: int
+    samples: int
+    confidence: float
+
+    @property
+    def averages(self) -> Array:
+        """Mean of each normalised innovation and the N - 1 before it, shape (K - N + 1,)."""
+        means: Array = sliding_window_view(self.normalised, self.samples).mean(axis=1)
+        return means
+
+    @property
+    def average_time(self) -> Array:
+        """Last time of each moving average in seconds, shape (K - N + 1,)."""
+        return self.time[self.samples - 1 :]
+
+    @property
+    def mean(self) -> float:
+        """Mean of all normalised innovations."""
+        return float(self.normalised.mean())
+
+    def interval(self, count: int) -> tuple[float, float]:
+        """Where the mean of so many normalised innovations lies, with the probability `confidence`."""
+        from scipy.stats import chi2
+
+        low, high = chi2.interval(self.confidence, count * self.outputs)
+        return float(low) / count, float(high) / count
+
+    @property
+    def judgement(self) -> str:
+        """One of "consistent", "overconfident" (innovations are too large) and "too modest"."""
+        low, high = self.interval(len(self.normalised))
+        return "overconfident" if self.mean > high else "too modest" if self.mean < low else "consistent"
+
+    def verdict(self) -> str:
+        """The judgement in words, with its numbers."""
+        reason = {
+            "consistent": "the innovations are as large as the filter claims",
+            "overconfident": "the innovations are larger than the filter claims",
+            "too modest": "the innovations are smaller than the filter claims",
+        }
+        low, high = self.interval(len(self.normalised))
+        lowest, highest = self.interval(self.samples)
+        inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
+        return (
+            f"{self.judgement}: {reason[self.judgement]}. The mean normalised innovation of {len(self.normalised)} "
+            f"samples is {self.mean:.3g}; {self.outputs} is expected, and {low:.3g} to {high:.3g} with a probability "
+            f"of {100 * self.confidence:g} %. Of the moving averages of {self.samples} samples {100 * inside:.0f} % "
+            f"lie in their interval, {lowest:.3g} to {highest:.3g}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<Consistency: {self.verdict()}>"
+
+
+def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
+    """Test whether a filter's innovations are as large as it claims.
+
+    It needs no truth, so it works on real data.  What leaves no trace in the innovations, such as a wrong scale,
+    it cannot find.
+
+    Parameters
+    ----------
+    run : Run
+        Of an observer that claims a covariance and has a measurement update.
+    samples : int
+        Number of samples in a moving average, from 1 to that of the run.
+    after : float
+        Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
+    confidence : float
+        Probability of the two-sided intervals, between 0 and 1.
+
+    Returns
+    -------
+    Consistency
+
+    Raises
+    ------
+    ValueError
+        If the observer claims no covariance, the run diverged, or a number makes no sense.
+
+    Notes
+    -----
+    Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation (2001), section 5.4.
+    """
+    if not 0 < confidence < 1:
+        raise ValueError(f"the confidence is {confidence}; it must lie between 0 and 1")
+    if not after >= 0:
+        raise ValueError(f"after is {after} s; it must not be negative")
+    if run.diverged_at is not None:
+        raise ValueError(f"the run diverged at {run.diverged_at:.3g} s; a filter that diverges is not consistent")
+    normalised = run.normalised_innovation
+    counted = np.isfinite(normalised) & (run.time >= run.time[0] + after)
+    found = int(counted.sum())
+    if not 1 <= samples <= found:
+        raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} to average")
+    return Consistency(run.time[counted], normalised[counted], len(run.observer.form.x1), samples, confidence)

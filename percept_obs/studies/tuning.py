@@ -1,0 +1,214 @@
+"""Gains chosen on some recordings, and what they do on others: every observer in one table."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import product
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from percept_obs.observers import (
+    NeedsMoreOutputs,
+    NotIntegrable,
+    Observer,
+    de_luca,
+    extended_kalman,
+    identifier_based,
+    immersion_and_invariance,
+    integral_sliding_mode,
+    linear_approximation,
+    range_identification,
+    sliding_mode,
+    spica,
+)
+from percept_obs.recording import Recording
+from percept_obs.studies.comparison import best_setting, relative_distance_errors
+from percept_obs.studies.least_squares import WindowEstimate
+from percept_obs.system.forms import NotAffine, PartitionedSystem
+from percept_obs.tracking.following import DoesNotFit
+from percept_obs.tracking.run import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Gains = Mapping[str, float]
+Make = Callable[..., Observer]
+Follow = Callable[[Recording, Observer], Run]
+Estimate = Callable[[Recording], WindowEstimate]
+
+SHARE = 0.9
+"""The share of recordings whose errors the table bounds, beside half of them."""
+
+COLUMNS = (
+    *("observer", "gains", "reference", "after", "median", "nine_in_ten"),
+    *("behind", "reset", "diverged", "cost", "refusal"),
+)
+"""Columns of the table."""
+
+
+def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
+    """Every combination of the gains' values."""
+    return tuple(dict(zip(values, each, strict=True)) for each in product(*values.values()))
+
+
+def _identifier_based() -> Iterator[dict[str, float]]:
+    for gain, feedback in product((2, 3.5, 6, 10, 17), (60, 120, 250, 500, 1000)):
+        yield {"gain": gain, "lyapunov": -feedback / gain**2}
+
+
+def _extended_kalman() -> Iterator[dict[str, float]]:
+    for deviation, doubt in product((0.004, 0.008, 0.016, 0.032), (0, 1e-4, 1e-3)):
+        yield {
+            "noise_variance": deviation**2,
+            "process_noise": doubt,
+            "measured_variance": 1e-4,
+            "hidden_variance": 1,
+        }
+
+
+def _range_identification() -> Iterator[dict[str, float]]:
+    # the equations are symmetric in both rates: take them equal
+    for rate, switching, layer in product((3, 4, 6), (1, 3, 10), (0.05, 0.1, 0.2)):
+        yield {"filter_rate": rate, "feedback": rate, "switching_gain": switching, "boundary_layer": layer}
+
+
+HAND_HELD: Mapping[Make, tuple[Gains, ...]] = MappingProxyType(
+    {
+        identifier_based: tuple(_identifier_based()),
+        sliding_mode: grid(hidden_gain=(20, 50, 120), switching_gain=(0.7, 1.7, 4), boundary_layer=(0.1, 0.2, 0.5, 1)),
+        extended_kalman: tuple(_extended_kalman()),
+        de_luca: grid(measured_gain=(2, 3.5, 6, 10, 17), hidden_gain=(60, 120, 250, 500, 1000)),
+        spica: grid(hidden_gain=(20, 40, 60, 80, 110, 150, 200, 270, 370, 500, 700, 1000)),
+        immersion_and_invariance: grid(gain=(5, 10, 20, 40, 80)),
+        integral_sliding_mode: grid(feedback=(1, 2, 4), switching_gain=(0.25, 0.5), sharpening=(0,)),
+        range_identification: tuple(_range_identification()),
+        # only the ratios to the measurement's weight matter, and a large one is stiff
+        linear_approximation: grid(
+            process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)
+        ),
+    }
+)
+"""Gains worth trying on a camera that a hand carries at 0.1 to 0.5 m/s past points some metres away, by observer."""
+
+
+def choose_and_report(
+    choosing: Sequence[Recording],
+    reporting: Sequence[Recording],
+    form: PartitionedSystem,
+    follow: Follow,
+    candidates: Mapping[Make, Sequence[Gains]] = HAND_HELD,
+    batch: Mapping[str, Estimate] | None = None,
+    after: Sequence[float] = (1.0, 2.0, 3.0),
+    references: Sequence[str] = ("truth",),
+) -> pd.DataFrame:
+    """Choose each observer's gains on some recordings, and report its errors of the distance on others.
+
+    Parameters
+    ----------
+    choosing, reporting : sequences of Recording
+        With a truth; none in both.
+    form : PartitionedSystem
+        What the observers observe.
+    follow : function of (recording, observer)
+        How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
+    candidates : mapping of functions such as `identifier_based` to their gains
+        Those with the least sum of median errors after the given times are chosen.
+    batch : mapping of labels to functions of a recording, optional
+        Estimates to stand beside the observers, such as `moving_window_least_squares`; nothing is chosen for them.
+    after : sequence of float
+        Seconds since the first sample.
+    references : sequence of str
+        "truth", or names of measured distances of the recordings.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for an observer, a reference and a time, with relative errors of the distance over the reporting
+        recordings: observer, gains (the chosen ones), reference, after (s), median, nine_in_ten (the 90 % quantile),
+        behind (number of recordings whose estimate is not in front of the camera then), reset, diverged (numbers of
+        recordings), cost (s of computing for a s of data), and refusal: why the observer cannot follow these
+        recordings, if it cannot; its numbers are then NaN.
+
+    Raises
+    ------
+    ValueError
+        If there are no recordings or candidates, a recording is in both halves, or one is too short or has no such
+        reference.
+    """
+    import pandas as pd
+    from tqdm.auto import tqdm
+
+    if not len(choosing) or not len(reporting):
+        raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
+    if {id(recording) for recording in choosing} & {id(recording) for recording in reporting}:
+        raise ValueError("a recording is in both halves: gains flatter the report if they were chosen on it")
+    if not candidates or not all(len(gains) for gains in candidates.values()):
+        raise ValueError("every observer needs at least one candidate for its gains")
+    questions = list(product(references, after))
+    rows: list[dict[str, Any]] = []
+
+    def answer(label: str, gains: str, estimate: Callable[[Recording], Run | WindowEstimate]) -> None:
+        begin = time.perf_counter()
+        runs = [estimate(recording) for recording in reporting]
+        cost = (time.perf_counter() - begin) / sum(float(r.time[-1] - r.time[0]) for r in reporting)
+        told = {"observer": label, "gains": gains, "cost": cost, "refusal": ""}
+        told["reset"] = sum(isinstance(run, Run) and len(run.resets) > 0 for run in runs)
+        told["diverged"] = sum(isinstance(run, Run) and run.diverged_at is not None for run in runs)
+        for reference, seconds in questions:
+            errors = relative_distance_errors(runs, seconds, reference)
+            # the quantile by rank, for infinite errors have no mean
+            numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, SHARE, method="nearest")}
+            numbers["behind"] = np.isinf(errors).sum()
+            rows.append({**told, "reference": reference, "after": seconds, **numbers})
+
+    for make, settings in tqdm(candidates.items(), desc="choosing gains", delay=2, leave=False):
+        try:
+            chosen = best_setting(choosing, [make(form, **gains) for gains in settings], follow, after)
+        except (DoesNotFit, NeedsMoreOutputs, NotAffine, NotIntegrable) as refusal:
+            told = {"observer": make.__name__.replace("_", " "), "gains": "", "refusal": str(refusal)}
+            rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
+            continue
+        values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
+        answer(chosen.name, ", ".join(f"{n} {v:.3g}" for n, v in values.items()), partial(_swapped, follow, chosen))
+    for label, estimate in (batch or {}).items():
+        answer(label, "", estimate)
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
+    """What `choose_and_report` found as text, an observer a row.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `choose_and_report`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each reference and time, with the median error and in brackets what nine in ten stay below;
+        behind (recordings, at the time with the most), reset, diverged, cost (us for a s of data), and a remark: the
+        gains, or why the observer cannot follow.
+    """
+    import pandas as pd
+
+    lines = {}
+    for label, rows in table.groupby("observer", sort=False):
+        refusal = rows["refusal"].iloc[0]
+        line = {}
+        for row in rows.itertuples():
+            told = "–" if refusal else f"{row.median:.1%} ({row.nine_in_ten:.0%})"
+            line[f"{row.reference} {row.after:g} s"] = told.replace("inf%", "none")
+        for name in ("behind", "reset", "diverged"):
+            line[name] = "–" if refusal else f"{rows[name].max():.0f}"
+        line["cost"] = "–" if refusal else f"{1e6 * rows['cost'].iloc[0]:.0f} us/s"
+        lines[label] = line | {"remark": f"cannot: {refusal}" if refusal else rows["gains"].iloc[0]}
+    return pd.DataFrame.from_dict(lines, orient="index")
+
+
+def _swapped(follow: Follow, observer: Observer, recording: Recording) -> Run:
+    return follow(recording, observer)

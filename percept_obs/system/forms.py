@@ -1,0 +1,234 @@
+"""Systems with a measured and a hidden part, and their canonical form, where the hidden part enters linearly."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+
+import sympy as sp
+
+from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.view import View
+
+
+class NotAffine(ValueError):
+    """The measured outputs' rate is not affine in the hidden coordinates.
+
+    Attributes
+    ----------
+    measured : tuple of str
+        Names of the measured outputs.
+    culprits : tuple of str
+        Names of the hidden coordinates that do not enter linearly.
+    """
+
+    def __init__(self, measured: Sequence[str], culprits: Sequence[str]) -> None:
+        self.measured, self.culprits = tuple(measured), tuple(culprits)
+        super().__init__(
+            f"measuring {', '.join(measured)} gives no canonical form: its rate is not affine in "
+            f"{', '.join(culprits)}; measure {' or '.join(culprits[:-1]) or culprits[0]} as well, or use the extended "
+            f"Kalman filter: extended_kalman(system.partition({', '.join(map(repr, measured))}))"
+        )
+
+
+class NeedsMoreOutputs(ValueError):
+    """The measured outputs' rates do not determine the hidden coordinates."""
+
+    def __init__(self, form: CanonicalForm) -> None:
+        super().__init__(
+            f"{', '.join(form.hidden)} are hidden; measure every image coordinate, for the rates of "
+            f"{', '.join(form.measured)} do not determine them at an instant"
+        )
+
+
+@dataclass(frozen=True)
+class PartitionedSystem:
+    """A system whose coordinates are divided into measured and hidden ones: (x1, x2)' = f(x1, x2).
+
+    Parameters
+    ----------
+    x1, x2 : tuples of n1 and n2 symbols
+        Measured and hidden coordinates.
+    rate : matrix of shape (n1 + n2, 1)
+        Time derivative of (x1, x2).
+    parameters : tuple of symbols
+        Known motion and surface.
+    coordinates : tuple of symbols
+        All coordinates in the order of the surface.
+    surface : View or None
+        Where the outputs are seen.
+    """
+
+    x1: tuple[sp.Symbol, ...]
+    x2: tuple[sp.Symbol, ...]
+    rate: sp.ImmutableMatrix
+    parameters: tuple[sp.Symbol, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    surface: View | None = None
+
+    @property
+    def values(self) -> dict[sp.Symbol, float]:
+        """Numbers of the surface's symbols."""
+        return dict(self.surface.values) if self.surface else {}
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the measured coordinates."""
+        return tuple(symbol.name for symbol in self.x1)
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of the hidden coordinates."""
+        return tuple(symbol.name for symbol in self.x2)
+
+    def canonical_form(self) -> CanonicalForm:
+        """The same system in the form that most observers need.
+
+        Raises
+        ------
+        NotAffine
+            If the measured coordinates' rate is not affine in the hidden ones.
+        """
+        n1 = len(self.x1)
+        measured_rate, g = self.rate[:n1, :].expand(), self.rate[n1:, :]
+        w = measured_rate.jacobian(self.x2).T.expand()
+        culprits = _culprits(w, self.x2)
+        if culprits:
+            raise NotAffine(self.measured, culprits)
+        away = dict.fromkeys(self.x2, sp.S.Zero)
+        # What is affine but not written so still holds hidden coordinates; their value does not matter there.
+        w = w if not w.free_symbols & set(self.x2) else w.subs(away)
+        phi = measured_rate.subs(away)
+        return CanonicalForm(self.x1, self.x2, w, phi, g, self.parameters, self.coordinates, self.surface)
+
+    def _repr_latex_(self) -> str:
+        lines = [
+            rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {sp.latex(rate)}"
+            for part, rate in ((self.x1, self.rate[: len(self.x1), :]), (self.x2, self.rate[len(self.x1) :, :]))
+        ]
+        return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
+
+
+@dataclass(frozen=True, init=False)
+class CanonicalForm(PartitionedSystem):
+    """The system x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
+
+    Parameters
+    ----------
+    x1, x2 : tuples of n1 and n2 symbols
+        Measured and hidden coordinates.
+    w : matrix of shape (n2, n1)
+    phi : matrix of shape (n1, 1)
+    g : matrix of shape (n2, 1)
+    parameters : tuple of symbols
+        Known motion and surface.
+    coordinates : tuple of symbols
+        All coordinates in the order of the surface.
+    surface : View or None
+        Where the outputs are seen.
+    """
+
+    rate: sp.ImmutableMatrix = field(init=False)
+    w: sp.ImmutableMatrix = field(kw_only=True)
+    phi: sp.ImmutableMatrix = field(kw_only=True)
+    g: sp.ImmutableMatrix = field(kw_only=True)
+
+    def __init__(
+        self,
+        x1: tuple[sp.Symbol, ...],
+        x2: tuple[sp.Symbol, ...],
+        w: sp.ImmutableMatrix,
+        phi: sp.ImmutableMatrix,
+        g: sp.ImmutableMatrix,
+        parameters: tuple[sp.Symbol, ...],
+        coordinates: tuple[sp.Symbol, ...],
+        surface: View | None = None,
+    ) -> None:
+        rate = sp.ImmutableMatrix([*(w.T * sp.ImmutableMatrix(x2) + phi), *g])
+        super().__init__(x1, x2, rate, parameters, coordinates, surface)
+        for name, part in (("w", w), ("phi", phi), ("g", g)):
+            object.__setattr__(self, name, part)
+
+    def canonical_form(self) -> CanonicalForm:
+        """The form itself."""
+        return self
+
+    @cached_property
+    def cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
+        """Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
+
+        With as many outputs as hidden coordinates N / D is the inverse of w^T, with more (w w^T)^-1 w, the solution
+        in the least-squares sense.
+
+        Returns
+        -------
+        matrix of shape (n2, n1)
+        expression
+
+        Raises
+        ------
+        NeedsMoreOutputs
+            If w^T x2 never determines x2: there are fewer outputs than hidden coordinates, or D is zero everywhere.
+        """
+        if len(self.x2) > len(self.x1):
+            raise NeedsMoreOutputs(self)
+        square = self.w.T if self.w.is_square else self.w * self.w.T
+        # neither is multiplied out, for small differences would be lost in the sum of large terms
+        determinant, adjugate = square.det(method="laplace"), square.adjugate(method="laplace")
+        if determinant.expand().is_zero:
+            raise NeedsMoreOutputs(self)
+        return adjugate if self.w.is_square else adjugate * self.w, determinant
+
+    def derivation(self) -> Derivation:
+        """The form in formulas, one part after the other."""
+        x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
+        return Derivation(
+            (
+                Step("Measured and hidden:", rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}"),
+                Step(
+                    "What multiplies the hidden coordinates in the measured ones' rate:",
+                    equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
+                ),
+                Step("What is left of it without them:", equals(r"\phi", self.phi)),
+                Step("How the hidden coordinates change:", equals(r"g", self.g)),
+            )
+        )
+
+    def _repr_latex_(self) -> str:
+        x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
+        return (
+            rf"$\displaystyle \begin{{aligned}} \frac{{d}}{{dt}} {sp.latex(x1)} &= {sp.latex(self.w.T)} {sp.latex(x2)} "
+            rf"+ {sp.latex(self.phi)} \\ \frac{{d}}{{dt}} {sp.latex(x2)} &= {sp.latex(self.g)} \end{{aligned}}$"
+        )
+
+
+def partition(
+    coordinates: tuple[sp.Symbol, ...],
+    rate: sp.ImmutableMatrix,
+    measured: Sequence[str],
+    parameters: tuple[sp.Symbol, ...],
+    surface: View | None = None,
+) -> PartitionedSystem:
+    """Divide a system, given the names of the measured coordinates and the rate in the order of all coordinates."""
+    rates = dict(zip(coordinates, rate, strict=True))
+    by_name = {symbol.name: symbol for symbol in coordinates}
+    x1 = tuple(by_name[name] for name in measured)
+    x2 = tuple(symbol for symbol in coordinates if symbol not in x1)
+    ordered = sp.ImmutableMatrix([rates[symbol] for symbol in (*x1, *x2)])
+    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, surface)
+
+
+def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> list[str]:
+    """Hidden coordinates on which w depends, or that multiply those: where a second derivative is not zero."""
+    draw = random.Random(0)
+    points = [{s: sp.Float(draw.uniform(0.1, 0.9), 30) for s in sorted(w.free_symbols, key=str)} for _ in range(3)]
+    guilty: set[sp.Symbol] = set()
+    for (row, hidden), other in product(enumerate(x2), x2):
+        for entry in w.row(row):
+            second = entry.diff(other)
+            if any(abs(sp.N(second.subs(point), 30)) > 1e-20 for point in points):
+                guilty |= {hidden, other}
+    return [symbol.name for symbol in x2 if symbol in guilty]

@@ -1,0 +1,180 @@
+"""Perspective dynamics: a motion seen on an imaging surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT, ImagingSurface
+
+
+@dataclass(frozen=True)
+class PerspectiveSystem:
+    """A point in motion, seen on an imaging surface.
+
+    With the ray m(y), the inverse distance eta and the point X = m(y) / eta,
+
+        y'   = J(m) (A m + b eta),        J = d(image coordinates) / dX,
+        eta' = -eta grad l(m) . (A m + b eta),        l = 1 / eta.
+
+    Image coordinates do not change with the point's scale, so eta cancels by itself.
+
+    Parameters
+    ----------
+    motion : Motion
+    surface : ImagingSurface
+    """
+
+    motion: Motion
+    surface: ImagingSurface
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Image coordinates and then the inverse distance."""
+        return self.surface.coordinates
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the motion and of the surface."""
+        return (*self.motion.parameters, *self.surface.parameters)
+
+    @property
+    def values(self) -> dict[sp.Symbol, float]:
+        """Numbers of the parameters that have constant ones."""
+        return {**self.motion.values, **self.surface.values}
+
+    @cached_property
+    def rate(self) -> sp.ImmutableMatrix:
+        """Time derivative of `coordinates`, expanded.  Ma 2005, (4), p. 64 for affine motion and the pinhole."""
+        velocity = self._velocity
+        inverse = self.surface.inverse_distance
+        image_rate = self._image_gradient * velocity
+        inverse_rate = -inverse * (self._distance_gradient * velocity)
+        return sp.ImmutableMatrix([*image_rate, *inverse_rate]).expand()
+
+    def jacobian(self) -> sp.ImmutableMatrix:
+        """Derivative of `rate` with respect to `coordinates`."""
+        return self.rate.jacobian(self.coordinates)
+
+    @cached_property
+    def foe(self) -> sp.ImmutableMatrix:
+        """Focus of expansion: the image of the translation b."""
+        direction = dict(zip(POINT, self.motion.b, strict=True))
+        return sp.ImmutableMatrix([entry.subs(direction, simultaneous=True) for entry in self.surface.image])
+
+    def partition(self, *names: str) -> PartitionedSystem:
+        """Divide the coordinates into measured and hidden ones.
+
+        Parameters
+        ----------
+        *names : str
+            Names of the measured coordinates, such as "y1", "y2".
+
+        Returns
+        -------
+        PartitionedSystem
+            Enough for the extended Kalman filter, for any outputs on any surface.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown, repeated, or the inverse distance, or none is given.
+        """
+        known = [symbol.name for symbol in self.surface.image_coordinates]
+        if not names or len(set(names)) != len(names) or not set(names) <= set(known):
+            raise ValueError(
+                f"cannot measure {', '.join(map(repr, names)) or 'nothing'}: the outputs of the {self.surface.name} "
+                f"are {', '.join(known)}; name at least one of them, each once"
+            )
+        return partition(self.coordinates, self.rate, names, self.parameters, self.surface)
+
+    def measure(self, *names: str) -> CanonicalForm:
+        """The canonical form with the named coordinates measured.
+
+        Parameters
+        ----------
+        *names : str
+            Names of the measured coordinates, such as "y1", "y2".
+
+        Returns
+        -------
+        CanonicalForm
+
+        Raises
+        ------
+        NotAffine
+            If the measured outputs' rate is not affine in the hidden coordinates.
+        ValueError
+            If a name is unknown, repeated, or the inverse distance, or none is given.
+        """
+        return self.partition(*names).canonical_form()
+
+    def derivation(self) -> Derivation:
+        """The way from X' = A X + b to the rate, step by step."""
+        surface, motion = self.surface, self.motion
+        y = sp.Matrix(surface.image_coordinates)
+        eta = sp.latex(surface.inverse_distance)
+        m = sp.Matrix(surface.ray)
+        point = sp.latex(sp.Matrix(POINT))
+        return Derivation(
+            (
+                Step(
+                    "The point moves:",
+                    equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
+                ),
+                Step(
+                    f"It is seen on the {surface.name} surface:",
+                    rf"{sp.latex(y)} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = "
+                    rf"{sp.latex(1 / surface.distance)}",
+                ),
+                Step(
+                    "So the point lies on a ray, at the distance one over the inverse distance:",
+                    rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(m)}",
+                ),
+                Step(
+                    "Derivatives of the image coordinates, and of the distance l, taken on the ray:",
+                    rf"J(m) = {sp.latex(self._image_gradient)},\quad "
+                    rf"\nabla l(m) = {sp.latex(self._distance_gradient)}",
+                ),
+                Step("The velocity, times the inverse distance:", equals(rf"A m + b\,{eta}", self._velocity)),
+                Step(
+                    "Image coordinates do not change with scale, so the inverse distance cancels:",
+                    rf"\dot y = J(m)\,(A m + b\,{eta}),\quad "
+                    rf"\dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",
+                ),
+                Step(
+                    "Multiplied out:",
+                    equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
+                ),
+                Step(
+                    "The focus of expansion, where the distance drops out of the image's motion:",
+                    equals(sp.latex(y), self.foe),
+                ),
+            )
+        )
+
+    def _repr_latex_(self) -> str:
+        return rf"$\displaystyle \frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))} = {sp.latex(self.rate)}$"
+
+    @cached_property
+    def _velocity(self) -> sp.ImmutableMatrix:
+        return self.motion.A * sp.ImmutableMatrix(self.surface.ray) + self.motion.b * self.surface.inverse_distance
+
+    @cached_property
+    def _image_gradient(self) -> sp.ImmutableMatrix:
+        return self._on_the_ray(sp.ImmutableMatrix(self.surface.image).jacobian(POINT))
+
+    @cached_property
+    def _distance_gradient(self) -> sp.ImmutableMatrix:
+        return self._on_the_ray(sp.ImmutableMatrix([self.surface.distance]).jacobian(POINT))
+
+    def _on_the_ray(self, gradient: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """A gradient at X = m(y), where the distance is 1."""
+        at_one = gradient.subs(self.surface.distance, 1)
+        ray = dict(zip(POINT, self.surface.ray, strict=True))
+        return at_one.subs(ray, simultaneous=True).applyfunc(sp.cancel)

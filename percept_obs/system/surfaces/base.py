@@ -1,0 +1,176 @@
+"""Imaging surfaces: where a point of space is seen, and along which ray it must lie.
+
+A surface is four expressions; `perspective.py` derives everything else from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.compile import vectorised
+
+X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
+
+
+class BehindCamera(ValueError):
+    """A point is not in front of the imaging surface, so it has no image there."""
+
+
+@dataclass(frozen=True)
+class ImagingSurface:
+    """A chart of an imaging surface through which a camera sees points of space.
+
+    With the ray m(y) and the inverse distance eta, the point seen at y is m(y) / eta.
+
+    Parameters
+    ----------
+    name : str
+        What the surface is called.
+    image : sequence of sympy expressions
+        Image coordinates of the point (X, Y, Z); they stay when the point is scaled.
+    distance : sympy expression
+        Depth or range of the point (X, Y, Z); it scales with the point.
+    ray : sequence of three sympy expressions in y1, y2, ...
+        The point of the surface, at distance 1, whose image coordinates are y1, y2, ...
+    values : mapping of sympy symbols to floats, optional
+        Numbers for the symbols that shape the surface, such as a plane's normal vector.
+
+    Raises
+    ------
+    ValueError
+        If the point is not found again from its image coordinates and its distance.
+    """
+
+    name: str
+    image: Sequence[sp.Expr]
+    distance: sp.Expr
+    ray: Sequence[sp.Expr]
+    values: Mapping[sp.Symbol, float] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "image", tuple(map(sp.sympify, self.image)))
+        object.__setattr__(self, "ray", tuple(map(sp.sympify, self.ray)))
+        object.__setattr__(self, "distance", sp.sympify(self.distance))
+        object.__setattr__(self, "values", MappingProxyType({s: float(v) for s, v in self.values.items()}))
+        if not self.image or len(self.ray) != 3:
+            raise ValueError(
+                f"the surface {self.name!r} has {len(self.image)} image coordinates and a ray of "
+                f"{len(self.ray)} entries; it needs at least one image coordinate and a ray of three entries"
+            )
+        self._refuse_a_wrong_ray()
+
+    def __hash__(self) -> int:
+        return hash((self.image, self.distance, self.ray))
+
+    def fits(self, other: ImagingSurface) -> bool:
+        """Whether what is derived for this surface holds for the other: same formulas, and same numbers if any."""
+        same = (self.image, self.distance, self.ray) == (other.image, other.distance, other.ray)
+        return same and (not self.values or self.values == other.values)
+
+    @property
+    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols y1, y2, ... of the image coordinates."""
+        return sp.symbols(f"y1:{len(self.image) + 1}", real=True)
+
+    @property
+    def inverse_distance(self) -> sp.Symbol:
+        """Symbol of the inverse depth or range, numbered after the image coordinates."""
+        return sp.Symbol(f"y{len(self.image) + 1}", real=True)
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Image coordinates and then the inverse distance."""
+        return (*self.image_coordinates, self.inverse_distance)
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """Symbols that shape the surface, by name."""
+        used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
+        return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Coordinates of points of space.
+
+        Parameters
+        ----------
+        points : array of shape (..., 3)
+            Points in metres, in the camera's frame.
+
+        Returns
+        -------
+        array of shape (..., n)
+            Image coordinates and then the inverse distance in 1/m.
+
+        Raises
+        ------
+        BehindCamera
+            If a point is not in front of the surface.
+        ValueError
+            If the shape is wrong, a point is not finite, or the surface has symbols without values.
+        """
+        points = np.asarray(points, dtype=float)
+        if points.shape[-1:] != (3,) or not np.isfinite(points).all():
+            raise ValueError(f"points have shape {points.shape}; expected (..., 3), all finite")
+        (distance,) = self._evaluate(POINT, (self.distance,), points)
+        if not (distance > 0).all():
+            where = np.unravel_index(int(np.argmin(distance)), distance.shape) if distance.ndim else ()
+            point = ", ".join(f"{entry:.4g}" for entry in points[where])
+            raise BehindCamera(
+                f"the point ({point}) has the distance {float(distance[where]):.4g} from the {self.name}; only points "
+                "at a positive distance are seen, so start the point in front of the camera or stop the motion before "
+                "it passes"
+            )
+        return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
+
+    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Inverse distances in 1/m, shape (...): the last of the coordinates, of shape (..., n)."""
+        return np.asarray(coordinates, dtype=float)[..., -1]
+
+    def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Points of space that have the given coordinates: the ray over the inverse distance.
+
+        Parameters
+        ----------
+        coordinates : array of shape (..., n)
+            Image coordinates and then the inverse distance in 1/m.
+
+        Returns
+        -------
+        array of shape (..., 3)
+            Points in metres; infinite in every coordinate where the inverse distance is not positive,
+            for such a point is not in front of the camera.
+        """
+        coordinates = np.asarray(coordinates, dtype=float)
+        if coordinates.shape[-1:] != (len(self.coordinates),):
+            raise ValueError(
+                f"coordinates have shape {coordinates.shape}; expected (..., {len(self.coordinates)}) for the "
+                f"{self.name}: {', '.join(map(str, self.coordinates))}"
+            )
+        ray = np.stack(self._evaluate(self.image_coordinates, self.ray, coordinates[..., :-1]), axis=-1)
+        inverse = coordinates[..., -1:]
+        return np.divide(ray, inverse, out=np.full_like(ray, np.inf), where=inverse > 0)
+
+    def _evaluate(
+        self, symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr], values: NDArray[np.float64]
+    ) -> list[NDArray[np.float64]]:
+        missing = [str(s) for s in self.parameters if s not in self.values]
+        if missing:
+            raise ValueError(f"the {self.name} has no values for {', '.join(missing)}; give them numbers first")
+        return vectorised(symbols, expressions, self.values)(*np.moveaxis(values, -1, 0))
+
+    def _refuse_a_wrong_ray(self) -> None:
+        point = dict(zip(POINT, map(sp.Rational, ("0.2", "0.3", "1.7")), strict=True))
+        shape = {symbol: sp.Rational(k + 2, 7) for k, symbol in enumerate(self.parameters)}
+        seen = {s: e.subs(point | shape) for s, e in zip(self.image_coordinates, self.image, strict=True)}
+        found = [sp.N((entry * self.distance).subs(point | shape | seen)) for entry in self.ray]
+        if not all(f.is_number and abs(f - p) < 1e-9 for f, p in zip(found, point.values(), strict=True)):
+            raise ValueError(
+                f"on the surface {self.name!r} the point {tuple(map(float, point.values()))} is seen along the ray "
+                f"to {tuple(found)}; the ray at the image of a point, times its distance, must be the point"
+            )

@@ -1,0 +1,13 @@
+"""The image plane on which the dynamics are chained."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
+
+
+def chained() -> ImagingSurface:
+    """Image plane Y = 1: the slope X/Y, then Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69)."""
+    y1, y2 = sp.symbols("y1 y2", real=True)
+    return ImagingSurface("chained", (X / Y, Z / Y), Y, (y1, 1, y2))

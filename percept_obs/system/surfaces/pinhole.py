@@ -1,0 +1,13 @@
+"""The image plane of a pinhole camera."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
+
+
+def pinhole() -> ImagingSurface:
+    """Image plane Z = 1: y = (X/Z, Y/Z), inverse depth 1/Z (Ma 2005, (3), p. 64)."""
+    y1, y2 = sp.symbols("y1 y2", real=True)
+    return ImagingSurface("pinhole", (X / Z, Y / Z), Z, (y1, y2, 1))

@@ -1,0 +1,40 @@
+"""A general image plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import sympy as sp
+
+from percept_obs.system.surfaces.base import POINT, ImagingSurface
+
+
+def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSurface:
+    """General image plane n . X = 1 (Ma 2005, (5)-(8), p. 64).
+
+    Parameters
+    ----------
+    normal : three floats, optional
+        Normal vector n with n3 not zero; symbols n1, n2, n3 when left out.
+    outputs : 2 or 3
+        Image coordinates X/l, Y/l, and also Z/l, with l = n . X.  The third depends on the other two.
+
+    Raises
+    ------
+    ValueError
+        If the normal vector is not three finite numbers with n3 not zero, or outputs is not 2 or 3.
+    """
+    n = sp.symbols("n1:4", real=True)
+    y = sp.symbols("y1:4", real=True)
+    distance = sum(a * b for a, b in zip(n, POINT, strict=True))
+    if outputs not in (2, 3):
+        raise ValueError(f"a plane has 2 or 3 outputs, not {outputs!r}")
+    values = {}
+    if normal is not None:
+        entries = np.asarray(normal, dtype=float)
+        if entries.shape != (3,) or not np.isfinite(entries).all() or entries[2] == 0:
+            raise ValueError(f"the normal vector {normal!r} must be three finite numbers, the third not zero")
+        values = dict(zip(n, entries.tolist(), strict=True))
+    ray = y if outputs == 3 else (y[0], y[1], (1 - n[0] * y[0] - n[1] * y[1]) / n[2])
+    return ImagingSurface("plane", [p / distance for p in POINT[:outputs]], distance, ray, values)
