@@ -14,15 +14,13 @@ from percept_obs.observers import (
     with_point,
 )
 from percept_obs.points import (
+    FirstSight,
     PointsForm,
-    PointsRecording,
     PointsScenario,
     luenberger,
-    record_points,
-    track_points,
 )
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
-from percept_obs.structure import StructureAndMotion, record_structure
+from percept_obs.structure import StructureAndMotion
 from percept_obs.structure.stages import semigeneral
 from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
@@ -39,6 +37,7 @@ __all__ = [
     "Camera",
     "CanonicalForm",
     "DoesNotFit",
+    "FirstSight",
     "Gaussian",
     "ImagingSurface",
     "Motion",
@@ -47,7 +46,6 @@ __all__ = [
     "PartitionedSystem",
     "PerspectiveSystem",
     "PointsForm",
-    "PointsRecording",
     "PointsScenario",
     "Recording",
     "Run",
@@ -69,15 +67,12 @@ __all__ = [
     "pinhole",
     "plane",
     "record",
-    "record_points",
-    "record_structure",
     "rigid",
     "scenarios",
     "semigeneral",
     "sliding_mode",
     "smo",
     "track",
-    "track_points",
     "windowed",
     "with_point",
 ]

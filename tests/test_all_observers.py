@@ -183,8 +183,8 @@ def test_only_immersion_and_invariance_needs_a_constant_motion():
                 track(recording, make(form))
         else:
             run = track(recording, make(form), language="python")
-            assert np.isfinite(run.estimate[run.lacking == 0]).all()
-            assert run.lacking[-1] == 0
+            assert np.isfinite(run.estimate[run.unobservable == 0]).all()
+            assert run.unobservable[-1] == 0
 
 
 # ---- Ma's settings with one output
@@ -193,7 +193,7 @@ def test_only_immersion_and_invariance_needs_a_constant_motion():
 def settling_times(form, recording):
     """Settling times of the inverse distance, of all observers that one output is enough for, from zero."""
     runs = {make.__name__: track(recording, make(form), ZERO, "exact") for make in OBSERVERS if make not in NEED_BOTH}
-    return {name: run.settling_time(0.05, recording.surface.inverse_distance.name) for name, run in runs.items()}
+    return {name: run.settling_time(0.05, recording.view.inverse_distance.name) for name, run in runs.items()}
 
 
 def test_on_a_line_of_the_image_the_output_that_moves_is_enough_for_all():

@@ -138,7 +138,7 @@ def paint(figure, layout=False):
 def test_signals_draws_samples_truth_and_estimate_of_every_coordinate(runs, name):
     run = runs(name)
     figure = figures.signals(run)
-    coordinates = [symbol.name for symbol in run.recording.surface.coordinates]
+    coordinates = [symbol.name for symbol in run.recording.view.coordinates]
     assert len(figure.axes) == len(coordinates) + 1
     for column, (coordinate, ax) in enumerate(zip(coordinates, figure.axes, strict=False)):
         np.testing.assert_array_equal(line(ax, "estimate"), [run.time, run.estimate[:, column]])

@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 from examples import BOTH, ONE
 
-from percept_obs import Camera, Scenario, affine, pinhole, record, scenarios, track
+from percept_obs import Scenario, affine, pinhole, record, scenarios, track
 from percept_obs.compile import vectorised
 from percept_obs.observers import NeedsMoreOutputs, ismo, rio
 from percept_obs.observers.integral_sliding_mode import (
@@ -22,7 +22,7 @@ from percept_obs.observers.integral_sliding_mode import (
     ultimate_bound,
 )
 from percept_obs.observers.inversion import elapsed
-from percept_obs.structure import COROLLARIES, PatchDepth, grid_patch, record_structure
+from percept_obs.structure import COROLLARIES, PatchDepth, ScaledDepthCamera, grid_patch
 from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_crossing, chwa2019_experiment, chwa2019_simulation
 from percept_obs.tracking.following import StepTooLong
@@ -36,7 +36,7 @@ fine = {"step": 1e-3, "language": "python"}
 
 def quantities(run):
     """Estimated and true quantities by name."""
-    choice = run.recording.surface
+    choice = run.recording.view
     return tuple(choice.quantities(values[:, 3:]) for values in (run.estimate, run.truth))
 
 
@@ -111,13 +111,13 @@ def test_the_exact_initial_conditions(switch):
 
 def assert_only_the_start_is_missing(run, latest):
     """One gap, at the start, that ends by the latest time, and before what it hides is within 1 % of the truth."""
-    ((begin, end),) = run.gaps
+    ((begin, end),) = run.unobservable_intervals
     assert run.reasons == ["what is left of the start may be half of what is found"]
     assert begin == 0
     assert end < latest
     bare = replace(run.observer, gaps=())
     hidden = track(run.recording, bare, dict(zip(FORM.measured, run.estimate[0, :3], strict=True)), run.hold, **fine)
-    assert not hidden.gaps
+    assert not hidden.unobservable_intervals
     error = np.linalg.norm(hidden.error[:, 3:], axis=1) / np.linalg.norm(hidden.truth[:, 3:], axis=1)
     assert error[run.time <= end].min() > 0.01
 
@@ -128,7 +128,7 @@ def assert_only_the_start_is_missing(run, latest):
 @pytest.mark.parametrize("section", EXPERIMENT)
 def test_the_five_cases_of_the_experiment(section, switch, hold):
     setup = chwa2019_experiment(section)
-    run = track(record_structure(setup, 3), ismo(setup.choice.form, switch), ZERO, hold=hold, **fine)
+    run = track(record(setup, 3), ismo(setup.choice.form, switch), ZERO, hold=hold, **fine)
     found, true = quantities(run)
     assert_only_the_start_is_missing(run, 0.55)
     for name in setup.choice.unknown:
@@ -142,7 +142,7 @@ def test_the_five_cases_of_the_experiment(section, switch, hold):
 def test_the_first_values_of_the_scale():
     setup = chwa2019_experiment("IV.A")
     for switch, early in ((LAYER, 10.3711), ("ideal", 10.3709)):
-        run = track(record_structure(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="exact", **fine)
+        run = track(record(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="exact", **fine)
         assert run.estimate[500, 3] == pytest.approx(early, abs=1e-3)
         assert run.estimate[1000, 3] == pytest.approx(10.400, abs=5e-4)
 
@@ -152,7 +152,7 @@ def test_a_held_sample_shifts_the_scale_as_is_told_beside_the_claim():
     setup = chwa2019_experiment("IV.A")
     shifts = []
     for switch, shifted in ((LAYER, 10.557), ("ideal", 10.651)):
-        run = track(record_structure(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="zero", **fine)
+        run = track(record(setup, 1), ismo(setup.choice.form, switch), ZERO, hold="zero", **fine)
         assert run.estimate[1000, 3] == pytest.approx(shifted, abs=2e-3)
         shifts.append(100 * (run.estimate[1000, 3] / setup.scale - 1))
     least, most = shifts
@@ -170,7 +170,7 @@ def test_a_long_hold_never_settles_as_is_told_beside_the_claim():
 @pytest.mark.slow
 def test_sixty_seconds():
     setup = chwa2019_experiment("IV.A")
-    recording, form = record_structure(setup, 60), setup.choice.form
+    recording, form = record(setup, 60), setup.choice.form
     last = recording.time >= 50
 
     def worst(observer):
@@ -186,7 +186,7 @@ def test_sixty_seconds():
 
 
 def test_a_step_that_is_too_long_is_noticed_before_the_run(monkeypatch):
-    recording = record_structure(chwa2019_experiment("IV.A"), 1, Camera(period=0.01))
+    recording = record(chwa2019_experiment("IV.A"), 1, ScaledDepthCamera(period=0.01))
     monkeypatch.setattr("percept_obs.tracking.following.solve", lambda *_: pytest.fail("the run has begun"))
     with pytest.raises(StepTooLong, match=r"from 0 s on, the integral sliding mode .* part decays with 450"):
         track(recording, ismo(FORM, LAYER))
@@ -206,7 +206,7 @@ def test_the_sign_chatters_by_gamma_squared_c_times_the_step():
     learned = vectorised(symbols, list(surfaces(observer)[3]), observer.gain_values)
     spread = {}
     for step in (1e-3, 1e-4):
-        recording = record_structure(setup, 10, Camera(period=step))
+        recording = record(setup, 10, ScaledDepthCamera(period=step))
         run = track(recording, observer, ZERO, hold="exact", step=step, language="numba")
         late = run.time >= 9
         known = np.broadcast_to(recording.motion.known(0.0)[0], (len(run.time), 4)).T
@@ -228,7 +228,7 @@ VARYING = ("V.A", "VI.A")
 @pytest.mark.parametrize("section", [*VARYING, "IV.A", "IV.B", "V.B", "VI.B", "VI.C"])
 def test_velocities_that_vary(section, angular_velocity):
     setup = chwa2019_simulation(section, angular_velocity)
-    recording = record_structure(setup)
+    recording = record(setup)
     run = track(recording, ismo(setup.choice.form), ZERO, hold="first", **fine)
     found, true = quantities(run)
     late = run.time >= 1
@@ -241,7 +241,7 @@ def test_velocities_that_vary(section, angular_velocity):
 
 def ranges(run):
     """Estimated over true depth; NaN in a gap."""
-    return run.distance * run.recording.surface.inverse(run.truth)
+    return run.distance * run.recording.view.inverse(run.truth)
 
 
 @pytest.mark.slow
@@ -252,9 +252,9 @@ def ranges(run):
 def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, begins):
     setup = chwa2019_crossing()
     observer = ismo(setup.choice.form, switch)
-    run = track(record_structure(setup), observer, start, hold="first", **fine)
-    assert run.gaps[0] == (0, pytest.approx(begins, abs=0.002))
-    for crossing, (begin, end) in zip((2.14, 5.28, 8.42), run.gaps[1:], strict=True):
+    run = track(record(setup), observer, start, hold="first", **fine)
+    assert run.unobservable_intervals[0] == (0, pytest.approx(begins, abs=0.002))
+    for crossing, (begin, end) in zip((2.14, 5.28, 8.42), run.unobservable_intervals[1:], strict=True):
         assert begin < crossing < end
     assert np.nanmax(ranges(run)) < 1.2
     assert np.nanmin(ranges(run)) > 0.8
@@ -264,9 +264,7 @@ def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, be
         f"no estimate from 0 to {begins} s, for what is left of the start may be half of what is found; "
         "no estimate from 2.12 to 2.16 s, for theta1, theta2, theta3 nearly drop out of what is seen" in run.verdict()
     )
-    unguarded = track(
-        record_structure(setup), ismo(setup.choice.form, switch, largest_amplification=1e9), hold="zero", **fine
-    )
+    unguarded = track(record(setup), ismo(setup.choice.form, switch, largest_amplification=1e9), hold="zero", **fine)
     assert np.nanmax(np.abs(1 / ranges(unguarded) - 1)) > 0.5
 
 
@@ -274,7 +272,9 @@ def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, be
 def test_noise_needs_a_wider_gap():
     setup = chwa2019_crossing()
     patch = PatchDepth(grid_patch(1.0, 5))
-    recording = record_structure(setup, pixels=CHWA_CAMERA, ratio=SignalToNoise(110), depth=patch, seed=1)
+    recording = record(
+        setup, camera=ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(110), depth=patch), seed=1
+    )
     noise = (recording.outputs - recording.truth[:, :3]).std(axis=0).max()
     observer = ismo(setup.choice.form, sharpening=0)
     usual = track(recording, observer, ZERO, hold="first", **fine)
@@ -291,7 +291,7 @@ def test_noise_needs_a_wider_gap():
 def test_the_bound_of_the_theorem_holds():
     """|se| ends within atanh(alpha) / c, alpha = |g| / gamma."""
     setup = chwa2019_experiment("IV.A")
-    recording = record_structure(setup, 3)
+    recording = record(setup, 3)
     for switch in ("ideal", LAYER):
         observer = ismo(setup.choice.form, switch)
         run = track(recording, observer, ZERO, hold="exact", **fine)
@@ -323,7 +323,7 @@ def test_a_gap_at_the_focus_of_expansion():
     recording = record(Scenario("head on", motion, (2.0, 1.0, 2.0), 1.0, pinhole()))
     for make in (ismo, rio):
         run = track(recording, make(BOTH))
-        assert run.gaps == [(0.0, 1.0)]
+        assert run.unobservable_intervals == [(0.0, 1.0)]
         assert np.isnan(run.estimate[:, 2]).all()
         assert np.isfinite(run.estimate[:, :2]).all()
         assert "no estimate from 0 to 1 s, for y3 nearly drop out" in run.verdict()

@@ -164,8 +164,8 @@ def test_a_motion_that_varies_needs_a_recording():
 def test_a_real_track_gives_the_run_of_its_rigid_motion():
     recording = load_utias(utias_folder())[2]
     run = observer_lab(recording).run()["identifier_based"]
-    system = PerspectiveSystem(recording.motion, recording.surface)
-    bare = PerspectiveSystem(type(recording.motion)("rigid", *_rigid(recording.motion)), recording.surface)
+    system = PerspectiveSystem(recording.motion, recording.view)
+    bare = PerspectiveSystem(type(recording.motion)("rigid", *_rigid(recording.motion)), recording.view)
     assert system.coordinates == bare.coordinates
     expected = track(recording, ibo(bare.measure("y1", "y2")))
     np.testing.assert_allclose(run.estimate, expected.estimate, rtol=0, atol=1e-9)

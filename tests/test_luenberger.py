@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 from test_points_form import generic
 
-from percept_obs import PointsForm, linear, luenberger, record_points, track_points
+from percept_obs import PointsForm, linear, luenberger, record, track
 from percept_obs.points import constant, lyapunov, riccati, scheduled
 from percept_obs.points.scenarios import moving_body
 
@@ -45,7 +45,7 @@ def test_one_point_and_constant_coefficients_give_the_earlier_observer():
     assert (observer.flow - earlier).expand() == sp.zeros(3, 1)
     draw = np.random.default_rng(0)
     A, P = draw.normal(size=(3, 3)), np.diag([1.0, 2, 3])
-    run = track_points(record_points(moving_body()), luenberger(PointsForm(linear(A, np.ones(3)), np.eye(3)), P))
+    run = track(record(moving_body()), luenberger(PointsForm(linear(A, np.ones(3)), np.eye(3)), P))
     np.testing.assert_allclose(run.conditions().printed, np.linalg.eigvalsh(A.T @ P + P @ A)[-1])
 
 
@@ -75,17 +75,17 @@ def weights():
 @pytest.mark.parametrize("name", weights())
 def test_the_inequalities_are_told_apart(name):
     weight, printed, weaker = weights()[name]
-    recording = record_points(moving_body(), 6)
-    found = track_points(recording, luenberger(recording.form, weight)).conditions()
+    recording = record(moving_body(), 6)
+    found = track(recording, luenberger(recording.view, weight)).conditions()
     assert (found.printed_holds, found.weaker_holds, found.positive) == (printed, weaker, True)
     assert ("(15) holds throughout" in found.verdict()) == printed
 
 
 def test_the_error_in_the_metric_of_p_never_grows():
     """V = rho^T P rho decreases wherever one of the inequalities holds."""
-    recording = record_points(moving_body(), 10)
+    recording = record(moving_body(), 10)
     for weight in (3.0, riccati(0.1, 0.3), lyapunov(2.0, 0.01)):
-        run = track_points(recording, luenberger(recording.form, weight), hold="exact")
+        run = track(recording, luenberger(recording.view, weight), hold="exact")
         rho = run.error[run.kept]
         V = np.einsum("ti,tij,tj->t", rho, run.P, rho)
         assert (np.diff(V) <= 1e-9 * V[0]).all()

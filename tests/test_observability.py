@@ -77,7 +77,7 @@ def test_the_window_gathers_what_an_instant_lacks():
 def test_lost_samples_are_interpolated_where_there_is_no_truth():
     whole = record(scenarios.ma2005_eq35(), 20, NOISY, seed=1)
     lossy = record(scenarios.ma2005_eq35(), 20, Camera(noise=NOISY.noise, dropout=0.3), seed=1)
-    bare = [Recording(r.time, r.outputs, r.names, r.surface, r.motion) for r in (whole, lossy)]
+    bare = [Recording(r.time, r.outputs, r.names, r.view, r.motion) for r in (whole, lossy)]
     least = [windowed(ONE, r, 5).smallest for r in bare]
     np.testing.assert_allclose(least[1], least[0], rtol=0.1, atol=1e-3)
 

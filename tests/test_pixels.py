@@ -39,10 +39,10 @@ def test_the_intrinsic_matrix_is_that_of_the_paper():
 def test_the_points_of_the_paper_do_not_stay_in_an_ordinary_image():
     """With 640 x 480 pixels, the experiment's points leave within 0.3 s, and the simulations' start outside."""
     camera = PixelCamera(CHWA_CAMERA.focal, CHWA_CAMERA.centre, (640, 480))
-    simulated = chwa2019_simulation("V.A").ybar([0.0])[:, :2]
+    simulated = chwa2019_simulation("V.A").coordinates([0.0])[:, :2]
     assert not camera.sees(camera.pixels(simulated)).any()
     for section in ("IV.A", "IV.B", "V.B", "VI.B", "VI.C"):
-        image = chwa2019_experiment(section).ybar([0.0, 0.3])[:, :2]
+        image = chwa2019_experiment(section).coordinates([0.0, 0.3])[:, :2]
         assert camera.sees(camera.pixels(image)).tolist() == [True, False]
     assert CHWA_CAMERA.sees(CHWA_CAMERA.pixels(simulated)).all()
 

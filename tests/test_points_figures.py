@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure as MatplotlibFigure
 
-from percept_obs import Camera, PointsRecording, figures, luenberger, record_points, track_points
+from percept_obs import Camera, Recording, figures, luenberger, record, track
 from percept_obs.observability.gramian import decay_bound, gramian
 from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 
@@ -13,12 +13,12 @@ ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])
 
 @pytest.fixture(scope="module")
 def recording():
-    return record_points(moving_body(2), 8, Camera(0.05)).hidden(1, 2, 3)
+    return record(moving_body(2), 8, Camera(0.05)).without(2, 3, 1)
 
 
 @pytest.fixture(scope="module")
 def run(recording):
-    return track_points(recording, luenberger(recording.form), recording.truth[0] - ERROR)
+    return track(recording, luenberger(recording.view), recording.truth[0] - ERROR)
 
 
 def test_paths_have_gaps_where_a_point_is_hidden(recording, run):
@@ -29,28 +29,28 @@ def test_paths_have_gaps_where_a_point_is_hidden(recording, run):
     assert np.isfinite(np.transpose(ax.lines[4].get_data())).all(), "the estimate goes on"
     assert "Out of sight: point 2 for 12% of the time." in figure.text
     assert run.verdict() in figure.text
-    alone = figures.points_in_image(recording.hidden(1, 0, 9)).text
+    alone = figures.points_in_image(recording.without(0, 9, 1)).text
     assert "point 2 for 100% of the time" in alone
     assert "Estimates" not in alone
 
 
 def test_the_error_is_drawn_with_its_fit_and_its_bound(run):
-    whole = record_points(moving_body(1), 12, Camera(0.05))
-    one = track_points(whole, luenberger(whole.form), whole.truth[0] - ERROR[:3], hold="exact")
+    whole = record(moving_body(1), 12, Camera(0.05))
+    one = track(whole, luenberger(whole.view), whole.truth[0] - ERROR[:3], hold="exact")
     bound = decay_bound(whole, one.observer, 4)
     figure = figures.error_norm([one, run], ["one", "two"], bound, (2, 8))
     (ax,) = figure.axes
-    np.testing.assert_array_equal(ax.lines[0].get_data(), [one.time, one.size])
+    np.testing.assert_array_equal(ax.lines[0].get_data(), [one.time, one.deviation])
     fit = np.log(ax.lines[1].get_ydata())
     assert (fit[0] - fit[-1]) / 6 == pytest.approx(one.decay_rate(2, 8))
     time, guaranteed = ax.lines[4].get_data()
-    assert (np.interp(time, one.time, one.size) <= guaranteed * (1 + 1e-9)).all()
+    assert (np.interp(time, one.time, one.deviation) <= guaranteed * (1 + 1e-9)).all()
     assert f"decaying at {one.decay_rate(2, 8):.3g} per second" in figure.text
     assert f"guarantees {bound.rate:.2g} per second" in figure.text
 
 
 def test_the_gramian_has_its_verdict(recording):
-    both = [gramian(recording, 2), gramian(record_points(along_the_line_of_sight(), 8), 2)]
+    both = [gramian(recording, 2), gramian(record(along_the_line_of_sight(), 8), 2)]
     figure = figures.gramian(both, ["body", "ray"])
     (ax,) = figure.axes
     np.testing.assert_allclose(ax.lines[0].get_ydata(), both[0].smallest)
@@ -86,8 +86,8 @@ def test_figures_draw_on_the_axes_they_are_given(recording, run):
 
 def test_bad_input_is_refused_in_words(recording, run):
     for call, message in (
-        (lambda: figures.points_in_image(3), "a PointsRun or a PointsRecording is needed"),
-        (lambda: figures.points_in_image(recording.hidden(0, 0, 9).hidden(1, 0, 9)), "no point is seen"),
+        (lambda: figures.points_in_image(3), "a PointsRun or a Recording is needed"),
+        (lambda: figures.points_in_image(recording.without(0, 9).without(0, 9, 1)), "no point is seen"),
         (lambda: figures.error_norm([]), "a PointsRun or several are needed"),
         (lambda: figures.error_norm(3), "a PointsRun or several are needed"),
         (lambda: figures.error_norm(run, ["a", "b"]), "one for each curve"),
@@ -100,8 +100,8 @@ def test_bad_input_is_refused_in_words(recording, run):
     ):
         with pytest.raises(ValueError, match=message):
             call()
-    bare = PointsRecording(recording.time, recording.outputs, recording.form)
-    blind = track_points(bare, luenberger(recording.form))
+    bare = Recording(recording.time, recording.outputs, ("y1", "y2"), recording.view, recording.view.motion)
+    blind = track(bare, luenberger(recording.view))
     assert "True" not in figures.points_in_image(blind).text
     with pytest.raises(ValueError, match="no truth"):
         figures.error_norm(blind)

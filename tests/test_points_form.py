@@ -73,14 +73,14 @@ def test_numbers_are_those_of_the_symbols(seed, name):
     form = PointsForm(
         linear(draw.normal(size=(5, 5)), draw.normal(size=5)), draw.normal(size=(2, 3, 5)), SURFACES[name]
     )
-    x, y = draw.normal(size=5), draw.normal(size=(2, form.outputs))
+    x, y = draw.normal(size=5), draw.normal(size=(2, len(form.image_coordinates)))
     values = dict(zip(form.y, y.ravel(), strict=True)) | dict(form.surface.values)
     rows = np.array((form.B * form.stacked).subs(values), dtype=float)
     np.testing.assert_allclose(form.rows(y), rows, atol=1e-12)
     np.testing.assert_allclose(form.information(y), rows.T @ rows, atol=1e-12)
     seen = np.array(form.H(x).subs(values), dtype=float).reshape(2, -1)
-    np.testing.assert_allclose(form.images(x)[form.distances(x) > 0], seen[form.distances(x) > 0], rtol=1e-9)
-    assert np.isnan(form.images(x)[form.distances(x) <= 0]).all()
+    np.testing.assert_allclose(form.outputs(x)[form.inverse(x) > 0], seen[form.inverse(x) > 0], rtol=1e-9)
+    assert np.isnan(form.outputs(x)[form.inverse(x) <= 0]).all()
 
 
 def test_coefficients_are_those_of_the_motion():
@@ -101,7 +101,7 @@ def test_a_rigid_body_moves_like_its_points():
     form = rigid_body(3, w_c, v_c, w_b, v_p)
     x = np.random.default_rng(1).normal(size=9)
     A, v = (part[0] for part in form.coefficients(0.0))
-    points, rates = form.positions(x), form.positions(A @ x + v)
+    points, rates = form.locate(x), form.locate(A @ x + v)
     for point, rate in zip(points, rates, strict=True):
         in_the_world = v_p + np.cross(w_b, point - points[0])
         np.testing.assert_allclose(rate, in_the_world - v_c - np.cross(w_c, point))

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from percept_obs import Camera, PointsScenario, luenberger, record_points, track_points
+from percept_obs import Camera, PointsScenario, luenberger, record, track
 from percept_obs.observability.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points import UnseenDirection, riccati, rigid_body
 from percept_obs.points.scenarios import along_the_line_of_sight, lost_offset, moving_body
@@ -20,7 +20,7 @@ RATES = {
 
 @lru_cache
 def recording(points, duration=60.0, period=0.01):
-    return record_points(moving_body(points), duration, Camera(period))
+    return record(moving_body(points), duration, Camera(period))
 
 
 @pytest.mark.parametrize(("points", "at_start", "least", "when"), [(1, 2.44, 0.749, 7.2), (2, 0.90, 0.277, 47.8)])
@@ -39,7 +39,7 @@ def test_the_decay_rates(points):
     rates, whole = {}, recording(points, 60.0, 0.05)
     for P, expected in RATES[points].items():
         start = whole.truth[0] - START_ERROR[: 3 * points]
-        run = track_points(whole, luenberger(whole.form, P), start, hold="exact", step=0.05)
+        run = track(whole, luenberger(whole.view, P), start, hold="exact", step=0.05)
         rates[P] = run.decay_rate(20, 60)
         assert rates[P] == pytest.approx(expected, rel=0.02)
     assert rates[1 / 3] < rates[1] > rates[10]
@@ -48,7 +48,7 @@ def test_the_decay_rates(points):
 @pytest.mark.parametrize("points", [1, 2])
 def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
     whole = recording(points, 12.0, 0.05)
-    bounds = [decay_bound(whole, luenberger(whole.form, P), 4) for P in (*RATES[points], 300)]
+    bounds = [decay_bound(whole, luenberger(whole.view, P), 4) for P in (*RATES[points], 300)]
     for bound, (P, measured) in zip(bounds, RATES[points].items(), strict=False):
         assert 0 < bound.rate < measured, P
     rates = [bound.rate for bound in bounds]
@@ -60,9 +60,9 @@ def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
 
 def test_the_bound_holds_window_by_window():
     whole, window = recording(1, 60.0, 0.05), 4.0
-    run = track_points(whole, luenberger(whole.form, 1.0), whole.truth[0] - START_ERROR[:3], hold="exact", step=0.05)
+    run = track(whole, luenberger(whole.view, 1.0), whole.truth[0] - START_ERROR[:3], hold="exact", step=0.05)
     bound = decay_bound(whole, run.observer, window)
-    V = run.size**2
+    V = run.deviation**2
     at = np.searchsorted(whole.time, [*bound.time, bound.time[-1] + window])
     assert (V[at[1:]] / V[at[:-1]] <= bound.contraction).all()
 
@@ -70,13 +70,13 @@ def test_the_bound_holds_window_by_window():
 def test_an_offset_that_is_not_seen_is_named():
     with pytest.warns(UnseenDirection, match="3 directions.*d2_x; d2_y; d2_z"):
         scenario = lost_offset()
-    found = gramian(record_points(scenario, 20), 8)
+    found = gramian(record(scenario, 20), 8)
     assert not found.holds
     assert "3 directions are not seen: d2_x; d2_y; d2_z" in found.verdict()
 
 
 def test_a_depth_that_is_not_seen_is_named():
-    found = gramian(record_points(along_the_line_of_sight(), 20), 8)
+    found = gramian(record(along_the_line_of_sight(), 20), 8)
     assert not found.holds
     (direction,) = found.unseen(0).T
     np.testing.assert_allclose(np.abs(direction), np.array([0.4, 0.2, 2]) / np.linalg.norm([0.4, 0.2, 2]), atol=1e-9)
@@ -92,7 +92,7 @@ def test_without_an_input_the_scale_is_never_seen(points):
         points, [0.02, 0.03, 0.1], body_angular_velocity=lambda t: [0.5 * np.sin(t), 0.4 * np.cos(t), 0.3]
     )
     scenario = PointsScenario("no input", form, [0.2, -0.1, 3.0, *offsets], 8)
-    whole = record_points(scenario)
+    whole = record(scenario)
     found, pair = gramian(whole, 6), linear_gramian(whole, 6)
     assert found.unseen(0).shape[1] == 1
     along = found.unseen(0).T @ found.states[0]
@@ -105,7 +105,7 @@ def test_without_an_input_the_scale_is_never_seen(points):
 def test_a_camera_that_only_turns_sees_no_depth_of_any_point():
     offsets = np.random.default_rng(0).uniform(-0.4, 0.4, 6)
     form = rigid_body(3, [0.02, 0.03, 0.1])
-    found = gramian(record_points(PointsScenario("turning only", form, [0.2, -0.1, 3.0, *offsets], 8)), 6)
+    found = gramian(record(PointsScenario("turning only", form, [0.2, -0.1, 3.0, *offsets], 8)), 6)
     assert found.unseen(0).shape[1] == 3
     assert "the state itself is among them" in found.verdict()
 
@@ -115,9 +115,9 @@ def test_the_input_decides_at_equal_a():
     least = []
     for velocity in ([0.0, 0, 0], [0.0, 0, 0.2], [0.3, 0, 0]):
         form = rigid_body(1, [0.0, 0, 0], velocity)
-        found = gramian(record_points(PointsScenario("input", form, [0.0, 0, 3], 4)), 3)
+        found = gramian(record(PointsScenario("input", form, [0.0, 0, 3], 4)), 3)
         least.append(found.least)
-        assert linear_gramian(record_points(PointsScenario("input", form, [0.0, 0, 3], 4)), 3).least == pytest.approx(3)
+        assert linear_gramian(record(PointsScenario("input", form, [0.0, 0, 3], 4)), 3).least == pytest.approx(3)
     assert max(abs(least[0]), abs(least[1])) < 1e-9 < 1e-3 < least[2]
 
 
@@ -131,7 +131,7 @@ def test_where_14_holds_the_pair_is_uniformly_observable(points):
 
 
 def test_a_window_without_images_shows_nothing():
-    whole = recording(1).hidden(0, 10, 20)
+    whole = recording(1).without(10, 20)
     found = gramian(whole, 8)
     assert not found.holds
     assert found.unseen(int(np.searchsorted(found.time, 11))).shape[1] == 3
@@ -141,10 +141,10 @@ def test_a_window_without_images_shows_nothing():
 def test_windows_agree_with_their_plain_sums():
     whole = recording(2, 6.0)
     found = gramian(whole, 2)
-    A, _ = whole.form.coefficients(whole.time)
+    A, _ = whole.view.coefficients(whole.time)
     for first in (0, 150, 400):
         Phi, total = np.eye(6), np.zeros((6, 6))
-        S = whole.form.information(whole.outputs)
+        S = whole.view.information(whole.outputs)
         for k in range(first, first + 200):
             middle = (A[k] + A[k + 1]) / 2 * 0.01
             step = np.eye(6) + middle + middle @ middle / 2 + middle @ middle @ middle / 6
@@ -161,9 +161,9 @@ def test_windows_that_do_not_fit_are_refused(window):
 
 def test_the_bound_needs_what_the_proof_needs():
     with pytest.raises(ValueError, match=r"rests on \(15\)"):
-        decay_bound(recording(1), luenberger(recording(1).form, riccati()), 4)
+        decay_bound(recording(1), luenberger(recording(1).view, riccati()), 4)
     with pytest.raises(ValueError, match=r"rests on \(15\)"):
-        decay_bound(recording(1), luenberger(recording(1).form, lambda t: 1 + t), 4)
+        decay_bound(recording(1), luenberger(recording(1).view, lambda t: 1 + t), 4)
     with pytest.raises(ValueError, match="2 points, the recording 1"):
         gramian(recording(1), 4, moving_body(2).form)
 

@@ -76,7 +76,7 @@ def assert_same_run(answer, run, tolerance=1e-9):
     size = np.fmax(1, np.abs(state[there]))
     growing = 1 if run.diverged_at is None else 1e6  # what grows without end multiplies the last digit as well
     np.testing.assert_allclose(told[there] / size, state[there] / size, rtol=0, atol=growing * tolerance)
-    if run.diverged_at is None and run.size[run.time >= run.time[-1] / 3].min() > 1e-9:
+    if run.diverged_at is None and run.deviation[run.time >= run.time[-1] / 3].min() > 1e-9:
         assert answer["rate"] == pytest.approx(run.decay_rate(run.time[-1] / 3), abs=1e-8)
 
 
@@ -127,7 +127,7 @@ def test_the_state_has_the_points_at_their_places(state):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         form = form_of(state, 2, Manoeuvre())
-    np.testing.assert_allclose(form.positions(state_of(form, places)), places, atol=1e-12)
+    np.testing.assert_allclose(form.locate(state_of(form, places)), places, atol=1e-12)
 
 
 def test_settings_survive_json_and_come_back_complete(lab):

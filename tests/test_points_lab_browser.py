@@ -81,7 +81,7 @@ def assert_equals_python(shown, tolerance=1e-9):
     np.testing.assert_allclose(told / size, expected / size, rtol=0, atol=growing * tolerance)
     if "error" in shown["drawn"] and run.diverged_at is None:
         (error,) = [line for line in shown["drawn"]["error"]["lines"] if line["name"] == "error"]
-        np.testing.assert_allclose(as_array(error["values"]), run.size, rtol=1e-9, atol=tolerance)
+        np.testing.assert_allclose(as_array(error["values"]), run.deviation, rtol=1e-9, atol=tolerance)
 
 
 def drag_by_mouse(page):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from percept_obs import Camera, PointsScenario, record_points
+from percept_obs import Camera, PointsScenario, record
 from percept_obs.points import rigid_body
 from percept_obs.points.manoeuvre import PATH, SPIN, TURNING, Manoeuvre
 from percept_obs.system.motion import TIME
@@ -18,7 +18,7 @@ def path_at(time):
 def test_a_point_that_begins_on_the_path_stays_on_it_however_the_camera_turns(turning):
     camera_turns, camera_moves, body_turns = Manoeuvre(turning=turning).velocities
     form = rigid_body(1, camera_turns, camera_moves, body_turns)
-    recording = record_points(PointsScenario("path", form, path_at([0.0])[0], 6.0), camera=Camera(0.5))
+    recording = record(PointsScenario("path", form, path_at([0.0])[0], 6.0), camera=Camera(0.5))
     np.testing.assert_allclose(recording.truth, path_at(recording.time), atol=1e-9)
 
 

@@ -48,7 +48,7 @@ def test_a_hidden_point_is_corrected_by_its_neighbours(acts):
     body, alone = (run_of(settings) for settings in acts["hide"])
     errors = []
     for run in (body, alone):
-        off = np.linalg.norm(run.points - run.recording.form.positions(run.truth), axis=2)[:, 1]
+        off = np.linalg.norm(run.points - run.recording.view.locate(run.truth), axis=2)[:, 1]
         at = np.searchsorted(run.time, [3 - 1e-9, 15 - 1e-9])
         errors.append(off[at])
     assert errors[0][1] < 0.5 * errors[0][0]
@@ -68,10 +68,10 @@ def test_along_the_ray_no_depth_is_seen_and_across_it_is(acts):
     assert "this is the state itself" in told(along).verdict()
     assert np.ptp(recording_of(along).outputs, axis=0).max() < 1e-12
     run = run_of(along)
-    assert run.size[-1] == pytest.approx(run.size[0], rel=1e-6)
+    assert run.deviation[-1] == pytest.approx(run.deviation[0], rel=1e-6)
     assert told(across).holds
     found = run_of(across)
-    assert found.size[-1] < 0.1 * found.size[0]
+    assert found.deviation[-1] < 0.1 * found.deviation[0]
     assert np.linalg.norm(across["velocity"]) == pytest.approx(np.linalg.norm(along["velocity"]), rel=0.02)
 
 
@@ -98,7 +98,7 @@ def test_an_origin_is_seen_only_where_the_body_turns_in_the_world(acts):
 def test_riccati_finds_in_seconds_what_a_constant_does_not(acts):
     (settings,) = acts["riccati"]
     kept = run_of(settings["kept"])
-    assert kept.size[-1] == pytest.approx(0.17, abs=0.005)
+    assert kept.deviation[-1] == pytest.approx(0.17, abs=0.005)
     assert "stays within 0.05 after 2" in run_of(settings).verdict()
-    constants = [run_of({**settings["kept"], "size": size}).size[-1] for size in (0.1, 0.3, 1.0, 3.0, 10.0)]
+    constants = [run_of({**settings["kept"], "size": size}).deviation[-1] for size in (0.1, 0.3, 1.0, 3.0, 10.0)]
     assert min(constants) > 0.05

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from percept_obs import Camera, PointsForm, PointsScenario, linear, luenberger, record_points, rigid, track_points
+from percept_obs import Camera, PointsForm, PointsScenario, linear, luenberger, record, rigid, track
 from percept_obs.points import independent_points
 from percept_obs.points.ray import ray_error, ray_turning
 
@@ -44,13 +44,13 @@ def test_runs_of_the_observer_decay_so(gain, known):
     A = known * np.array([[0.0, 0, 1], [0, 0, 0], [-1, 0, 0]])
     form = PointsForm(linear(A, lambda t: 2.0 * TURNING * across(t)), np.eye(3))
     start = 2.0 * np.array([np.sin(-1), 0, np.cos(-1)])
-    recording = record_points(PointsScenario("around", form, start, 2.0), camera=Camera(0.05))
+    recording = record(PointsScenario("around", form, start, 2.0), camera=Camera(0.05))
     np.testing.assert_allclose(ray_turning(form, recording.time, recording.truth), TURNING, rtol=1e-6)
 
     def P(t):
         return (1 + np.tan(angle(t)) ** 2) / gain
 
-    run = track_points(recording, luenberger(form, P), 1.3 * start, hold="exact", step=0.01)
+    run = track(recording, luenberger(form, P), 1.3 * start, hold="exact", step=0.01)
     matrix = np.array(found.matrix.subs({found.gain: gain, found.turning: TURNING}), dtype=float)
     expected = expm(2 * matrix) @ [0, -0.3 * 2.0]
     along = np.array([np.sin(angle(2)), 0, np.cos(angle(2))])

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 from test_utias import EKF_SETTINGS
 from utias_folder import utias_folder
 
-from percept_obs import luenberger, track, track_points
+from percept_obs import FirstSight, luenberger, track
 from percept_obs.observability.gramian import gramian
 from percept_obs.points import riccati
 from percept_obs.points.ray import ray_error, ray_turning
@@ -28,16 +28,15 @@ def landmarks():
 
 def twice_the_median_depth():
     recording = landmarks()
-    return 2 * float(np.median(recording.depths[recording.seen]))
+    return 2 * float(np.median(recording.distance[recording.seen]))
 
 
 def follow(P, absence):
     recording = landmarks()
-    return track_points(
+    return track(
         recording,
-        luenberger(recording.form, P),
-        depth=twice_the_median_depth(),
-        absence=absence,
+        luenberger(recording.view, P),
+        FirstSight(twice_the_median_depth(), absence),
         longest_hold=OUT_OF_SIGHT,
         language="numba",
     )
@@ -58,7 +57,7 @@ def test_the_landmarks_are_those_of_the_tracks():
     recording = landmarks()
     sightings = recording.sightings(OUT_OF_SIGHT)
     tracks = load_utias(utias_folder())
-    assert (recording.form.points, recording.form.states, len(sightings)) == (12, 36, 44)
+    assert (recording.view.points, recording.view.states, len(sightings)) == (12, 36, 44)
     assert recording.seen.sum() == sum(len(track.time) for track in tracks) == 2739
     assert recording.seen.sum(axis=1).max() == 10
     first = tracks[0]
@@ -66,10 +65,10 @@ def test_the_landmarks_are_those_of_the_tracks():
     point = next(
         k for k in range(12) if recording.seen[at, k] and np.allclose(recording.outputs[at, k], first.outputs[0])
     )
-    np.testing.assert_allclose(recording.depths[at, point], 1 / first.truth[0, 2], rtol=1e-12)
+    np.testing.assert_allclose(recording.distance[at, point], 1 / first.truth[0, 2], rtol=1e-12)
     np.testing.assert_allclose(recording.distances["stereo"][at, point], first.distances["stereo"][0])
     some = load_utias_points(utias_folder(), [17])
-    assert some.form.points == 1
+    assert some.view.points == 1
     with pytest.raises(ValueError, match="name some of"):
         load_utias_points(utias_folder(), [999])
 
@@ -114,7 +113,7 @@ def test_beside_one_filter_a_landmark():
 def test_a_constant_p_learns_no_depth_here():
     """Half of the rays turn by less than 0.36 rad in 2 s; no constant gain then takes a tenth off an error of depth."""
     recording, found = landmarks(), ray_error()
-    turning = np.median(ray_turning(recording.form, recording.time, recording.truth)[recording.seen])
+    turning = np.median(ray_turning(recording.view, recording.time, recording.truth)[recording.seen])
     assert turning == pytest.approx(0.179, abs=0.001)
     for gain in np.geomspace(0.01, 100, 50):
         matrix = found.matrix.subs({found.gain: gain, found.turning: turning})
@@ -129,7 +128,7 @@ def test_two_seconds_show_every_landmark_in_view():
     """(14) holds for each landmark by itself while it is followed; for all of them at once it fails, some are away."""
     recording = load_utias_points(utias_folder(), [17])
     (sighting, *_) = recording.sightings(OUT_OF_SIGHT)
-    seen = recording.hidden(0, recording.time[sighting.last + 1], np.inf)
+    seen = recording.without(recording.time[sighting.last + 1], np.inf)
     found = gramian(seen, 2.0)
     inside = found.time + 2.0 <= recording.time[sighting.last]
     assert (found.smallest[inside] > 1e-3).all()

@@ -216,7 +216,7 @@ def test_the_determinant_vanishes_exactly_where_the_condition_fails(choice, draw
 def test_quantities_and_theta_are_each_others_inverse(choice, drawn):
     at = values_of(choice, drawn)
     motion = rigid([at[s] for s in W], [at[s] for s in ALL[1:4]], [at[s] for s in ALL[4:]])
-    theta = choice.hidden(at[d_s], motion, [0.0, 1.0])
+    theta = choice.theta_values(at[d_s], motion, [0.0, 1.0])
     assert theta.shape == (2, len(choice.unknown))
     for name, found in choice.quantities(theta).items():
         np.testing.assert_allclose(found, at[sp.Symbol(name, real=True)])
@@ -247,8 +247,8 @@ def test_a_choice_is_a_view_of_points():
     np.testing.assert_allclose(first.locate(np.hstack([ybar, theta])), points)
     np.testing.assert_allclose(fifth.locate(np.hstack([ybar, theta])), points)
     linear = LinearView(first)
-    np.testing.assert_allclose(linear.outputs(ybar), 4.0 * points)
-    np.testing.assert_allclose(linear.locate(np.hstack([linear.outputs(ybar), theta])), points)
+    np.testing.assert_allclose(linear.scaled(ybar), 4.0 * points)
+    np.testing.assert_allclose(linear.locate(np.hstack([linear.scaled(ybar), theta])), points)
     assert np.isinf(first.locate(np.hstack([ybar, -theta]))).all()
     assert first.coordinates == (*first.image_coordinates, *sp.symbols("theta1:4", real=True))
     assert first.form.surface is first

@@ -8,7 +8,7 @@ from examples import BOTH
 
 from percept_obs import figures, record, scenarios, track
 from percept_obs.observers import ekf, ismo
-from percept_obs.structure import linear_view, record_structure, seen_as
+from percept_obs.structure import linear_view, seen_as
 from percept_obs.structure.scenarios import chwa2019_experiment
 
 ZERO = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0}
@@ -17,18 +17,18 @@ fine = {"hold": "first", "step": 1e-3, "language": "python"}
 
 @pytest.fixture(scope="module")
 def recording():
-    return record_structure(chwa2019_experiment("IV.A"), 1.5)
+    return record(chwa2019_experiment("IV.A"), 1.5)
 
 
 @pytest.fixture(scope="module")
 def run(recording):
-    return track(recording, ismo(recording.surface.form), ZERO, **fine)
+    return track(recording, ismo(recording.view.form), ZERO, **fine)
 
 
 @pytest.fixture(scope="module")
 def unguarded(recording):
     """The same run with what the observer's start makes of the unknowns."""
-    return track(recording, replace(ismo(recording.surface.form), gaps=()), ZERO, **fine)
+    return track(recording, replace(ismo(recording.view.form), gaps=()), ZERO, **fine)
 
 
 def test_each_unknown_has_a_row_with_its_unit_and_its_truth(run):
@@ -58,22 +58,22 @@ def test_a_scale_that_is_not_positive_is_a_gap(unguarded):
 
 def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run):
     straight = linear_view(recording)
-    kalman = track(straight, ekf(straight.surface.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
+    kalman = track(straight, ekf(straight.view.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
     figure = figures.quantities([run, kalman], ["sliding", "filter"])
     assert all(len(ax.lines) == 3 for ax in figure.axes)
     assert "filter 10.4" in figure.text
 
 
 def test_what_does_not_belong_together_is_refused(recording, run):
-    other = record_structure(chwa2019_experiment("V.B"), 1.5)
-    elsewhere = track(other, ismo(other.surface.form), ZERO, **fine)
-    blind = seen_as(recording, recording.surface, chwa2019_experiment("IV.A").scenario.motion)
+    other = record(chwa2019_experiment("V.B"), 1.5)
+    elsewhere = track(other, ismo(other.view.form), ZERO, **fine)
+    blind = seen_as(recording, recording.view, chwa2019_experiment("IV.A").scenario.motion)
     point = track(record(scenarios.ma2005_eq35(), 1), ismo(BOTH))
     for runs, labels, message in (
         ([], None, "there are no runs"),
         ([run], ["a", "b"], "2 labels for 1 runs"),
         ([run, elsewhere], None, "different unknowns or times"),
-        (track(blind, ismo(blind.surface.form), ZERO, **fine), None, "no truth to compare with"),
+        (track(blind, ismo(blind.view.form), ZERO, **fine), None, "no truth to compare with"),
         (point, None, "not of structure and motion"),
     ):
         with pytest.raises(ValueError, match=message):
@@ -84,8 +84,8 @@ def test_what_does_not_belong_together_is_refused(recording, run):
 
 @pytest.mark.parametrize("observer", [ismo, ekf])
 def test_the_distance_is_that_of_the_point_and_not_of_the_last_unknown(recording, observer):
-    run = track(recording, observer(recording.surface.form), ZERO, **fine)
+    run = track(recording, observer(recording.view.form), ZERO, **fine)
     upper = figures.distance(run).axes[0]
     truth = next(line.get_ydata() for line in upper.lines if line.get_label() == "truth")
-    np.testing.assert_allclose(truth, 1 / recording.surface.inverse(recording.truth))
+    np.testing.assert_allclose(truth, 1 / recording.view.inverse(recording.truth))
     assert (truth > 0).all()

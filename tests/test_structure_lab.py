@@ -55,10 +55,10 @@ def test_the_page_computes_what_python_does(answers, case):
         np.testing.assert_allclose(answer["time"], recording.time, rtol=0, atol=1e-12)
         np.testing.assert_allclose(as_array(answer["outputs"]), recording.outputs.ravel(), rtol=0, atol=1e-10)
         np.testing.assert_allclose(as_array(answer["truth"]), recording.truth.ravel(), rtol=1e-10, atol=1e-10)
-        np.testing.assert_allclose([gap[:2] for gap in told["gaps"]], run.gaps, rtol=0, atol=1e-9)
+        np.testing.assert_allclose([gap[:2] for gap in told["gaps"]], run.unobservable_intervals, rtol=0, atol=1e-9)
         if name != "sign":
             assert answer["summary"]["verdicts"][name] == run.verdict(settings["tolerance"])
-            found = recording.surface.quantities(run.estimate[:, 3:])
+            found = recording.view.quantities(run.estimate[:, 3:])
             for quantity, values in found.items():
                 np.testing.assert_allclose(as_array(told["quantities"][quantity]), values, rtol=1e-6, atol=1e-9)
             far = np.where(np.isfinite(run.distance), run.distance, np.nan)
@@ -70,7 +70,7 @@ def test_the_page_computes_what_python_does(answers, case):
 def test_the_determinant_is_the_choice_s(answers, case):
     settings, answer = answers[case]
     (run, *_) = structure_runs_of(settings).values()
-    choice, recording = run.recording.surface, run.recording
+    choice, recording = run.recording.view, run.recording
     at = dict(zip(choice.form.x1, recording.outputs[0], strict=True))
     at |= dict(zip(choice.form.parameters, [*recording.motion.known(0.0)[0], *choice.values.values()], strict=True))
     assert answer["determinant"][0] == pytest.approx(float(choice.determinant.subs(at)), rel=1e-9)
@@ -147,8 +147,8 @@ def test_each_corollary_is_one_click_and_converges(case):
     settings = structure_lab(**COROLLARIES[case]).settings
     (run,) = structure_runs_of(settings).values()
     assert run.verdict(settings["tolerance"]).startswith("converged")
-    found = run.recording.surface.quantities(run.estimate[-1, 3:])
-    true = run.recording.surface.quantities(run.truth[-1, 3:])
+    found = run.recording.view.quantities(run.estimate[-1, 3:])
+    true = run.recording.view.quantities(run.truth[-1, 3:])
     for name, value in found.items():
         assert value == pytest.approx(true[name], rel=5e-3, abs=5e-3)
 
@@ -170,7 +170,7 @@ def scatter(run, begin, end):
 
 def times_too_far(run):
     """Estimated over true range."""
-    return run.distance * run.recording.surface.inverse(run.truth)
+    return run.distance * run.recording.view.inverse(run.truth)
 
 
 @pytest.mark.node

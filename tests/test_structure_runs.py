@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from percept_obs.structure import PatchDepth, grid_patch, record_structure
+from percept_obs import record
+from percept_obs.structure import PatchDepth, grid_patch
 from percept_obs.structure.competitors import FIGURES, PROPOSED, STAND_IN, competitors, figure_runs, scale_spread
 from percept_obs.structure.scenarios import chwa2019_experiment
 
@@ -56,7 +57,7 @@ def test_scatter_grows_with_time_unless_the_slope_stays():
 
 def test_filters_need_to_know_the_noise():
     with pytest.raises(ValueError, match="the recording has none; record it with noise"):
-        competitors(record_structure(chwa2019_experiment("IV.A"), 1))
+        competitors(record(chwa2019_experiment("IV.A"), 1))
 
 
 @pytest.mark.parametrize("number", FIGURES)

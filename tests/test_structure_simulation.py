@@ -7,7 +7,6 @@ from examples import NOISE
 
 from percept_obs import (
     BehindCamera,
-    Camera,
     DoesNotFit,
     PerspectiveSystem,
     Recording,
@@ -26,12 +25,12 @@ from percept_obs.structure import (
     ImpossibleChoice,
     LinearView,
     PatchDepth,
+    ScaledDepthCamera,
     SizeDepth,
     StructureAndMotion,
     StructureScenario,
     grid_patch,
     linear_view,
-    record_structure,
     seen_as,
 )
 from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
@@ -44,12 +43,12 @@ W = (0.1, -0.2, 0.3)
 
 
 def late_scale(recording, **gains):
-    run = track(recording, ismo(recording.surface.form, **gains), hold="first", step=1e-3, language="python")
+    run = track(recording, ismo(recording.view.form, **gains), hold="first", step=1e-3, language="python")
     return run.estimate[recording.time >= 2, 3]
 
 
 def test_a_recording_of_a_choice_holds_what_it_may_know():
-    recording = record_structure(CASE, 1)
+    recording = record(CASE, 1)
     assert recording.names == ("y1", "y2", "ybar3")
     assert recording.truth.shape == (1001, 6)
     np.testing.assert_allclose(recording.truth[:, 3:], [[10.4, -0.23 * 10.4, 0]] * 1001)
@@ -57,23 +56,23 @@ def test_a_recording_of_a_choice_holds_what_it_may_know():
     assert [s.name for s in recording.motion.parameters] == ["w1", "w2", "w3", "v_c1"]
     np.testing.assert_allclose(recording.truth[0, :3], [0.32, 0.30, 0.05])
     np.testing.assert_allclose(recording.points[0], np.array([0.32, 0.30, 1]) / 0.52)
-    known = record_structure(chwa2019_experiment("VI.B"), 1)
-    assert known.surface.scale == 10.4
+    known = record(chwa2019_experiment("VI.B"), 1)
+    assert known.view.scale == 10.4
     np.testing.assert_allclose(known.truth[0, 3:], [0, -0.22, -0.23])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
 def test_every_observer_runs_on_the_form_as_it_is(make):
-    recording = record_structure(CASE, 1, Camera(period=0.01))
+    recording = record(CASE, 1, ScaledDepthCamera(period=0.01))
     views = [recording, linear_view(recording)]
     if make is immersion_and_invariance:
         with pytest.raises(NotIntegrable, match="w has no potential"):
-            make(views.pop(0).surface.form)
+            make(views.pop(0).view.form)
     for seen in views:
-        run = track(seen, make(seen.surface.form), language="python")
-        assert np.isfinite(run.estimate[run.lacking == 0]).all()
-        assert run.lacking[-1] == 0
+        run = track(seen, make(seen.view.form), language="python")
+        assert np.isfinite(run.estimate[run.unobservable == 0]).all()
+        assert run.unobservable[-1] == 0
 
 
 @pytest.mark.slow
@@ -81,46 +80,46 @@ def test_every_observer_runs_on_the_form_as_it_is(make):
 @pytest.mark.parametrize("normal", [(0, 0, 1), (0.3, -0.2, 1)], ids=["facing", "tilted"])
 def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, normal):
     setup = chwa2019_simulation("V.A", angular_velocity)
-    recording = record_structure(setup, 2, depth=PatchDepth(grid_patch(0.4, 3, normal)))
+    recording = record(setup, 2, ScaledDepthCamera(depth=PatchDepth(grid_patch(0.4, 3, normal))))
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
 
 
 def test_the_size_gives_it_to_a_camera_that_does_not_turn():
     size = SizeDepth(grid_patch(0.4))
-    recording = record_structure(chwa2019_simulation("V.A"), 2, depth=size)
+    recording = record(chwa2019_simulation("V.A"), 2, ScaledDepthCamera(depth=size))
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
-    turned = record_structure(chwa2019_simulation("V.A", W), 2, depth=size)
+    turned = record(chwa2019_simulation("V.A", W), 2, ScaledDepthCamera(depth=size))
     assert np.abs(turned.outputs[:, 2] / turned.truth[:, 2] - 1).max() > 0.01
 
 
 def test_noise_in_pixels_and_as_a_ratio():
-    recording = record_structure(CASE, 10, pixels=CHWA_CAMERA, ratio=SignalToNoise(100), seed=1)
+    recording = record(CASE, 10, ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(100)), seed=1)
     error = (recording.outputs - recording.truth[:, :3])[:, :2] * 720
     assert error.std() == pytest.approx(0.0096, rel=0.02)
     assert recording.noise_variance == pytest.approx((0.0096 / 720) ** 2, rel=0.02)
-    in_pixels = record_structure(CASE, 10, Camera(1e-3, NOISE), pixels=CHWA_CAMERA, seed=1)
+    in_pixels = record(CASE, 10, ScaledDepthCamera(1e-3, NOISE, pixels=CHWA_CAMERA), seed=1)
     assert (in_pixels.outputs - in_pixels.truth[:, :3])[:, :2].std() == pytest.approx(0.01 / 3**0.5 / 720, rel=0.02)
-    again = record_structure(CASE, 10, pixels=CHWA_CAMERA, ratio=SignalToNoise(100), seed=1)
+    again = record(CASE, 10, ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(100)), seed=1)
     np.testing.assert_array_equal(again.outputs, recording.outputs)
 
 
 def test_pictures_without_the_object_are_lost():
     small = PixelCamera(CHWA_CAMERA.focal, CHWA_CAMERA.centre, (640, 480))
-    recording = record_structure(CASE, 1, pixels=small)
+    recording = record(CASE, 1, ScaledDepthCamera(pixels=small))
     lost = np.isnan(recording.outputs).all(axis=1)
     assert not lost[:200].any()
     assert lost[300:].all()
-    dropped = record_structure(CASE, 1, Camera(1e-3, dropout=0.3), seed=2)
+    dropped = record(CASE, 1, ScaledDepthCamera(1e-3, dropout=0.3), seed=2)
     assert np.isnan(dropped.outputs[:, 0]).mean() == pytest.approx(0.3, abs=0.05)
     with pytest.raises(ValueError, match="outside the first picture"):
-        record_structure(chwa2019_simulation("V.A"), 1, pixels=small)
+        record(chwa2019_simulation("V.A"), 1, ScaledDepthCamera(pixels=small))
 
 
 def test_bias_and_drift_do_what_the_sensitivity_says():
     choice = CASE.choice
     derivatives = choice.sensitivity()
     for errors in ({"bias": 1e-4}, {"drift": 1e-5}):
-        recording = record_structure(CASE, 4, depth=GivenDepth(**errors))
+        recording = record(CASE, 4, ScaledDepthCamera(depth=GivenDepth(**errors)))
         change = errors.get("bias", 0.0) + errors.get("drift", 0.0) * 4.0, errors.get("drift", 0.0)
         at = dict(zip(choice.form.coordinates, recording.truth[-1], strict=True))
         at |= dict(zip(choice.form.parameters, recording.motion.known(4.0)[0], strict=True))
@@ -133,7 +132,7 @@ def test_bias_and_drift_do_what_the_sensitivity_says():
 def test_a_constant_factor_of_the_inverse_depth_is_another_scale():
     """Twice ybar3 is half of d_s, and no velocity changes."""
     doubled = StructureScenario(CASE.scenario, 5.2, CASE.choice)
-    recording = record_structure(doubled, 3)
+    recording = record(doubled, 3)
     run = track(recording, ismo(CASE.choice.form), hold="first", step=1e-3)
     found = CASE.choice.quantities(run.estimate[-1, 3:])
     assert found["d_s"] == pytest.approx(5.2, rel=1e-3)
@@ -143,7 +142,7 @@ def test_a_constant_factor_of_the_inverse_depth_is_another_scale():
 @pytest.mark.slow
 def test_noise_of_the_inverse_depth_in_proportion():
     spread = [
-        late_scale(record_structure(CASE, 4, depth=GivenDepth(noise=type(NOISE)(bound)), seed=3)).std()
+        late_scale(record(CASE, 4, ScaledDepthCamera(depth=GivenDepth(noise=type(NOISE)(bound))), seed=3)).std()
         for bound in (1e-7, 1e-6)
     ]
     assert spread[1] == pytest.approx(10 * spread[0], rel=0.05)
@@ -152,13 +151,13 @@ def test_noise_of_the_inverse_depth_in_proportion():
 
 def test_fewer_unknowns_are_found_in_the_least_squares_sense():
     choice = StructureAndMotion(("d_s", "v_c2"), ("v_p1", "v_p2", "v_p3"))
-    recording = record_structure(StructureScenario(CASE.scenario, 10.4, choice), 2)
+    recording = record(StructureScenario(CASE.scenario, 10.4, choice), 2)
     run = track(recording, ismo(choice.form), hold="first", step=1e-3)
     np.testing.assert_allclose(run.estimate[-1, 3:], [10.4, -0.23 * 10.4], rtol=1e-3)
 
 
 def test_seen_as_another_choice():
-    recording = record_structure(chwa2019_experiment("IV.B"), 1)
+    recording = record(chwa2019_experiment("IV.B"), 1)
     fifth = COROLLARIES[4].choice(scale=10.4)
     motion = chwa2019_experiment("IV.B").scenario.motion
     again = seen_as(recording, fifth, motion, 10.4)
@@ -174,8 +173,8 @@ def test_the_filter_on_the_linear_view_is_the_kalman_filter():
     from scipy.linalg import expm
 
     period, R, Q2, P0 = 0.01, 1e-2, 1.0, 100.0
-    recording = linear_view(record_structure(chwa2019_simulation("IV.A", W), 1, Camera(period), seed=4))
-    form = recording.surface.form
+    recording = linear_view(record(chwa2019_simulation("IV.A", W), 1, ScaledDepthCamera(period), seed=4))
+    form = recording.view.form
     observer = ekf(form, noise_variance=R, hidden_process_noise=Q2, hidden_variance=P0, measured_variance=1.0)
     run = track(recording, observer, step=1e-3)
     known = dict(zip(form.parameters, recording.motion.known(0.0)[0], strict=True))
@@ -196,12 +195,12 @@ def test_the_filter_on_the_linear_view_is_the_kalman_filter():
 
 
 def test_what_does_not_fit_is_refused():
-    recording = record_structure(CASE, 1)
+    recording = record(CASE, 1)
     with pytest.raises(DoesNotFit, match="made for the scaled pinhole with d_s, v_c3, v_p1 unknown"):
         track(recording, ismo(COROLLARIES[3].choice().form))
     with pytest.raises(DoesNotFit, match="was made for the scaled pinhole"):
         track(record(scenarios.ma2005_eq35(), 1), ismo(CASE.choice.form))
-    with pytest.raises(ValueError, match="needs image coordinates alone, but the recording shows the scaled pinhole"):
+    with pytest.raises(ValueError, match="image coordinates of one point, but the recording shows the scaled pinhole"):
         moving_window_least_squares(recording, 0.5)
     with pytest.raises(ValueError, match="the linear view needs the outputs y1, y2, ybar3"):
         linear_view(record(scenarios.ma2005_eq35(), 1))
@@ -220,10 +219,10 @@ def test_scenarios_that_make_no_sense_are_refused():
         CASE.choice.known_motion(rigid())
     towards = Scenario("towards", rigid(STILL, (0.1, 0, 1.0), STILL), (0, 0, 1), 2.0, pinhole())
     with pytest.raises(BehindCamera, match="only points at a positive distance are seen"):
-        record_structure(StructureScenario(towards, 1.0, CASE.choice))
+        record(StructureScenario(towards, 1.0, CASE.choice))
     for duration in (0.0, 1e-4, float("inf")):
-        with pytest.raises(ValueError, match="holds no two pictures"):
-            record_structure(CASE, duration)
+        with pytest.raises(ValueError, match="holds no two samples"):
+            record(CASE, duration)
     with pytest.raises(ValueError, match=r"there is no case 'V.A'; there are IV.A"):
         chwa2019_experiment("V.A")
     with pytest.raises(ValueError, match="needs a positive third component"):
@@ -258,16 +257,14 @@ def test_sampled_velocities_serve_as_well_as_functions():
     sampled = rigid(np.zeros((101, 3)), samples, np.zeros((101, 3)), times=time)
     known = CASE.choice.known_motion(sampled)
     np.testing.assert_allclose(known.known([0.0, 0.5]), [[0, 0, 0, 0.3]] * 2)
-    recording = record_structure(
-        StructureScenario(Scenario("sampled", sampled, (1, 1, 4), 1.0, pinhole()), 2.0, CASE.choice)
-    )
+    recording = record(StructureScenario(Scenario("sampled", sampled, (1, 1, 4), 1.0, pinhole()), 2.0, CASE.choice))
     np.testing.assert_allclose(recording.truth[500, 3:], [2, 0.1, -0.1])
 
 
 def test_a_recording_from_real_outputs():
     """Nothing is asked of what is unknown."""
     choice = COROLLARIES[0].choice()
-    made = record_structure(CASE, 2)
+    made = record(CASE, 2)
     motion = choice.known_motion(rigid(STILL, (-0.22, 9.9, 9.9), STILL))
     recording = Recording(made.time, made.outputs, made.names, choice, motion)
     assert recording.truth is None

@@ -64,7 +64,7 @@ def test_root_mean_square_over_a_part():
     run = track(RECORDING, ibo(BOTH), ZERO)
     part = (run.time >= 2) & (run.time <= 4)
     assert run.rms(2, 4) == pytest.approx(np.sqrt(np.mean(run.error[part, 2] ** 2)))
-    with pytest.raises(ValueError, match="no sample lies between"):
+    with pytest.raises(ValueError, match="no sample with a truth lies between"):
         run.rms(90, 91)
 
 
@@ -84,6 +84,36 @@ def test_a_lost_sample_prolongs_the_hold():
     ]
     np.testing.assert_array_equal(runs[0].estimate, runs[1].estimate)
     assert np.isnan(runs[0].innovation[10:12]).all()
+
+
+def test_a_lost_first_sample_is_refused_where_it_is_measured():
+    lost = RECORDING.outputs.copy()
+    lost[0, 1] = np.nan
+    recording = replace(RECORDING, outputs=lost)
+    with pytest.raises(DoesNotFit, match=r"first sample of y2 was lost.*recording.between"):
+        track(recording, ibo(BOTH))
+    assert track(recording, ibo(ONE)).diverged_at is None
+    assert track(recording.between(0.005, 9), ibo(BOTH)).diverged_at is None
+
+
+def test_a_point_must_be_seen_all_the_time():
+    with pytest.raises(DoesNotFit, match="leave longest_hold out"):
+        track(RECORDING, ibo(BOTH), longest_hold=1.0)
+
+
+def test_what_is_no_observer_is_refused():
+    with pytest.raises(DoesNotFit, match=r"an observer is needed, such as ibo\(form\)"):
+        track(RECORDING, ibo)
+
+
+def test_where_the_truth_is_not_known_nothing_is_judged():
+    truth = RECORDING.truth.copy()
+    truth[:3], truth[-3:] = np.nan, np.nan
+    whole, part = (track(replace(RECORDING, truth=t), ibo(BOTH)) for t in (RECORDING.truth, truth))
+    assert part.settling_time() == pytest.approx(whole.settling_time(), abs=0.05)
+    assert part.verdict() == whole.verdict()
+    unknown = track(replace(RECORDING, truth=np.full_like(truth, np.nan)), ibo(BOTH))
+    assert "no truth" in unknown.verdict()
 
 
 def test_the_filter_does_not_use_a_lost_sample():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from percept_obs import rigid
+from percept_obs import record, rigid
 from percept_obs.observers import ekf
-from percept_obs.structure import COROLLARIES, GivenDepth, record_structure
+from percept_obs.structure import COROLLARIES, GivenDepth, ScaledDepthCamera
 from percept_obs.structure.scenarios import chwa2019_semigeneral
 from percept_obs.structure.stages import semigeneral
 
@@ -15,7 +15,7 @@ fine = {"hold": "first", "step": 1e-3, "language": "python"}
 @pytest.fixture(scope="module")
 def wandering():
     setup = chwa2019_semigeneral("simulation")
-    return setup, record_structure(setup)
+    return setup, record(setup)
 
 
 def worst(run, setup, after):
@@ -41,7 +41,7 @@ def test_a_camera_that_keeps_its_velocity(wandering):
 @pytest.mark.slow
 def test_a_camera_that_changes_its_velocity_needs_it_anew():
     setup = chwa2019_semigeneral("experiment")
-    recording = record_structure(setup)
+    recording = record(setup)
     given = semigeneral(recording, setup.scenario.motion, 5.0, camera="given", **fine)
     kept = semigeneral(recording, setup.scenario.motion, 5.0, camera="kept", **fine)
     assert worst(given, setup, 1.5) < 0.01
@@ -82,6 +82,6 @@ def test_what_cannot_be_divided_is_refused(wandering):
 def test_a_first_stage_without_a_scale_says_so():
     """The known velocity is told wrong in sign, so that d_s comes out negative."""
     setup = chwa2019_semigeneral("simulation")
-    recording = record_structure(setup, 3, depth=GivenDepth())
+    recording = record(setup, 3, ScaledDepthCamera(depth=GivenDepth()))
     with pytest.raises(ValueError, match=r"in the last 0.5 s before 2.0 s there is no estimate of a positive d_s"):
         semigeneral(recording, rigid((0, 0, 0), (-0.3, 0, 0), (0, 0, 0)), 2.0, COROLLARIES[0].choice(), **fine)

@@ -90,10 +90,10 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
     if own:
         _fit_height(ax)
     _draw_path(ax, path, kind, estimate)
-    ax.set(aspect="equal", xlabel=label("y1", recording.surface), ylabel=label("y2", recording.surface))
+    ax.set(aspect="equal", xlabel=label("y1", recording.view), ylabel=label("y2", recording.view))
     seen = complete(path)
     sentences = [
-        f"{KINDS[kind]} path in the image of the {recording.surface.name} surface: y1 is {span(path[:, 0])}, y2 "
+        f"{KINDS[kind]} path in the image of the {recording.view.name} surface: y1 is {span(path[:, 0])}, y2 "
         f"{span(path[:, 1])}, from the start at {place_in_words(seen[0])} to the end at {place_in_words(seen[-1])}.",
         _draw_focus(ax, focus, path, recording.time),
         _draw_disk(ax, focus, radius, threshold, seen) if np.isfinite(radius) else "",
@@ -107,10 +107,10 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
 
 def _path(recording: Recording, run: Run | None) -> tuple[Array, str]:
     """Image coordinates over time, shape (K, 2), and whether they are the truth, samples or estimates."""
-    names = [symbol.name for symbol in recording.surface.image_coordinates]
+    names = [symbol.name for symbol in recording.view.image_coordinates]
     if len(names) != 2:
         raise ValueError(
-            f"the {recording.surface.name} surface has {len(names)} image coordinates; an image plane has two"
+            f"the {recording.view.name} surface has {len(names)} image coordinates; an image plane has two"
         )
     if recording.truth is not None:
         return recording.truth[:, :2], "truth"

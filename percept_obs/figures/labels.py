@@ -55,7 +55,7 @@ def same_point(runs: Sequence[Run]) -> None:
     for number, run in enumerate(runs[1:], 2):
         other = run.recording
         same = {
-            "surfaces": other.surface.fits(first.surface),
+            "surfaces": other.view.fits(first.view),
             "times": np.array_equal(other.time, first.time),
             "truths": _equal(other.truth, first.truth),
         }

@@ -29,15 +29,17 @@ from percept_obs.figures.base import (
 )
 from percept_obs.figures.labels import labels_for
 from percept_obs.observability.gramian import DecayBound, Gramian, true_images
-from percept_obs.points import PointsRecording, PointsRun
+from percept_obs.points import PointsRun
+from percept_obs.points.form import points_form
+from percept_obs.recording import Recording
 
 
-def points_in_image(data: PointsRun | PointsRecording, ax: Axes | None = None) -> Figure:
+def points_in_image(data: PointsRun | Recording, ax: Axes | None = None) -> Figure:
     """Paths of all points in the image, and dashed what an observer makes of them, each from its first sight on.
 
     Parameters
     ----------
-    data : PointsRun or PointsRecording
+    data : PointsRun or Recording
         Seen on a surface with two image coordinates.
     ax : axes, optional
         New ones when left out.
@@ -51,18 +53,19 @@ def points_in_image(data: PointsRun | PointsRecording, ax: Axes | None = None) -
     ValueError
         If it is something else, no point is seen, or the image has not two coordinates.
     """
-    if not isinstance(data, PointsRun | PointsRecording):
-        raise ValueError(f"a PointsRun or a PointsRecording is needed, not {data!r}; record_points() makes one")
+    if not isinstance(data, PointsRun | Recording):
+        raise ValueError(f"a PointsRun or a Recording is needed, not {data!r}; record() or track() makes one")
     recording = data.recording if isinstance(data, PointsRun) else data
-    if recording.form.outputs != 2 or not recording.seen.any():
+    form = points_form(recording)
+    if len(form.image_coordinates) != 2 or not recording.seen.any():
         raise ValueError("no point is seen in two image coordinates; record some points in front of the camera")
     ax = ax or new_axes(5.2)
     tidy(ax)
     seen = true_images(recording)
     estimate = np.full_like(seen, np.nan)
     if isinstance(data, PointsRun):
-        estimate = data.observer.form.images(data.state)
-    for k in range(recording.form.points):
+        estimate = data.view.outputs(data.estimate)
+    for k in range(form.points):
         colour, shown = COLOURS[k % len(COLOURS)], np.flatnonzero(recording.seen[:, k])
         if not len(shown):
             continue
@@ -76,13 +79,13 @@ def points_in_image(data: PointsRun | PointsRecording, ax: Axes | None = None) -
     ax.plot([], [], color=BLACK, linestyle="", marker="o", markerfacecolor="white", label="first sight")
     ax.set_xlim(limits(seen[..., 0], estimate[..., 0], reach=0.3))
     ax.set_ylim(limits(seen[..., 1], estimate[..., 1], reach=0.3))
-    y1, y2 = (letter(y.name) for y in recording.form.surface.image_coordinates)
+    y1, y2 = (letter(y.name) for y in form.image_coordinates)
     ax.set(aspect="equal", xlabel=y1, ylabel=y2)
     legend_above(ax, centred=True, fitting=66)
     lost = 1 - recording.seen.mean(axis=0)
     gone = [f"point {k + 1} for {share:.0%} of the time" for k, share in enumerate(lost) if share > 0]
     sentences = [
-        f"{kind.capitalize()} paths of {recording.form.points} points in the image: y1 is {span(seen[..., 0])}, y2 "
+        f"{kind.capitalize()} paths of {form.points} points in the image: y1 is {span(seen[..., 0])}, y2 "
         f"{span(seen[..., 1])}.",
         f"Out of sight: {', '.join(gone)}." if gone else "All of them are seen at all times.",
         f"Estimates, dashed: {data.verdict()}." if isinstance(data, PointsRun) else "",
@@ -123,7 +126,7 @@ def error_norm(
     """
     given = [runs] if isinstance(runs, PointsRun) else list(runs) if isinstance(runs, Iterable) else []
     if not given or not all(isinstance(run, PointsRun) for run in given):
-        raise ValueError(f"a PointsRun or several are needed, not {runs!r}; track_points() makes one")
+        raise ValueError(f"a PointsRun or several are needed, not {runs!r}; track() makes one")
     names = labels_for(given, labels, [run.observer.name for run in given])
     rates = [run.decay_rate(*fitted) for run in given]
     ax = ax or new_axes(3.6)
@@ -131,21 +134,21 @@ def error_norm(
     sentences = ["Norm of the error over time, on a logarithmic axis."]
     for number, (run, name, rate) in enumerate(zip(given, names, rates, strict=True)):
         look = style(number)
-        ax.plot(run.time, run.size, color=look["color"], linewidth=1.5, label=f"{name}: {rate:.2g} per s")
+        ax.plot(run.time, run.deviation, color=look["color"], linewidth=1.5, label=f"{name}: {rate:.2g} per s")
         part = np.flatnonzero((run.time >= fitted[0]) & (run.time <= fitted[1]))
-        middle = np.exp(np.mean(np.log(run.size[part])) - rate * (run.time[part] - run.time[part].mean()))
+        middle = np.exp(np.mean(np.log(run.deviation[part])) - rate * (run.time[part] - run.time[part].mean()))
         ax.plot(run.time[part], middle, color=look["color"], linewidth=1, linestyle=look["linestyle"])
         sentences.append(
-            f"{name}: from {run.size[0]:.2g} to {run.size[-1]:.2g} in {run.time[-1] - run.time[0]:.3g} s, decaying at "
-            f"{rate:.3g} per second."
+            f"{name}: from {run.deviation[0]:.2g} to {run.deviation[-1]:.2g} in {run.time[-1] - run.time[0]:.3g} s, "
+            f"decaying at {rate:.3g} per second."
         )
     if bound is not None:
         steps = np.sqrt(np.cumprod([1.0, *bound.contraction]))
         ends = [*bound.time, bound.time[-1] + bound.window]
-        at = float(np.interp(bound.time[0], given[0].time, given[0].size))
+        at = float(np.interp(bound.time[0], given[0].time, given[0].deviation))
         ax.plot(ends, at * steps, color=BLACK, linewidth=1.2, linestyle=":", label=f"bound: {bound.rate:.2g} per s")
         sentences.append(f"The proof guarantees {bound.rate:.2g} per second over windows of {bound.window:g} s.")
-    sentences.append(log_axis(ax, np.concatenate([run.size for run in given]), "the errors"))
+    sentences.append(log_axis(ax, np.concatenate([run.deviation for run in given]), "the errors"))
     ax.set(xlabel="time (s)", ylabel=r"norm of the error $|\rho|$")
     legend_above(ax)
     return drawn((ax,), sentences)

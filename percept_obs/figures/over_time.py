@@ -76,7 +76,7 @@ def compare(
     same_point(runs)
     labels = labels_for(runs, labels, _descriptions(runs))
     shown = _with_divergence(runs, labels)
-    recording, surface = runs[0].recording, runs[0].recording.surface
+    recording, surface = runs[0].recording, runs[0].recording.view
     if recording.truth is None:
         raise ValueError(
             "the recording has no truth to compare with; distance(runs) and signals(run) draw runs without one"
@@ -155,7 +155,7 @@ def distance(
     labels = labels_for(runs, labels, _descriptions(runs))
     shown = _with_divergence(runs, labels)
     recording = runs[0].recording
-    word, symbol = depth_or_range(recording.surface)
+    word, symbol = depth_or_range(recording.view)
     estimates = np.array([np.where(np.isfinite(run.distance), run.distance, np.nan) for run in runs])
     known = _known_distances(recording)
     reference = reference or next(iter(known), None)
@@ -191,13 +191,13 @@ def distance(
 
 def _known_distances(recording: Recording) -> dict[str, Array]:
     """The true distance, if there is one, and what else measured it."""
-    truth = {} if recording.truth is None else {"truth": 1 / recording.surface.inverse(recording.truth)}
+    truth = {} if recording.truth is None else {"truth": 1 / recording.view.inverse(recording.truth)}
     return {**truth, **recording.distances}
 
 
 def _claim_of_distance(ax: Axes, run: Run, colour: str) -> str:
     """The same for the distance."""
-    if run.observer.covariance is None or not isinstance(run.recording.surface, ImagingSurface):
+    if run.observer.covariance is None or not isinstance(run.recording.view, ImagingSurface):
         return ""
     low, high = claimed_distance(run)
     words = draw_claim(ax, run, low, high, _known_distances(run.recording).get("truth"), colour)

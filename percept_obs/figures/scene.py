@@ -113,7 +113,7 @@ def _believable(run: Run, far: float) -> Array:
     """Estimated places, NaN where they are not in front of the camera or too far away."""
     seen = finite(run.distance)
     usual = np.median(seen) if seen.size else 0.0
-    expected = usual if run.recording.truth is None else 1 / run.recording.surface.inverse(run.recording.truth)
+    expected = usual if run.recording.truth is None else 1 / run.recording.view.inverse(run.recording.truth)
     return np.where((run.distance < far * expected)[:, None], run.points, np.nan)
 
 

@@ -72,7 +72,7 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = 0.0
     """
     if not isinstance(run, Run):
         raise ValueError(f"signals draws one Run, not {run!r}; track() makes it, and compare() draws several")
-    surface, form = run.recording.surface, run.observer.form
+    surface, form = run.recording.view, run.observer.form
     names = [symbol.name for symbol in surface.coordinates]
     known = run.recording.truth is not None
     what = "error" if known else "innovation"
@@ -102,8 +102,8 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = 0.0
 def _coordinate(ax: Axes, run: Run, column: int) -> str:
     """Draw samples, truth and estimate of one coordinate, and say what they are."""
     recording = run.recording
-    name = recording.surface.coordinates[column].name
-    said, estimate = words(name, recording.surface), run.estimate[:, column]
+    name = recording.view.coordinates[column].name
+    said, estimate = words(name, recording.view), run.estimate[:, column]
     firm, kind = bulk(estimate), "estimated"
     if name in run.observer.form.measured:
         firm, kind = recording.outputs[:, recording.names.index(name)], "measured"
@@ -112,7 +112,7 @@ def _coordinate(ax: Axes, run: Run, column: int) -> str:
         firm, kind = recording.truth[:, column], "true"
         ax.plot(run.time, firm, **TRUTH)
     ax.plot(run.time, estimate, **ESTIMATE)
-    ax.set_ylabel(label(name, recording.surface))
+    ax.set_ylabel(label(name, recording.view))
     left_out = linear_axis(ax, firm, estimate, f"the estimates of {name}")
     claim = claim_of_coordinate(ax, run, column, ESTIMATE["color"])
     return " ".join(filter(None, [f"The {kind} {said} is {span(firm)}.", left_out, claim]))

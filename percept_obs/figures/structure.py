@@ -80,7 +80,7 @@ def quantities(
 
 
 def _choice(run: Run) -> StructureAndMotion:
-    surface = run.recording.surface
+    surface = run.recording.view
     choice = surface.choice if isinstance(surface, LinearView) else surface
     if not isinstance(choice, StructureAndMotion):
         raise ValueError(f"the run is of the {surface.name}, not of structure and motion")

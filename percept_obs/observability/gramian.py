@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from percept_obs.points.conditions import conditions
 from percept_obs.points.directions import mainly
-from percept_obs.points.form import PointsForm
+from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
-from percept_obs.points.recording import PointsRecording
-from percept_obs.recording import halves
+from percept_obs.recording import Recording, halves
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -123,12 +122,12 @@ class Gramian:
         return text
 
 
-def gramian(recording: PointsRecording, window: float, form: PointsForm | None = None) -> Gramian:
+def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the images of a window tell of the state: the integral in (14), Inaba et al. 2005.
 
     Parameters
     ----------
-    recording : PointsRecording
+    recording : Recording
         Its true images are used where there is a truth, else its outputs; points count while they are seen.
     window : float
         Seconds.
@@ -145,14 +144,15 @@ def gramian(recording: PointsRecording, window: float, form: PointsForm | None =
     ValueError
         If the window is not positive or longer than the recording, or the form has another number of points.
     """
-    form = form or recording.form
-    if form.points != recording.form.points:
-        raise ValueError(f"the form has {form.points} points, the recording {recording.form.points}")
+    seen = points_form(recording)
+    form = form or seen
+    if form.points != seen.points:
+        raise ValueError(f"the form has {form.points} points, the recording {seen.points}")
     images = true_images(recording)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
-def linear_gramian(recording: PointsRecording, window: float, form: PointsForm | None = None) -> Gramian:
+def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the points themselves, with their distances, would tell: the integral of Phi^T C^T C Phi.
 
     The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
@@ -163,7 +163,7 @@ def linear_gramian(recording: PointsRecording, window: float, form: PointsForm |
     recording, window, form
         See `gramian`.  Points count while they are seen.
     """
-    form = form or recording.form
+    form = form or points_form(recording)
 
     def information(k: Indices) -> Array:
         C = np.where(recording.seen[k][..., None, None], form.blocks, 0.0).reshape(len(k), -1, form.states)
@@ -205,7 +205,7 @@ class DecayBound:
             return float(-np.log(self.contraction).mean() / (2 * self.window))
 
 
-def decay_bound(recording: PointsRecording, observer: LuenbergerObserver, window: float) -> DecayBound:
+def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
     """A bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
     With z = B C rho, (15) gives V(t) - V(t + T) >= 2 int |z|^2.  By (22), the error without corrections would have
@@ -216,7 +216,7 @@ def decay_bound(recording: PointsRecording, observer: LuenbergerObserver, window
 
     Parameters
     ----------
-    recording : PointsRecording
+    recording : Recording
         With a truth.
     observer : LuenbergerObserver
         With a given P, that meets (15).
@@ -273,14 +273,14 @@ def decay_bound(recording: PointsRecording, observer: LuenbergerObserver, window
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
 
 
-def true_images(recording: PointsRecording) -> Array:
+def true_images(recording: Recording) -> Array:
     """The images without noise where the truth is known, shape (K, p, m); NaN while a point is not seen."""
     if recording.truth is None:
         return recording.outputs
-    return np.where(recording.seen[..., None], recording.form.images(recording.truth), np.nan)
+    return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
 
 
-def _check_window(recording: PointsRecording, window: float) -> None:
+def _check_window(recording: Recording, window: float) -> None:
     length = recording.time[-1] - recording.time[0]
     if not 0 < window <= length + 1e-9:
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
@@ -299,9 +299,7 @@ def _transitions(form: PointsForm, time: Array) -> Array:
     return np.asarray(unit + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
 
 
-def _windows(
-    recording: PointsRecording, window: float, form: PointsForm, information: Callable[[Indices], Array]
-) -> Gramian:
+def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
     """Integrals over all windows that begin at a sample, without inverting a transition.
 
     A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
@@ -332,7 +330,7 @@ def _windows(
             back = None
         whole = front.pop() if back is None else _join(front.pop(), back)
         matrices.append((whole[1] + whole[1].T) / 2)
-    states = None if recording.truth is None or form is not recording.form else recording.truth[used][begins]
+    states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
     return Gramian(form, time[begins], np.stack(matrices), window, states)
 
 

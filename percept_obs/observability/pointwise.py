@@ -167,7 +167,7 @@ def _information(form: CanonicalForm, recording: Recording, motion: Motion) -> A
     time = recording.time
     outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]
     known = motion.known(recording.time)
-    surface = [recording.surface.values[s] for s in recording.surface.parameters]
+    surface = [recording.view.values[s] for s in recording.view.parameters]
     entries = vectorised((*form.x1, *form.parameters), list(form.w))(*outputs, *known.T, *surface)
     w = np.stack(entries, axis=-1).reshape(len(recording.time), *form.w.shape)
     return w @ np.swapaxes(w, 1, 2)

@@ -24,8 +24,8 @@ from percept_obs.papers.base import (
     judged,
     not_checkable,
 )
-from percept_obs.recording import Camera
-from percept_obs.structure import COROLLARIES, record_structure
+from percept_obs.recording import record
+from percept_obs.structure import COROLLARIES, ScaledDepthCamera
 from percept_obs.structure.choice import OUTPUTS, d_s
 from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment
@@ -77,7 +77,7 @@ def followed(section: str, duration: float, period: float = 1e-3, switch: str = 
     """The observer on one of the experiment's cases, from yhat(0) = 0; exactly seen, or with noise of a ratio."""
     setup = chwa2019_experiment(section)
     ratio = SignalToNoise(decibels) if decibels else None
-    recording = record_structure(setup, duration, Camera(period), CHWA_CAMERA, ratio)
+    recording = record(setup, duration, ScaledDepthCamera(period, pixels=CHWA_CAMERA, ratio=ratio))
     observer = integral_sliding_mode(setup.choice.form, switch)
     return track(recording, observer, [0.0] * 6, hold="zero" if decibels else "exact", step=period)
 
@@ -138,7 +138,7 @@ def sees_the_experiment(printed: Printed) -> Finding:
     times = np.arange(0, 2, 0.001)
     leaves = {}
     for section in SECTIONS:
-        outside = (pixels(chwa2019_experiment(section).ybar(times)) >= IMAGE_SIZE).any(axis=1)
+        outside = (pixels(chwa2019_experiment(section).coordinates(times)) >= IMAGE_SIZE).any(axis=1)
         leaves[f"leaves in {section} at s"] = float(times[outside][0]) if outside.any() else math.inf
     return judged(min(leaves.values()) > 1, Verdict.FALSE, leaves)
 
@@ -146,7 +146,7 @@ def sees_the_experiment(printed: Printed) -> Finding:
 def robust_at(printed: Printed) -> Finding:
     """Noise of the printed ratio in pixels, and the spread of d_s from 9 to 10 s in IV.A with it and with more."""
     numbers, spread = {}, {}
-    clean = pixels(chwa2019_experiment("IV.A").ybar(np.arange(0, 10, 0.01)))
+    clean = pixels(chwa2019_experiment("IV.A").coordinates(np.arange(0, 10, 0.01)))
     for decibels in (100, 60):
         run = followed("IV.A", 10.0, decibels=decibels)
         spread[decibels] = float(run.estimate[run.time > 9, 3].std())

@@ -24,8 +24,9 @@ from percept_obs.papers.base import (
     judged,
     vanishes,
 )
-from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, record_points
+from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block
 from percept_obs.points.scenarios import along_the_line_of_sight
+from percept_obs.recording import record
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import pinhole
 
@@ -162,7 +163,7 @@ def what_is_left() -> Values:
 
 def not_enough(printed: Printed) -> Finding:
     """A point that recedes along its line of sight, A = 0: the smallest eigenvalues of both Gramians over 1 s."""
-    recording = record_points(along_the_line_of_sight(), 2.0)
+    recording = record(along_the_line_of_sight(), 2.0)
     of_points, of_images = windowed_linear(recording, 1.0).least, windowed(recording, 1.0).least
     numbers = {"Gramian of (C, A)": of_points, "(14)": of_images}
     return judged(of_points > 0.9 and abs(of_images) < 1e-9, Verdict.FALSE, numbers)

@@ -35,14 +35,13 @@ from percept_obs.points import (
     Weight,
     constant,
     luenberger,
-    record_points,
     riccati,
     scheduled,
-    track_points,
 )
 from percept_obs.points.scenarios import moving_body
-from percept_obs.recording import Camera
+from percept_obs.recording import Camera, record
 from percept_obs.system.motion import linear
+from percept_obs.tracking import track
 
 Array = NDArray[np.float64]
 
@@ -89,9 +88,11 @@ ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 @cache
 def followed(scenario: PointsScenario, P: Weight | None = None) -> PointsRun:
     """An example, seen exactly, from a start that is off by `ERROR`; P is the identity when left out."""
-    recording = record_points(scenario, DURATION, Camera(PERIOD))
+    recording = record(scenario, DURATION, Camera(PERIOD))
     start = [x - e for x, e in zip(scenario.state, ERROR, strict=False)]
-    return track_points(recording, luenberger(scenario.form, P or constant()), start, hold="first")
+    run = track(recording, luenberger(scenario.form, P or constant()), start, hold="first")
+    assert isinstance(run, PointsRun)
+    return run
 
 
 @cache
@@ -108,7 +109,7 @@ def transition(scenario: PointsScenario) -> Array:
     alone = PointsForm(still, form.blocks)
     time = followed(scenario).time
     units = (replace(scenario, form=alone, state=unit.tolist()) for unit in np.eye(form.states))
-    return np.stack([unit.states(time) for unit in units], axis=-1)
+    return np.stack([unit.coordinates(time) for unit in units], axis=-1)
 
 
 def on_both_examples(printed: Printed) -> Finding:
@@ -123,9 +124,7 @@ def on_both_examples(printed: Printed) -> Finding:
 def converges_without(printed: Printed) -> Finding:
     """A P from a Riccati equation: the largest eigenvalue of the left side of (15) with it, and the decay."""
     weight = riccati(1.0)
-    run = track_points(
-        followed(ONE_POINT).recording, luenberger(ONE_POINT.form, weight), followed(ONE_POINT).state[0], hold="first"
-    )
+    run = followed(ONE_POINT, weight)
     conditions = run.conditions()
     numbers = {"largest eigenvalue of (15)": float(conditions.printed.max()), "decay in 1/s": run.decay_rate(0, 40)}
     serves = conditions.weaker_holds and not conditions.printed_holds and run.decay_rate(0, 40) > 0.1
@@ -147,7 +146,7 @@ def totals() -> Mapping[str, float]:
         parts.append([simpson(np.square(vector).sum(axis=1), dx=PERIOD) for vector in vectors_])
     double = dict(zip(("moved", "Q1", "Q2", "difference"), simpson(parts, dx=10 * PERIOD, axis=0), strict=True))
     seen = np.square(np.einsum("tij,tj->ti", rows, run.error)).sum(axis=1)
-    single = {"rho": simpson(run.size**2, dx=PERIOD), "seen": simpson(seen, dx=PERIOD)}
+    single = {"rho": simpson(run.deviation**2, dx=PERIOD), "seen": simpson(seen, dx=PERIOD)}
     return {name: float(value) for name, value in (double | single).items()}
 
 
@@ -226,7 +225,7 @@ def exponential(printed: Printed) -> Finding:
     outcomes = []
     for name, scenario in (("one point", ONE_POINT), ("two points", TWO_POINTS)):
         run = followed(scenario)
-        sizes, fitted = run.size, run.decay_rate(10, 40)
+        sizes, fitted = run.deviation, run.decay_rate(10, 40)
         numbers |= {f"least of (14), {name}": gathered(scenario).least, f"decay from 10 s on in 1/s, {name}": fitted}
         slow = 0.9 * fitted
         factor = float((sizes * np.exp(slow * run.time)).max() / sizes[0])

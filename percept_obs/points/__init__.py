@@ -6,20 +6,20 @@ from percept_obs.points.conditions import Conditions
 from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
 from percept_obs.points.lyapunov_matrix import Weight, constant, lyapunov, riccati, scheduled
-from percept_obs.points.recording import PointsRecording, PointsScenario, Sighting, record_points
 from percept_obs.points.run import PointsRun
-from percept_obs.points.tracking import track_points
+from percept_obs.points.simulation import LeavesEveryBound, PointsScenario
+from percept_obs.points.tracking import FirstSight
 
 __all__ = [
     "Conditions",
+    "FirstSight",
+    "LeavesEveryBound",
     "LuenbergerObserver",
     "NotLinear",
     "PointBlock",
     "PointsForm",
-    "PointsRecording",
     "PointsRun",
     "PointsScenario",
-    "Sighting",
     "UnseenDirection",
     "Weight",
     "body_with_origin",
@@ -28,9 +28,7 @@ __all__ = [
     "luenberger",
     "lyapunov",
     "point_block",
-    "record_points",
     "riccati",
     "rigid_body",
     "scheduled",
-    "track_points",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from percept_obs.compile import vectorised
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
+from percept_obs.recording import Recording
 from percept_obs.system.derivation import Derivation, Step, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
@@ -103,6 +104,40 @@ class PointsForm:
                 warnings.warn(UnseenDirection(self._complaint()), stacklevel=3)
 
     @property
+    def name(self) -> str:
+        """What is seen, in words."""
+        return f"{self.points} points on the {self.surface.name}"
+
+    @property
+    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of a point's image coordinates."""
+        return self.surface.image_coordinates
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the states."""
+        return self.state
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """Symbols that shape the surface."""
+        return self.surface.parameters
+
+    @property
+    def values(self) -> Mapping[sp.Symbol, float]:
+        """Numbers of the surface's symbols."""
+        return self.surface.values
+
+    @property
+    def point_shape(self) -> tuple[int, ...]:
+        """There are p of what there is once a point."""
+        return (self.points,)
+
+    def fits(self, other: object) -> bool:
+        """Whether an observer of this form can follow what was seen as the other: as many points, on the surface."""
+        return isinstance(other, PointsForm) and self.points == other.points and self.surface.fits(other.surface)
+
+    @property
     def points(self) -> int:
         """Number of points p."""
         return len(self.C)
@@ -111,11 +146,6 @@ class PointsForm:
     def states(self) -> int:
         """Number of states n."""
         return len(self.names)
-
-    @property
-    def outputs(self) -> int:
-        """Image coordinates of a point, m."""
-        return len(self.surface.image_coordinates)
 
     @cached_property
     def block(self) -> PointBlock:
@@ -151,26 +181,27 @@ class PointsForm:
         rows, columns, which = places.T.copy()
         return Layout(rows, columns, which, distinct)
 
-    def values(self, times: ArrayLike) -> Array:
+    def numbers(self, times: ArrayLike) -> Array:
         """Numbers of the layout's expressions at the given times, shape (T, u) or (1, u) when constant."""
         return self._evaluated(self.motion.known(times))
 
     def coefficients(self, times: ArrayLike) -> tuple[Array, Array]:
         """A and v at the given times, shapes (T, n, n) and (T, n), or (1, ...) when constant."""
-        together = self._dense(self.values(times))
+        together = self._dense(self.numbers(times))
         return together[:, :, :-1], together[:, :, -1]
 
-    def positions(self, states: ArrayLike) -> Array:
+    def locate(self, states: ArrayLike) -> Array:
         """Points C_k x of states of shape (..., n), in metres, shape (..., p, 3)."""
         return np.einsum("kin,...n->...ki", self.blocks, np.asarray(states, dtype=float), optimize=True)
 
-    def distances(self, states: ArrayLike) -> Array:
-        """Depths l C_k x of states of shape (..., n), in metres, shape (..., p); not positive behind the camera."""
-        return np.asarray(self.positions(states) @ self.surface_numbers[1])
+    def inverse(self, states: ArrayLike) -> Array:
+        """Inverse depths in 1/m of states of shape (..., n), shape (..., p); negative behind the camera."""
+        distance = self.locate(states) @ self.surface_numbers[1]
+        return np.divide(1, distance, out=np.full_like(distance, np.inf), where=distance != 0)
 
-    def images(self, states: ArrayLike) -> Array:
+    def outputs(self, states: ArrayLike) -> Array:
         """Image coordinates of states of shape (..., n), shape (..., p, m); NaN behind the camera."""
-        positions = self.positions(states)
+        positions = self.locate(states)
         N, l = self.surface_numbers
         distance = (positions @ l)[..., None]
         return np.divide(
@@ -227,7 +258,7 @@ class PointsForm:
     @cached_property
     def B(self) -> sp.ImmutableMatrix:
         """B(y) of all points, shape (m p, 3 p)."""
-        m, block = self.outputs, self.block
+        m, block = len(self.image_coordinates), self.block
         return sp.ImmutableMatrix(
             sp.diag(*(block.B.xreplace(dict(zip(block.y, self.y[k * m :], strict=False))) for k in range(self.points)))
         )
@@ -235,7 +266,9 @@ class PointsForm:
     def E(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """E of a state: one over the distance of each point, shape (m p, m p)."""
         points = [C * sp.ImmutableMatrix(state) for C in self.C]
-        return sp.ImmutableMatrix(sp.diag(*(sp.eye(self.outputs) / (self.block.l * xi)[0] for xi in points)))
+        return sp.ImmutableMatrix(
+            sp.diag(*(sp.eye(len(self.image_coordinates)) / (self.block.l * xi)[0] for xi in points))
+        )
 
     def H(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """Images of all points of a state, shape (m p, 1)."""
@@ -298,6 +331,22 @@ class PointsForm:
             f"no image shows {many} of the state, whatever the camera sees: {'; '.join(named)}.  No observer finds "
             "what no image shows: leave it out of the state, or let the camera see a point that moves with it"
         )
+
+
+def points_form(recording: Recording) -> PointsForm:
+    """The form of what a recording shows.
+
+    Raises
+    ------
+    ValueError
+        If it does not show points of a state.
+    """
+    if not isinstance(recording.view, PointsForm):
+        raise ValueError(
+            f"this needs a recording of points of a state, but it shows the {recording.view.name}; record a "
+            "PointsScenario"
+        )
+    return recording.view
 
 
 def _matrix(block: Any) -> sp.ImmutableMatrix:

@@ -66,7 +66,7 @@ class LuenbergerObserver:
     @cached_property
     def scaled_innovation(self) -> sp.ImmutableMatrix:
         """E^-1 (y - H(C xhat)) without a division: y_k l xi_k - N xi_k for each point, xi_k = C_k xhat."""
-        form, m = self.form, self.form.outputs
+        form, m = self.form, len(self.form.image_coordinates)
         estimate = sp.ImmutableMatrix(self.estimate)
         parts = []
         for k, C in enumerate(form.C):

@@ -117,6 +117,6 @@ def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
     -------
     array of shape (K, p)
     """
-    points, velocities = form.positions(states), form.positions(form.coefficients(times)[1])
+    points, velocities = form.locate(states), form.locate(form.coefficients(times)[1])
     across = np.linalg.norm(np.cross(points, velocities), axis=-1)
     return np.asarray(across / (points**2).sum(axis=-1))

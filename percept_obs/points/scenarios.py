@@ -7,7 +7,7 @@ import numpy as np
 from percept_obs.points.bodies import rigid_body
 from percept_obs.points.form import PointsForm
 from percept_obs.points.manoeuvre import PATH, Manoeuvre
-from percept_obs.points.recording import PointsScenario
+from percept_obs.points.simulation import PointsScenario
 from percept_obs.system.motion import TIME, linear
 
 OFFSET = (0.5, -0.3, 0.4)

@@ -9,14 +9,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from percept_obs.points.bodies import independent_points
-from percept_obs.points.recording import PointsRecording
+from percept_obs.recording import Recording
 from percept_obs.recording.utias import LONGEST_GAP, PIXEL_SIGMA, utias_tables
 from percept_obs.system.motion import rigid
 
 
-def load_utias_points(
-    path: str | os.PathLike[str] | None = None, landmarks: Sequence[int] | None = None
-) -> PointsRecording:
+def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Sequence[int] | None = None) -> Recording:
     """All landmarks that the moving camera follows, as points of one state in its frame.
 
     Parameters
@@ -28,7 +26,7 @@ def load_utias_points(
 
     Returns
     -------
-    PointsRecording
+    Recording
         Images of the tracks of `utias_tables`, from the first track's beginning to the last one's end, NaN between
         them.  The truth has all landmarks at all times, from the fitted poses; `distances` has the independent
         ``"stereo"`` depth.
@@ -58,10 +56,12 @@ def load_utias_points(
     to_camera = Rotation.from_quat(camera.orientation[samples]).inv()
     places = [to_camera.apply(tables.landmarks[k] - camera.position[samples]) for k in chosen]
     motion = rigid(-camera.angular_velocity, camera.velocity, np.zeros(3), times=camera.time)
-    return PointsRecording(
+    return Recording(
         camera.time[samples],
         outputs,
+        ("y1", "y2"),
         independent_points(motion, len(chosen)),
+        motion,
         truth=np.hstack(places),
         noise_variance=float(np.mean((PIXEL_SIGMA / np.array([lens.fx, lens.fy])) ** 2)),
         distances={"stereo": stereo},

@@ -1,18 +1,9 @@
 """Recordings: what a camera leaves behind, from a simulation or from the world."""
 
-from percept_obs.recording.recording import Recording, halves, step_grid
-from percept_obs.recording.simulation import (
-    NO_NOISE,
-    PLANT_STEP,
-    Camera,
-    Gaussian,
-    Noise,
-    Scenario,
-    Seed,
-    Uniform,
-    record,
-    seeded,
-)
+from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Seed, Uniform, seeded
+from percept_obs.recording.grid import halves, step_grid
+from percept_obs.recording.recording import Recording, Sighting
+from percept_obs.recording.simulation import PLANT_STEP, Scenario, record
 
 __all__ = [
     "NO_NOISE",
@@ -22,7 +13,9 @@ __all__ = [
     "Noise",
     "Recording",
     "Scenario",
+    "Scene",
     "Seed",
+    "Sighting",
     "Uniform",
     "halves",
     "record",

@@ -1,10 +1,11 @@
-"""Recordings: what a camera leaves behind, and the grid of steps between its samples."""
+"""Recordings: what a camera leaves behind."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -17,38 +18,61 @@ from percept_obs.system.view import View
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Sighting:
+    """A point in sight, from one sample to another.
+
+    Parameters
+    ----------
+    point : int
+    first, last : int
+        Samples.
+    """
+
+    point: int
+    first: int
+    last: int
+
+
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Samples of a point's image, and what is known about the camera's and the point's motion.
+    """Samples of the images of one point or of several, and what is known about the camera's and the points' motion.
 
     Parameters
     ----------
     time : array of shape (K,)
         Seconds, strictly increasing.
-    outputs : array of shape (K, m)
-        Samples of the image coordinates; NaN where one was lost.  The first row is complete.
+    outputs : array of shape (K, m), or (K, p, m) for p points
+        Samples of the image coordinates; NaN where one was lost.
     names : tuple of str
-        Names of the outputs, such as ("y1", "y2").
-    surface : View
-        Where they were seen: an imaging surface, or what was derived from several image points.
+        Names of a point's outputs, such as ("y1", "y2").
+    view : View
+        As what they were seen: an imaging surface, several points of one state, or a scaled inverse depth.
     motion : Motion
         Known motion, with numbers for all times.
     truth : array of shape (K, n), optional
-        True coordinates of the surface: image coordinates and inverse distance.
+        True coordinates of the view, such as image coordinates and inverse distance; NaN where they are not known.
     signal : function of times, optional
-        The outputs without noise at any time, shape (T, m), if they are known.
+        The outputs without noise at any time, of shape (T, m) or (T, p, m), if they are known.
     noise_variance : float, optional
         Variance of the noise in each output.
-    distances : mapping of names to arrays of shape (K,), optional
-        Independent measurements of the depth or range in metres.
+    distances : mapping of names to arrays of shape (K,) or (K, p), optional
+        Independent measurements of the depth or range in metres; NaN where there is none.
     source : str
         Where the recording comes from, its settings and its seed.
+
+    Raises
+    ------
+    BehindCamera
+        If a point that is seen is not in front of the camera by its truth.
+    ValueError
+        If shapes do not fit, times do not increase, or values are not finite where they must be.
     """
 
     time: Array
     outputs: Array
     names: tuple[str, ...]
-    surface: View
+    view: View
     motion: Motion
     truth: Array | None = None
     signal: Callable[[Array], Array] | None = None
@@ -57,76 +81,121 @@ class Recording:
     source: str = ""
 
     def __post_init__(self) -> None:
-        time = _readonly(self.time)
-        outputs = _readonly(self.outputs)
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "outputs", outputs)
+        for name in ("time", "outputs", *(() if self.truth is None else ("truth",))):
+            object.__setattr__(self, name, _readonly(getattr(self, name)))
         object.__setattr__(self, "names", tuple(self.names))
+        distances = {name: _readonly(values) for name, values in self.distances.items()}
+        object.__setattr__(self, "distances", MappingProxyType(distances))
+        self._check_times()
+        self._check_outputs()
+        self._check_truth()
+        for name, values in distances.items():
+            expected = (len(self.time), *self.view.point_shape)
+            if values.shape != expected or not (np.isnan(values) | (np.isfinite(values) & (values > 0))).all():
+                raise ValueError(f"the distances {name!r} must be positive numbers or NaN, of shape {expected}")
+        self.motion.known(self.time[[0, -1]])
+
+    def _check_times(self) -> None:
+        time = self.time
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the recording has times of shape {time.shape}; at least two samples are needed")
-        if outputs.shape != (len(time), len(self.names)) or not self.names:
-            raise ValueError(
-                f"the recording has outputs of shape {outputs.shape}; expected {(len(time), len(self.names))}: "
-                f"one row a time, one column for each of {', '.join(self.names) or 'at least one name'}"
-            )
         if not np.isfinite(time).all() or not (np.diff(time) > 0).all():
             k = int(np.argmin(np.diff(time) > 0)) if np.isfinite(time).all() else int(np.argmin(np.isfinite(time)))
             raise ValueError(
                 f"the recording's times must increase strictly and be finite; look at row {k + 1}, "
-                f"{time[k]!r} s: sort the rows and remove repeated ones"
+                f"{float(time[k])!r} s: sort the rows and remove repeated ones"
             )
-        known = [symbol.name for symbol in self.surface.image_coordinates]
+
+    def _check_outputs(self) -> None:
+        expected = (len(self.time), *self.view.point_shape, len(self.names))
+        if self.outputs.shape != expected or not self.names:
+            raise ValueError(
+                f"the recording has outputs of shape {self.outputs.shape}; expected {expected}: "
+                f"one row a time, one column for each of {', '.join(self.names) or 'at least one name'}"
+            )
+        known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
             raise ValueError(
-                f"the recording names the outputs {', '.join(self.names)}; those of the {self.surface.name} are "
+                f"the recording names the outputs {', '.join(self.names)}; those of the {self.view.name} are "
                 f"{', '.join(known)}, each once"
             )
-        valueless = [str(symbol) for symbol in self.surface.parameters if symbol not in self.surface.values]
+        valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
+            raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
+        if np.isinf(self.outputs).any():
+            raise ValueError("outputs are finite, or NaN where a sample was lost")
+
+    def _check_truth(self) -> None:
+        if self.truth is None:
+            return
+        expected = (len(self.time), len(self.view.coordinates))
+        if self.truth.shape != expected or np.isinf(self.truth).any():
             raise ValueError(
-                f"the {self.surface.name} has no values for {', '.join(valueless)}; give them numbers first"
+                f"the truth has shape {self.truth.shape}; expected {expected}, finite or NaN where it is not known: "
+                f"{', '.join(map(str, self.view.coordinates))}"
             )
-        if np.isinf(outputs).any() or not np.isfinite(outputs[0]).all():
-            raise ValueError("outputs are finite, or NaN where a sample was lost; the first row must be complete")
-        if self.truth is not None:
-            truth = _readonly(self.truth)
-            object.__setattr__(self, "truth", truth)
-            if truth.shape != (len(time), len(self.surface.coordinates)) or not np.isfinite(truth).all():
-                raise ValueError(
-                    f"the truth has shape {truth.shape}; expected {(len(time), len(self.surface.coordinates))}, "
-                    f"finite: {', '.join(map(str, self.surface.coordinates))}"
-                )
-            inverse = self.surface.inverse(truth)
-            if not (inverse > 0).all():
-                k = int(np.argmin(inverse > 0))
-                raise BehindCamera(
-                    f"the true inverse distance is {inverse[k]:.4g} at {time[k]:.4g} s; only points in front of the "
-                    "camera, at positive inverse distances, are seen"
-                )
-        distances = {name: _readonly(values) for name, values in self.distances.items()}
-        object.__setattr__(self, "distances", MappingProxyType(distances))
-        for name, values in distances.items():
-            if values.shape != time.shape or not (np.isfinite(values) & (values > 0)).all():
-                raise ValueError(f"the distances {name!r} must be {len(time)} positive numbers, one a sample")
-        self.motion.known(time[[0, -1]])
+        inverse = self.view.inverse(self.truth)
+        behind = np.argwhere(self.seen & (inverse <= 0))
+        if len(behind):
+            where = tuple(behind[0])
+            raise BehindCamera(
+                f"the true inverse distance is {inverse[where]:.4g} at {self.time[where[0]]:.4g} s; only points in "
+                "front of the camera, at positive inverse distances, are seen"
+            )
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """Where all outputs of a point were sampled, shape (K,) or (K, p)."""
+        return np.asarray(np.isfinite(self.outputs).all(axis=-1))
 
     @property
     def imaging_surface(self) -> ImagingSurface:
-        """The surface, where rays and distances are needed.
+        """The view, where rays and distances of one point are needed.
 
         Raises
         ------
         ValueError
             If the recording was not seen on an imaging surface.
         """
-        if not isinstance(self.surface, ImagingSurface):
-            raise ValueError(f"this needs image coordinates alone, but the recording shows the {self.surface.name}")
-        return self.surface
+        if not isinstance(self.view, ImagingSurface):
+            raise ValueError(f"this needs image coordinates of one point, but the recording shows the {self.view.name}")
+        return self.view
 
     @property
     def points(self) -> Array | None:
-        """True positions in metres, shape (K, 3), if the truth is known."""
-        return None if self.truth is None else self.surface.locate(self.truth)
+        """True positions in metres, shape (K, 3) or (K, p, 3), if the truth is known."""
+        return None if self.truth is None else self.view.locate(self.truth)
+
+    @cached_property
+    def distance(self) -> Array:
+        """True depth or range in metres, shape (K,) or (K, p).
+
+        Raises
+        ------
+        ValueError
+            If the recording has no truth.
+        """
+        if self.truth is None:
+            raise ValueError("the recording has no truth to compare with")
+        return 1 / self.view.inverse(self.truth)
+
+    def reference(self, name: str) -> Array:
+        """Distances to compare estimates with, in metres, shape (K,) or (K, p).
+
+        Parameters
+        ----------
+        name : str
+            "truth", or the name of a measured distance.
+
+        Raises
+        ------
+        ValueError
+            If the recording has none of this name.
+        """
+        if name != "truth" and name not in self.distances:
+            known = ", ".join(["truth", *self.distances])
+            raise ValueError(f"the recording {self.source!r} has no distance {name!r}; it has {known}")
+        return self.distance if name == "truth" else self.distances[name]
 
     def between(self, begin: float, end: float) -> Recording:
         """The part of the recording with begin <= time <= end."""
@@ -138,6 +207,44 @@ class Recording:
             truth=None if self.truth is None else self.truth[keep],
             distances={name: values[keep] for name, values in self.distances.items()},
         )
+
+    def without(self, begin: float, end: float, point: int = 0) -> Recording:
+        """The same without the images of a point with begin <= time < end.
+
+        Parameters
+        ----------
+        begin, end : float
+            Seconds.
+        point : int
+            From 0 on.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        outputs = self.outputs.copy()
+        each = outputs.reshape(len(self.time), -1, len(self.names))
+        if not 0 <= point < each.shape[1]:
+            raise ValueError(f"there is no point {point}; there are 0 to {each.shape[1] - 1}")
+        each[(self.time >= begin) & (self.time < end), point] = np.nan
+        return replace(self, outputs=outputs)
+
+    def sightings(self, absence: float) -> tuple[Sighting, ...]:
+        """When points are in sight, in the order of their beginnings.
+
+        Parameters
+        ----------
+        absence : float
+            Seconds without a sample after which it is another sighting.
+        """
+        found = []
+        for point, seen in enumerate(self.seen.reshape(len(self.time), -1).T):
+            samples = np.flatnonzero(seen)
+            if len(samples):
+                runs = np.split(samples, np.flatnonzero(np.diff(self.time[samples]) > absence) + 1)
+                found += [Sighting(point, int(run[0]), int(run[-1])) for run in runs]
+        return tuple(sorted(found, key=lambda sighting: (sighting.first, sighting.point)))
 
     @classmethod
     def from_csv(
@@ -196,34 +303,6 @@ class Recording:
             truth=values[:, 1:] if complete else None,
             source=os.fspath(path),
         )
-
-
-def step_grid(times: Array, longest: float) -> tuple[Array, NDArray[np.int_]]:
-    """Divide the intervals between times into equal steps no longer than given.
-
-    Returns
-    -------
-    grid : array
-        Times of all steps' ends, from ``times[0]`` to ``times[-1]``.
-    index : array of shape (len(times),)
-        Where the times stand in the grid.
-    """
-    intervals = np.diff(times)
-    counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - 1e-9)), 0).astype(int)
-    index = np.concatenate([[0], np.cumsum(counts)])
-    owner = np.repeat(np.arange(len(counts)), counts)
-    inside = np.arange(index[-1]) - index[owner] + 1
-    grid = np.concatenate([times[:1], times[owner] + intervals[owner] * (inside / counts[owner])])
-    grid[index] = times
-    return grid, index
-
-
-def halves(grid: Array) -> Array:
-    """The grid with the middles of its steps put between."""
-    both = np.empty(2 * len(grid) - 1)
-    both[::2] = grid
-    both[1::2] = (grid[:-1] + grid[1:]) / 2
-    return both
 
 
 def _readonly(values: ArrayLike) -> Array:

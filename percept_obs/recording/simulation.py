@@ -1,11 +1,10 @@
-"""Simulation: a point in motion, and the camera that records it."""
+"""Simulation: a scene in motion, and the recording that a camera makes of it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
 
 import numpy as np
 import sympy as sp
@@ -13,88 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile import Table, solve
 from percept_obs.compile.equations import Equations
-from percept_obs.recording.recording import Recording, halves, step_grid
+from percept_obs.recording.camera import Camera, Scene, Seed, seeded
+from percept_obs.recording.grid import halves, step_grid
+from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 
 Array = NDArray[np.float64]
-Seed = np.random.Generator | int
 
 PLANT_STEP = 0.005
 """Longest step, in seconds, with which a point's motion is integrated."""
-
-
-def _check_spread(name: str, value: float) -> None:
-    if not (np.isfinite(value) and value >= 0):
-        raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
-
-
-@dataclass(frozen=True)
-class Uniform:
-    """Uniform noise between -bound and bound."""
-
-    bound: float
-
-    def __post_init__(self) -> None:
-        _check_spread("bound", self.bound)
-
-    @property
-    def variance(self) -> float:
-        """bound^2 / 3."""
-        return self.bound**2 / 3
-
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Independent samples."""
-        return generator.uniform(-self.bound, self.bound, shape)
-
-
-@dataclass(frozen=True)
-class Gaussian:
-    """Gaussian noise of standard deviation sigma."""
-
-    sigma: float
-
-    def __post_init__(self) -> None:
-        _check_spread("sigma", self.sigma)
-
-    @property
-    def variance(self) -> float:
-        """sigma^2."""
-        return self.sigma**2
-
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Independent samples, by the Box-Muller transform of two uniform ones."""
-        first, second = generator.random((*shape, 2)).transpose(-1, *range(len(shape)))
-        return self.sigma * np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
-
-
-Noise = Uniform | Gaussian
-NO_NOISE = Uniform(0.0)
-
-
-@dataclass(frozen=True)
-class Camera:
-    """How a scene is sampled.
-
-    Parameters
-    ----------
-    period : float
-        Time between samples in seconds.
-    noise : Uniform or Gaussian
-        Added to every output, independently.
-    dropout : float
-        Probability that a sample is lost, from 0 to below 1; the first one never is.
-    """
-
-    period: float = 0.01
-    noise: Noise = NO_NOISE
-    dropout: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.period) and self.period > 0):
-            raise ValueError(f"the camera's period is {self.period} s; it must be positive")
-        if not 0 <= self.dropout < 1:
-            raise ValueError(f"the camera's dropout is {self.dropout}; it is a probability, 0 or more and below 1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +85,21 @@ class Scenario:
             raise BehindCamera(f"the point leaves every bound at {grid[trace.diverged]:.4g} s; shorten the duration")
         return trace.states[last[1:]]
 
+    @property
+    def view(self) -> ImagingSurface:
+        """The surface."""
+        return self.surface
+
+    @property
+    def known_motion(self) -> Motion:
+        """The whole motion."""
+        return self.motion
+
+    @property
+    def camera(self) -> Camera:
+        """One sample every 10 ms without noise."""
+        return Camera()
+
     def coordinates(self, times: ArrayLike) -> Array:
         """Image coordinates and inverse distance of the point, shape (K, n).
 
@@ -182,21 +124,16 @@ class Scenario:
                 raise BehindCamera(f"in the scenario {self.name!r}, at {time:.4g} s, {error}") from None
 
 
-def record(
-    scenario: Scenario,
-    duration: float | None = None,
-    camera: Camera | None = None,
-    seed: Seed = 0,
-) -> Recording:
+def record(scenario: Scene, duration: float | None = None, camera: Camera | None = None, seed: Seed = 0) -> Recording:
     """Simulate what a camera records of a scenario.
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario, PointsScenario or StructureScenario
     duration : float, optional
         Seconds; the scenario's own when left out.
     camera : Camera, optional
-        One sample every 10 ms without noise when left out.
+        The scenario's own when left out, which has no noise.
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
 
@@ -207,52 +144,46 @@ def record(
     Raises
     ------
     BehindCamera
-        If the point does not stay in front of the camera.
+        If a single point does not stay in front of the camera; several ones are not seen where they are behind it.
     ValueError
-        If the duration is not positive or shorter than one period.
+        If the duration is not positive or shorter than one period, or the motion grows without bounds.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Uniform, record, scenarios
+    >>> recording = record(scenarios.ma2005_eq35(), 20, Camera(0.01, Uniform(0.01)), seed=1)
+    >>> recording.outputs.shape
+    (2001, 2)
     """
-    camera = camera or Camera()
+    camera = camera or scenario.camera
     duration = scenario.duration if duration is None else float(duration)
-    count = int(np.floor(duration / camera.period + 1e-9)) if np.isfinite(duration) else 0
-    if count < 1:
-        raise ValueError(f"a duration of {duration} s holds no two samples {camera.period} s apart; record longer")
-    time: Array = camera.period * np.arange(count + 1, dtype=float)
+    time, view = camera.times(duration), scenario.view
     truth = scenario.coordinates(time)
-    outputs = len(scenario.surface.image_coordinates)
-    generator = seeded(seed)
-    samples = truth[:, :outputs] + camera.noise.draw(generator, (len(time), outputs))
-    lost = generator.random(len(time)) < camera.dropout
-    lost[0] = False
-    samples[lost] = np.nan
+    outputs, variance = camera.samples(scenario, time, truth, seeded(seed))
     named = "of a given generator" if isinstance(seed, np.random.Generator) else seed
     return Recording(
         time,
-        samples,
-        tuple(s.name for s in scenario.surface.image_coordinates),
-        scenario.surface,
-        scenario.motion,
+        outputs,
+        tuple(s.name for s in view.image_coordinates),
+        view,
+        scenario.known_motion,
         truth,
-        lambda times: scenario.coordinates(times)[:, :outputs],
-        camera.noise.variance,
+        _signal(scenario),
+        variance,
         source=f"{scenario.name}, {duration:g} s, {camera}, seed {named}",
     )
 
 
-def seeded(seed: Seed) -> np.random.Generator:
-    """The Mersenne Twister MT19937 with its reference seeding, whose numbers are the same in every language.
+def _signal(scene: Scene) -> Callable[[Array], Array]:
+    """The outputs at any times; the latest ones are kept, for observers ask for the same times again."""
 
-    Raises
-    ------
-    ValueError
-        If the seed is neither a Generator nor a whole number from 0 to 2^32 - 1.
-    """
-    if isinstance(seed, np.random.Generator):
-        return seed
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**32:
-        raise ValueError(f"the seed {seed!r} is neither a numpy Generator nor a whole number from 0 to 2^32 - 1")
-    bits = np.random.MT19937()
-    bits.state = cast(Any, np.random.RandomState(int(seed)).get_state(legacy=False))
-    return np.random.Generator(bits)
+    @lru_cache(maxsize=2)
+    def outputs(times: bytes) -> Array:
+        found = scene.view.outputs(scene.coordinates(np.frombuffer(times)))
+        found.setflags(write=False)
+        return found
+
+    return lambda times: outputs(np.asarray(times, dtype=float).tobytes())
 
 
 @lru_cache(maxsize=64)

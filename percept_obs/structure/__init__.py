@@ -13,11 +13,11 @@ from percept_obs.structure.simulation import (
     DepthSource,
     GivenDepth,
     PatchDepth,
+    ScaledDepthCamera,
     SizeDepth,
     StructureScenario,
     grid_patch,
     linear_view,
-    record_structure,
     seen_as,
 )
 
@@ -30,6 +30,7 @@ __all__ = [
     "ImpossibleChoice",
     "LinearView",
     "PatchDepth",
+    "ScaledDepthCamera",
     "ScaledDynamics",
     "SizeDepth",
     "StructureAndMotion",
@@ -37,7 +38,6 @@ __all__ = [
     "corollary_of",
     "grid_patch",
     "linear_view",
-    "record_structure",
     "scaled_dynamics",
     "seen_as",
 ]

@@ -16,7 +16,7 @@ from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.system.view import View
+from percept_obs.system.view import OnePoint, View
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def scaled_dynamics() -> ScaledDynamics:
 
 
 @dataclass(frozen=True)
-class StructureAndMotion:
+class StructureAndMotion(OnePoint):
     """A choice of what is unknown among the scale, the camera's and the object's velocity.
 
     The measured rate is linear in at most three unknowns theta, whatever the choice::
@@ -290,7 +290,7 @@ class StructureAndMotion:
         both = sp.ImmutableMatrix.hstack(-numerator * changed, numerator[:, OUTPUTS.index(ybar3)])
         return (both / determinant).applyfunc(sp.cancel)
 
-    def hidden(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
+    def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
         times = np.asarray(times, dtype=float)
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T

@@ -17,10 +17,11 @@ from percept_obs.observers import (
     integral_sliding_mode,
     range_identification,
 )
-from percept_obs.recording import Recording
-from percept_obs.structure import DepthSource, LinearView, StructureAndMotion, linear_view, record_structure
+from percept_obs.recording import Recording, record
+from percept_obs.structure import DepthSource, LinearView, ScaledDepthCamera, StructureAndMotion, linear_view
 from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_semigeneral, chwa2019_simulation
+from percept_obs.structure.simulation import EXACT_DEPTH
 from percept_obs.structure.stages import SemigeneralRun, semigeneral
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
@@ -100,12 +101,12 @@ def figure_runs(number: int, duration: float = 10.0, decibels: float = 100.0, se
         raise ValueError(f"there is no figure {number!r} of runs; there are {', '.join(map(str, FIGURES))}")
     set_up, sections = FIGURES[number]
     pixels = CHWA_CAMERA if set_up == "simulation" else EXPERIMENT_CAMERA
-    ratio = SignalToNoise(decibels)
+    camera_ = ScaledDepthCamera(pixels=pixels, ratio=SignalToNoise(decibels))
     curves: list[Curves] = []
     for section in sections:
         if section == "IV":
             setup = chwa2019_semigeneral(set_up, duration / 2)
-            recording = record_structure(setup, pixels=pixels, ratio=ratio, seed=seed)
+            recording = record(setup, camera=camera_, seed=seed)
             camera: Literal["kept", "given"] = "kept" if set_up == "simulation" else "given"
             both = {
                 name: semigeneral(
@@ -124,7 +125,7 @@ def figure_runs(number: int, duration: float = 10.0, decibels: float = 100.0, se
         else:
             setups = {"simulation": chwa2019_simulation, "experiment": chwa2019_experiment}
             setup = setups[set_up](section)
-            recording = record_structure(setup, duration, pixels=pixels, ratio=ratio, seed=seed)
+            recording = record(setup, duration, camera_, seed)
             curves.append(_curves(section, {n: _run(recording, make) for n, make in _MAKERS.items()}))
     return tuple(curves)
 
@@ -137,7 +138,7 @@ def _stages(runs: Mapping[str, SemigeneralRun], stage: str) -> dict[str, Run]:
 
 
 def _run(recording: Recording, make: Callable[..., Observer]) -> Run:
-    choice = recording.surface
+    choice = recording.view
     assert isinstance(choice, StructureAndMotion)
     return track(recording, make(choice.form), _FROM_ZERO, hold="first", step=1e-3)
 
@@ -154,7 +155,7 @@ def _curves(section: str, runs: Mapping[str, Run]) -> Curves:
 
 def _named(recording: Recording, coordinates: Array) -> dict[str, Array]:
     """y1, y2, y3 and the unknown quantities, from coordinates of the recording's choice."""
-    choice = recording.surface
+    choice = recording.view
     assert isinstance(choice, StructureAndMotion)
     image = {"y1": coordinates[:, 0], "y2": coordinates[:, 1], "y3": choice.inverse(coordinates)}
     return image | choice.quantities(coordinates[:, 3:])
@@ -182,7 +183,7 @@ def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
         If the recording is of something else, or has no noise.
     """
     straight = linear_view(recording)
-    choice, view = recording.surface, straight.surface
+    choice, view = recording.view, straight.view
     assert isinstance(choice, StructureAndMotion)
     assert isinstance(view, LinearView)
     variance = recording.noise_variance
@@ -209,7 +210,7 @@ def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
 
 def scale_spread(
     decibels: Sequence[float] = (100.0, 80.0, 60.0, 40.0),
-    depth: DepthSource | None = None,
+    depth: DepthSource = EXACT_DEPTH,
     windows: Sequence[tuple[float, float]] = ((9.0, 10.0),),
     seed: int = 0,
 ) -> pd.DataFrame:
@@ -219,8 +220,8 @@ def scale_spread(
     ----------
     decibels : sequence of floats
         Signal-to-noise ratios of the pixels of the simulations' camera, as `SignalToNoise` defines them.
-    depth : DepthSource, optional
-        Where ybar3 comes from; it is exact when left out.
+    depth : DepthSource
+        Where ybar3 comes from; exact when left out.
     windows : sequence of pairs of floats
         Times in seconds between which the scatter is taken.
     seed : int
@@ -237,14 +238,8 @@ def scale_spread(
     setup = chwa2019_experiment("IV.A")
     rows = []
     for ratio in decibels:
-        recording = record_structure(
-            setup,
-            max(end for _, end in windows),
-            pixels=CHWA_CAMERA,
-            ratio=SignalToNoise(ratio),
-            depth=depth,
-            seed=seed,
-        )
+        camera = ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(ratio), depth=depth)
+        recording = record(setup, max(end for _, end in windows), camera, seed)
         for name, (seen, observer) in competitors(recording).items():
             run = track(seen, observer, hold="first", step=1e-3)
             for begin, end in windows:

@@ -13,12 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from percept_obs.structure.choice import StructureAndMotion, d_s
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import rigid
+from percept_obs.system.view import OnePoint
 
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 
 
 @dataclass(frozen=True)
-class LinearView:
+class LinearView(OnePoint):
     """Scaled positions xbar = (y1, y2, 1) / ybar3 = d_s X, which obey a linear equation.
 
     With X' = [w]x X + v_p - v_c and a constant scale::
@@ -42,7 +43,7 @@ class LinearView:
         rate = motion.A * sp.ImmutableMatrix(OUTPUTS) + d_s * motion.b
         return self.choice.split(OUTPUTS, rate, self)
 
-    def outputs(self, ybar: ArrayLike) -> NDArray[np.float64]:
+    def scaled(self, ybar: ArrayLike) -> NDArray[np.float64]:
         """Scaled positions of (y1, y2, ybar3), shape (..., 3); NaN where ybar3 is not positive."""
         ybar = np.asarray(ybar, dtype=float)
         inverse = np.where(ybar[..., 2:] > 0, ybar[..., 2:], np.nan)
@@ -79,14 +80,14 @@ class LinearView:
 
     def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
         """Inverse depth in 1/m, shape (...), from xbar and theta; NaN where theta gives no positive d_s."""
-        return self.choice.inverse(self._scaled(coordinates))
+        return self.choice.inverse(self._ybar(coordinates))
 
     def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
         """Points in metres, shape (..., 3), from xbar and theta; infinite where no positive inverse depth follows."""
-        return self.choice.locate(self._scaled(coordinates))
+        return self.choice.locate(self._ybar(coordinates))
 
     @staticmethod
-    def _scaled(coordinates: ArrayLike) -> NDArray[np.float64]:
+    def _ybar(coordinates: ArrayLike) -> NDArray[np.float64]:
         """The choice's coordinates (ybar, theta) from (xbar, theta)."""
         position, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
         depth = np.where(position[..., 2:] > 0, position[..., 2:], np.nan)

@@ -9,11 +9,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Seed, seeded
+from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
 from percept_obs.structure.linear import LinearView
 from percept_obs.structure.pixels import PixelCamera, SignalToNoise, apparent_size, homography
 from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import pinhole
 
 Array = NDArray[np.float64]
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
@@ -26,7 +27,7 @@ class DepthSource(Protocol):
     def offsets(self) -> Array:
         """The object's points minus the tracked one at time 0, shape (n, 3), in metres; the tracked one comes first."""
 
-    def measure(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
+    def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """Scaled inverse depths, shape (K,).
 
         Parameters
@@ -63,7 +64,7 @@ class GivenDepth:
         """The tracked point alone."""
         return np.zeros((1, 3))
 
-    def measure(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
+    def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
         return exact + self.bias + self.drift * time + self.noise.draw(generator, exact.shape)
 
@@ -83,7 +84,7 @@ class PatchDepth:
 
     offsets: Array
 
-    def measure(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
+    def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
         first = np.append(images[0, 0], 1.0)
         return exact[0] / (homography(images[0], images)[:, 2] @ first)
@@ -103,7 +104,7 @@ class SizeDepth:
 
     offsets: Array
 
-    def measure(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
+    def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
         size = apparent_size(images)
         return exact[0] * size / size[0]
@@ -169,86 +170,93 @@ class StructureScenario:
             object.__setattr__(self, "choice", replace(self.choice, scale=self.scale))
         self.choice.known_motion(self.scenario.motion)
 
-    def ybar(self, times: ArrayLike) -> Array:
-        """Exact (y1, y2, ybar3) at some times in seconds, shape (K, 3)."""
-        return self.scenario.coordinates(times) / [1.0, 1.0, self.scale]
+    @property
+    def name(self) -> str:
+        """Name of the point's scenario."""
+        return self.scenario.name
+
+    @property
+    def duration(self) -> float:
+        """Duration of the point's scenario in seconds."""
+        return self.scenario.duration
+
+    @property
+    def view(self) -> StructureAndMotion:
+        """The choice."""
+        return self.choice
+
+    @property
+    def known_motion(self) -> Motion:
+        """What the choice knows of the motion."""
+        return self.choice.known_motion(self.scenario.motion)
+
+    @property
+    def camera(self) -> Camera:
+        """One picture a millisecond without noise."""
+        return ScaledDepthCamera()
+
+    def coordinates(self, times: ArrayLike) -> Array:
+        """True (y1, y2, ybar3) and theta at some times in seconds, shape (K, 3 + n)."""
+        ybar = self.scenario.coordinates(times) / [1.0, 1.0, self.scale]
+        return np.hstack([ybar, self.choice.theta_values(self.scale, self.scenario.motion, times)])
 
 
-def record_structure(
-    setup: StructureScenario,
-    duration: float | None = None,
-    camera: Camera | None = None,
-    pixels: PixelCamera | None = None,
-    ratio: SignalToNoise | None = None,
-    depth: DepthSource | None = None,
-    seed: Seed = 0,
-) -> Recording:
-    """Simulate what a camera measures of an object: (y1, y2, ybar3) of its tracked point.
+IMAGE_PLANE = PixelCamera((1.0, 1.0))
+"""A camera whose pixels are the image coordinates."""
+EXACT_DEPTH = GivenDepth()
+
+
+@dataclass(frozen=True)
+class ScaledDepthCamera(Camera):
+    """A camera that measures (y1, y2, ybar3) of an object's tracked point from its pictures.
 
     Parameters
     ----------
-    setup : StructureScenario
-    duration : float, optional
-        Seconds; the scenario's own when left out.
-    camera : Camera, optional
-        Period, noise in pixels, and lost pictures; one picture a millisecond without noise when left out.
-    pixels : PixelCamera, optional
+    period : float
+        Time between pictures in seconds.
+    noise : Uniform or Gaussian
+        In pixels, added to every image coordinate.
+    dropout : float
+        Probability that a picture is lost.
+    reach : float
+        Largest absolute image coordinate that is seen.
+    pixels : PixelCamera
         One whose pixels are the image coordinates when left out.  Pictures in which a point of the object is outside
         the image are lost.
     ratio : SignalToNoise, optional
-        Instead of the camera's noise; the signal is the pixel coordinates of all points of the object.
-    depth : DepthSource, optional
+        Instead of the noise; the signal is the pixel coordinates of all points of the object.
+    depth : DepthSource
         `GivenDepth` without errors when left out.
-    seed : int or numpy Generator
-        Of the noise of the pixels, then of the depth source, then of the lost pictures.
-
-    Returns
-    -------
-    Recording
-        Of the setup's choice, with its true theta and with the known part of the motion only.
-
-    Raises
-    ------
-    BehindCamera
-        If a point of the object does not stay in front of the camera.
-    ValueError
-        If the duration holds no two pictures, or a point is outside the first one.
     """
-    camera = camera or Camera(period=1e-3)
-    pixels = pixels or PixelCamera((1.0, 1.0))
-    depth = depth or GivenDepth()
-    scenario = setup.scenario
-    duration = scenario.duration if duration is None else float(duration)
-    count = int(np.floor(duration / camera.period + 1e-9)) if np.isfinite(duration) else 0
-    if count < 1:
-        raise ValueError(f"a duration of {duration} s holds no two pictures {camera.period} s apart; record longer")
-    time: Array = camera.period * np.arange(count + 1, dtype=float)
-    seen = scenario.surface.project(_object_points(scenario, depth.offsets, time))
-    exact, clean = seen[:, 0] / [1.0, 1.0, setup.scale], pixels.pixels(seen[..., :2])
-    noise = Gaussian(ratio.sigma(clean)) if ratio else camera.noise
-    generator = seeded(seed)
-    noisy = clean + noise.draw(generator, clean.shape)
-    images = pixels.image(noisy)
-    samples = np.column_stack([images[:, 0], depth.measure(images, exact[:, 2], time, generator)])
-    lost = generator.random(len(time)) < camera.dropout
-    lost[0] = False
-    lost |= ~pixels.sees(noisy).all(axis=1)
-    if lost[0]:
-        raise ValueError(f"the object is outside the first picture, at the pixels {noisy[0].round(1).tolist()}")
-    samples[lost] = np.nan
-    named = "of a given generator" if isinstance(seed, np.random.Generator) else seed
-    choice = setup.choice
-    return Recording(
-        time,
-        samples,
-        NAMES,
-        choice,
-        choice.known_motion(scenario.motion),
-        np.hstack([exact, choice.hidden(setup.scale, scenario.motion, time)]),
-        setup.ybar,
-        noise.variance / float(np.prod(pixels.focal)),
-        source=f"{scenario.name}, {duration:g} s, {camera.period:g} s apart, {ratio or noise}, {depth}, seed {named}",
-    )
+
+    period: float = 1e-3
+    pixels: PixelCamera = IMAGE_PLANE
+    ratio: SignalToNoise | None = None
+    depth: DepthSource = EXACT_DEPTH
+
+    def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
+        """See `Camera`; the noise of the pixels is drawn first, then the depth source's, then the lost pictures.
+
+        Raises
+        ------
+        BehindCamera
+            If a point of the object does not stay in front of the camera.
+        ValueError
+            If it is not an object whose structure is sought, or a point is outside the first picture.
+        """
+        if not isinstance(scene, StructureScenario):
+            raise ValueError(f"a ScaledDepthCamera measures a StructureScenario, not {scene.name!r}; take a Camera")
+        points = pinhole().project(_object_points(scene.scenario, self.depth.offsets, time))
+        clean = self.pixels.pixels(points[..., :2])
+        noise = Gaussian(self.ratio.sigma(clean)) if self.ratio else self.noise
+        noisy = clean + noise.draw(generator, clean.shape)
+        images = self.pixels.image(noisy)
+        outputs = np.column_stack([images[:, 0], self.depth.depths(images, truth[:, 2], time, generator)])
+        outside = ~self.pixels.sees(noisy).all(axis=1) | ~(np.abs(images).max(axis=(1, 2)) <= self.reach)
+        if outside[0]:
+            raise ValueError(f"the object is outside the first picture, at the pixels {noisy[0].round(1).tolist()}")
+        outputs[self.lost(generator, time.shape) | outside] = np.nan
+        return outputs, noise.variance / float(np.prod(self.pixels.focal))
 
 
 def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
@@ -282,8 +290,8 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     truth = None
     if scale is not None:
         ybar = recording.outputs if recording.truth is None else recording.truth[:, : len(OUTPUTS)]
-        truth = np.hstack([ybar, choice.hidden(scale, motion, recording.time)])
-    return replace(recording, surface=choice, motion=choice.known_motion(motion), truth=truth)
+        truth = np.hstack([ybar, choice.theta_values(scale, motion, recording.time)])
+    return replace(recording, view=choice, motion=choice.known_motion(motion), truth=truth)
 
 
 def linear_view(recording: Recording) -> Recording:
@@ -299,16 +307,16 @@ def linear_view(recording: Recording) -> Recording:
     ValueError
         If it is of something else.
     """
-    choice = recording.surface
+    choice = recording.view
     if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
         raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,
-        outputs=view.outputs(recording.outputs),
+        outputs=view.scaled(recording.outputs),
         names=tuple(symbol.name for symbol in view.image_coordinates),
-        surface=view,
-        truth=None if truth is None else np.hstack([view.outputs(truth[:, :3]), truth[:, 3:]]),
-        signal=None if signal is None else lambda times: view.outputs(signal(times)),
+        view=view,
+        truth=None if truth is None else np.hstack([view.scaled(truth[:, :3]), truth[:, 3:]]),
+        signal=None if signal is None else lambda times: view.scaled(signal(times)),
         noise_variance=None,
     )

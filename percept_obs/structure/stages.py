@@ -42,7 +42,7 @@ class SemigeneralRun:
     @cached_property
     def object_velocity(self) -> Array:
         """Estimates of v_p in m/s at the samples of the second stage, shape (K, 3)."""
-        choice = self.moving.recording.surface
+        choice = self.moving.recording.view
         assert isinstance(choice, StructureAndMotion)
         velocities = choice.quantities(self.moving.estimate[:, -len(choice.unknown) :])
         return np.stack([velocities[name] for name in _OBJECT], axis=-1)

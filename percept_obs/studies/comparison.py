@@ -185,7 +185,7 @@ def relative_distance_errors(runs: Iterable[Run | WindowEstimate], after: float,
             raise ValueError(f"the recording {recording.source!r} lasts {since[-1]:.4g} s, not {after} s")
         k = min(int(np.searchsorted(since, after - 1e-9)), len(since) - 1)
         if reference == "truth":
-            distance = 1 / float(recording.surface.inverse(run.truth[k]))
+            distance = 1 / float(recording.view.inverse(run.truth[k]))
         elif reference in recording.distances:
             distance = recording.distances[reference][k]
         else:

@@ -52,7 +52,7 @@ class WindowEstimate:
     @cached_property
     def estimate(self) -> Array:
         """Image coordinates and inverse distance, shape (K, n); all 0 where no point is determined."""
-        estimate = np.zeros((len(self.points), len(self.recording.surface.coordinates)))
+        estimate = np.zeros((len(self.points), len(self.recording.view.coordinates)))
         estimate[self.determined] = self.recording.imaging_surface.project(self.points[self.determined])
         return estimate
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, Protocol
 
@@ -11,7 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class View(Protocol):
-    """Measured and hidden coordinates of a point: an imaging surface is a view, and so is a scaled inverse depth."""
+    """Measured and hidden coordinates of what is seen.
+
+    An imaging surface is a view of one point; a scaled inverse depth is one, and so are several points of one state.
+    """
 
     @property
     def name(self) -> str:
@@ -19,7 +23,7 @@ class View(Protocol):
 
     @property
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of what can be measured."""
+        """Symbols of what can be measured of a point."""
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:
@@ -33,11 +37,36 @@ class View(Protocol):
     def values(self) -> Mapping[sp.Symbol, float]:
         """Numbers of the constants."""
 
+    @property
+    def point_shape(self) -> tuple[int, ...]:
+        """Shape of what there is once a point: () for one point, (p,) for p of them."""
+
     def fits(self, other: Any) -> bool:
         """Whether what is derived for this view holds for the other."""
 
+    def outputs(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """What a camera sees of points with the given coordinates, shape (..., m) or (..., p, m)."""
+
     def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
-        """Inverse distances in 1/m, shape (...), of points with the given coordinates."""
+        """Inverse distances in 1/m, shape (...) or (..., p), of points with the given coordinates."""
 
     def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
-        """Points of space, shape (..., 3), that have the given coordinates; infinite where none is in front."""
+        """Points of space, shape (..., 3) or (..., p, 3), that have the given coordinates."""
+
+
+class OnePoint(ABC):
+    """A view of one point whose coordinates begin with what can be measured."""
+
+    @property
+    @abstractmethod
+    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of what can be measured."""
+
+    @property
+    def point_shape(self) -> tuple[int, ...]:
+        """What there is once a point, there is once."""
+        return ()
+
+    def outputs(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """What is measured, shape (..., m): the first of the coordinates, of shape (..., n)."""
+        return np.asarray(coordinates, dtype=float)[..., : len(self.image_coordinates)]

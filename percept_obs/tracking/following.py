@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from functools import singledispatch
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +15,14 @@ from percept_obs.compile import Table, solve, vectorised
 from percept_obs.compile.equations import Symbols
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
-from percept_obs.recording import Recording, halves, step_grid
+from percept_obs.recording import Recording
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.run import Hold, Run
+from percept_obs.tracking.course import Course, Hold, course, last_samples
+from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
+Start = Mapping[str, float] | Sequence[float] | None
+Language = Literal["python", "numba"]
 
 LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
@@ -45,34 +49,38 @@ class StepTooLong(UserWarning):
 
 def track(
     recording: Recording,
-    observer: Observer,
-    start: Mapping[str, float] | Sequence[float] | None = None,
+    observer: Any,
+    start: Any = None,
     hold: Hold = "zero",
     believed: Motion | None = None,
     step: float = LONGEST_STEP,
-    language: Literal["python", "numba"] | None = None,
+    language: Language | None = None,
+    longest_hold: float = math.inf,
 ) -> Run:
     """Let an observer follow a recording.
 
     Parameters
     ----------
     recording : Recording
-    observer : Observer
+    observer : Observer, or LuenbergerObserver for several points
         On the recording's surface, with measured outputs that the recording has.
-    start : mapping of coordinate names to values, or n values, optional
+    start : mapping of coordinate names to values, n values, or FirstSight, optional
         Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
-        observer's own start (hidden).
+        observer's own start (hidden).  Several points may start at their `FirstSight`.
     hold : "zero", "first" or "exact"
         What the observer takes for the outputs between samples: the last sample; a line to the next one, which a
         running system does not have yet, so that it looks one sample ahead; or the exact signal without noise,
-        known in simulations only.  A lost sample prolongs the hold.  Estimates at the samples use no later one with
-        the line either, but those between would have to wait for it.
+        known in simulations only.  A lost sample prolongs the hold of a single point; one of several points is then
+        not seen until its next sample.  Estimates at the samples use no later one with the line either, but those
+        between would have to wait for it.
     believed : Motion, optional
         The motion that the observer believes in; the recording's own when left out.
     step : float
         Longest integration step in seconds; a sample always ends one.
     language : "python" or "numba", optional
         See `solve`.
+    longest_hold : float
+        Seconds after a sample from which on one of several points is not seen until its next one.
 
     Returns
     -------
@@ -81,45 +89,86 @@ def track(
     Raises
     ------
     DoesNotFit
-        If surface, outputs or motion do not fit the observer.
+        If view, outputs or motion do not fit the observer, or the first sample of a single point was lost.
     ValueError
-        If the start, the hold or the step make no sense.
+        If the start, the hold or a time make no sense.
 
     Warns
     -----
     StepTooLong
         If the fastest part of the observer becomes too fast for the steps.
+
+    Notes
+    -----
+    The corrections of many points grow with 1 + |y|^2.  A point that passes close beside the camera has images without
+    bound, so that no step is short enough: record it with a camera of finite `reach`.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> track(record(scenarios.ma2005_eq35(), 20), ibo(form)).settling_time() < 5
+    True
     """
-    form = observer.form
+    if hold not in ("zero", "first", "exact"):
+        raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
+    if hold == "exact" and recording.signal is None:
+        raise DoesNotFit("the exact signal between samples is known in simulations only; hold them 'zero' or 'first'")
+    for name, value in (("step", step), ("longest_hold", longest_hold)):
+        if not value > 0:
+            raise ValueError(f"the {name} is {value}; it must be positive, in seconds")
+    if not math.isfinite(step):
+        raise ValueError(f"the step is {step} s; it must be finite")
+    return follow(observer, course(recording, hold, step, longest_hold), start, believed, language)
+
+
+@singledispatch
+def follow(observer: Any, along: Course, start: Any, believed: Motion | None, language: Language | None) -> Run:
+    """Let an observer follow a course; each kind of observer registers how it does.
+
+    Raises
+    ------
+    DoesNotFit
+        If the observer cannot follow it, or is none.
+    """
+    raise DoesNotFit(f"an observer is needed, such as ibo(form), not {observer!r}")
+
+
+@follow.register
+def _follow(
+    observer: Observer,
+    along: Course,
+    start: Start,
+    believed: Motion | None,
+    language: Language | None,
+) -> Run:
+    form, recording, index = observer.form, along.recording, along.index
     believed = believed or recording.motion
-    _refuse_misfits(recording, observer, believed, hold, step)
+    _refuse_misfits(along, observer, believed)
     columns = [recording.names.index(name) for name in form.measured]
     samples = recording.outputs[:, columns]
-    grid, index = step_grid(recording.time, step)
-    _warn_of_long_steps(observer, grid)
-    known = _known(recording, believed, grid)
+    _warn_of_long_steps(observer, along.grid)
+    known = _known(along, believed)
     initial = observer.initial_state(
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
         _named(start, form.coordinates),
         dict(zip(form.parameters, known[0].tolist(), strict=True)),
     )
-    table = Table(
-        np.diff(grid), _held(recording, columns, grid, index, hold), known, _arriving(samples, index, len(grid))
-    )
+    table = Table(along.steps, along.held(filled=True)[..., columns], known, along.arriving(samples))
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
     at_samples = known if len(known) == 1 else known[2 * index]
-    inputs = (*states.T, *(_last_sample(column) for column in samples.T), *at_samples.T)
-    estimate, lacking = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
+    inputs = (*states.T, *last_samples(samples).T, *at_samples.T)
+    estimate, unobservable = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
     return Run(
         recording,
         observer,
         estimate,
         states,
-        grid[trace.resets],
-        None if trace.diverged is None else float(grid[trace.diverged]),
-        hold,
-        lacking,
+        None if trace.diverged is None else float(along.grid[trace.diverged]),
+        along.hold,
+        along.grid[trace.resets],
+        unobservable,
     )
 
 
@@ -141,7 +190,7 @@ def _estimates(
     form = observer.form
     symbols = (*observer.equations.state, *form.x1, *form.parameters)
     measured, hidden = (np.array([form.coordinates.index(symbol) for symbol in x]) for x in (form.x1, form.x2))
-    lacking = np.zeros(len(time), dtype=int)
+    unobservable = np.zeros(len(time), dtype=int)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
         estimate = np.stack(vectorised(symbols, observer.estimate, observer.gain_values)(*inputs), axis=-1)
         if observer.gaps:
@@ -150,9 +199,9 @@ def _estimates(
             begun = np.broadcast_to(first - estimate[0, measured], (len(time), len(measured)))
             found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
             for k, holds in reversed(list(enumerate(found, 1))):
-                lacking[holds != 0] = k
-            estimate[np.ix_(lacking > 0, hidden)] = np.nan
-    return estimate, lacking
+                unobservable[holds != 0] = k
+            estimate[np.ix_(unobservable > 0, hidden)] = np.nan
+    return estimate, unobservable
 
 
 def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
@@ -175,16 +224,17 @@ def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
                 shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
             ),
             StepTooLong,
-            stacklevel=3,
+            stacklevel=5,
         )
 
 
-def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, hold: str, step: float) -> None:
-    form, surface = observer.form, recording.surface
-    if form.surface is None or not form.surface.fits(surface):
+def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None:
+    form, recording = observer.form, along.recording
+    view = recording.view
+    if form.surface is None or not form.surface.fits(view):
         raise DoesNotFit(
             f"the {observer.name} observer was made for the {form.surface.name if form.surface else 'no'} surface "
-            f"{dict(form.values)}, but the recording was seen on the {surface.name} {dict(surface.values)}; derive the "
+            f"{dict(form.values)}, but the recording was seen on the {view.name} {dict(view.values)}; derive the "
             "observer for the recording's surface"
         )
     missing = [name for name in form.measured if name not in recording.names]
@@ -193,7 +243,15 @@ def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, 
             f"the observer measures {', '.join(form.measured)}, but the recording has only "
             f"{', '.join(recording.names)}; measure less: system.measure({', '.join(map(repr, recording.names))})"
         )
-    expected = (*believed.parameters, *surface.parameters)
+    lost = [n for n in form.measured if np.isnan(recording.outputs[0, recording.names.index(n)])]
+    if lost:
+        raise DoesNotFit(
+            f"the first sample of {', '.join(lost)} was lost, but the {observer.name} observer starts from it; begin "
+            "where all measured outputs are seen: recording.between(begin, end)"
+        )
+    if along.longest_hold < math.inf:
+        raise DoesNotFit(f"the {observer.name} observer needs its outputs at all times; leave longest_hold out")
+    expected = (*believed.parameters, *view.parameters)
     if form.parameters != expected:
         raise DoesNotFit(
             f"the observer was derived for a motion with {', '.join(map(str, form.parameters))}, but the motion that "
@@ -204,12 +262,6 @@ def _refuse_misfits(recording: Recording, observer: Observer, believed: Motion, 
             f"the {observer.name} observer needs a motion with constant coefficients, but the one that it is to "
             "believe varies; use an observer with an innovation"
         )
-    if hold not in ("zero", "first", "exact"):
-        raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
-    if hold == "exact" and recording.signal is None:
-        raise DoesNotFit("the exact signal between samples is known in simulations only; hold them 'zero' or 'first'")
-    if not (math.isfinite(step) and step > 0):
-        raise ValueError(f"the step is {step} s; it must be positive")
 
 
 def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
@@ -222,40 +274,8 @@ def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Sym
     return dict(zip(names, map(float, start), strict=True))
 
 
-def _held(recording: Recording, columns: list[int], grid: Array, index: NDArray[np.int_], hold: Hold) -> Array:
-    """Measured outputs at the start, the middle and the end of every step, shape (N, 3, m)."""
-    if hold == "exact" and recording.signal is not None:
-        exact = recording.signal(halves(grid))[:, columns]
-        return np.stack([exact[:-1:2], exact[1::2], exact[2::2]], axis=1)
-    times = halves(grid)
-    held = []
-    for column in recording.outputs[:, columns].T:
-        if hold == "zero":
-            interval = np.repeat(np.arange(len(index) - 1), np.diff(index))
-            value = _last_sample(column)[interval]
-            held.append(np.stack([value, value, value], axis=1))
-        else:
-            there = np.isfinite(column)
-            line = np.interp(times, recording.time[there], column[there])
-            held.append(np.stack([line[:-1:2], line[1::2], line[2::2]], axis=1))
-    return np.stack(held, axis=2)
-
-
-def _last_sample(column: Array) -> Array:
-    """Each sample, or where it was lost the last one before it."""
-    return column[np.maximum.accumulate(np.where(np.isfinite(column), np.arange(len(column)), 0))]
-
-
-def _known(recording: Recording, believed: Motion, grid: Array) -> Array:
-    """Parameters of motion and surface at the starts, middles and ends of the steps."""
-    rows = believed.known(halves(grid))
-    surface = recording.surface
-    shape = [surface.values[symbol] for symbol in surface.parameters]
+def _known(along: Course, believed: Motion) -> Array:
+    """Parameters of motion and view at the starts, middles and ends of the steps."""
+    rows, view = along.known(believed), along.recording.view
+    shape = [view.values[symbol] for symbol in view.parameters]
     return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])
-
-
-def _arriving(samples: Array, index: NDArray[np.int_], count: int) -> Array:
-    """Samples at the steps' ends at which they arrive, NaN at the others."""
-    arriving = np.full((count, samples.shape[1]), np.nan)
-    arriving[index] = samples
-    return arriving

@@ -8,31 +8,34 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.compile import vectorised
-from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
+from percept_obs.system.view import View
+from percept_obs.tracking.course import Hold
 
 Array = NDArray[np.float64]
-Hold = Literal["zero", "first", "exact"]
+
+REMEDY = "choose smaller gains or shorter steps"
+"""What to do about a run that diverged."""
 
 SETTLED_PART = 0.1
 """Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
 
 VERDICTS = MappingProxyType(
     {
-        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; choose smaller gains or shorter steps",
+        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
         "followed": "followed {time} s; no truth to compare with",
-        "outside": "not converged: the error of {hidden} ends at {error}, outside {tolerance}",
+        "outside": "not converged: the error of {judged} ends at {error}, outside {tolerance}",
         "late": (
-            "not converged yet: the error of {hidden} is within {tolerance} only since {time} s, too short before the "
+            "not converged yet: the error of {judged} is within {tolerance} only since {time} s, too short before the "
             "end to be sure of"
         ),
-        "converged": "converged: the error of {hidden} stays within {tolerance} after {time} s",
+        "converged": "converged: the error of {judged} stays within {tolerance} after {time} s",
         "reset once": "; driven to the bound and reset once, at {time} s",
         "reset often": "; driven to the bound and reset {count} times, first at {time} s",
         "gap": "; no estimate from {begin} to {end} s, for {reason}",
@@ -49,34 +52,39 @@ class Run:
     Parameters
     ----------
     recording : Recording
-    observer : Observer
+    observer : Observer, or LuenbergerObserver for several points
     estimate : array of shape (K, n)
-        Estimates of the surface's coordinates; NaN from `diverged_at` on.
+        Estimates of the view's coordinates; NaN from `diverged_at` on.
     state : array of shape (K, s)
         The observer's state.
-    resets : array
-        Times, in seconds, at which the estimate was reset.
     diverged_at : float or None
         When the state stopped being finite, in seconds.
     hold : "zero", "first" or "exact"
         How samples were held between them.
-    lacking : array of shape (K,) of int
+    resets : array
+        Times, in seconds, at which the estimate was reset.
+    unobservable : array of shape (K,) of int
         Which of `Observer.gaps` leaves the hidden coordinates without an estimate, counted from 1; 0 where none does.
     """
 
     recording: Recording
-    observer: Observer
+    observer: Any
     estimate: Array
     state: Array
-    resets: Array
     diverged_at: float | None
     hold: Hold
-    lacking: NDArray[np.int_]
+    resets: Array
+    unobservable: NDArray[np.int_]
 
     @property
     def time(self) -> Array:
         """Times of the samples in seconds, shape (K,)."""
         return self.recording.time
+
+    @property
+    def view(self) -> View:
+        """What the estimated coordinates are coordinates of."""
+        return self.recording.view
 
     @property
     def truth(self) -> Array:
@@ -98,11 +106,16 @@ class Run:
 
     @cached_property
     def innovation(self) -> Array:
-        """Samples minus estimates of the measured outputs, shape (K, n1); NaN where a sample was lost."""
-        names = [symbol.name for symbol in self.observer.form.coordinates]
-        measured = self.observer.form.measured
-        columns = [self.recording.names.index(name) for name in measured]
-        return self.recording.outputs[:, columns] - self.estimate[:, [names.index(name) for name in measured]]
+        """Samples minus estimates of the measured outputs, shape (K, n1) or (K, p, m); NaN where either is not seen."""
+        outputs = [symbol.name for symbol in self.view.image_coordinates]
+        measured = self.measured
+        samples = self.recording.outputs[..., [self.recording.names.index(name) for name in measured]]
+        return samples - self.view.outputs(self.estimate)[..., [outputs.index(name) for name in measured]]
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the outputs that the observer used."""
+        return tuple(self.observer.form.measured)
 
     @cached_property
     def covariance(self) -> Array:
@@ -143,23 +156,39 @@ class Run:
 
     @cached_property
     def points(self) -> Array:
-        """Estimated positions in metres, shape (K, 3); see `distance` for those that are not finite."""
-        known = np.isfinite(self.estimate).all(axis=1, keepdims=True)
-        return np.where(known, self.recording.surface.locate(self.estimate), np.nan)
+        """Estimated positions in metres, shape (K, 3) or (K, p, 3); see `distance` for those that are not finite."""
+        known = np.isfinite(self.estimate).all(axis=1)
+        located = self.view.locate(self.estimate)
+        return np.where(known.reshape(-1, *(1,) * (located.ndim - 1)), located, np.nan)
 
     @cached_property
     def distance(self) -> Array:
-        """Estimated depth or range in metres, shape (K,).
+        """Estimated depth or range in metres, shape (K,) or (K, p).
 
         Infinite where the estimated inverse distance is not positive, so that the point would not be in front of the
         camera; NaN where there is no finite estimate, as from `diverged_at` on.
         """
-        inverse = self.recording.surface.inverse(self.estimate)
+        inverse = self.view.inverse(self.estimate)
         none = np.where(np.isfinite(inverse), np.inf, np.nan)
         return np.divide(1, inverse, out=none, where=np.isfinite(inverse) & (inverse > 0))
 
     @cached_property
-    def gaps(self) -> list[tuple[float, float]]:
+    def deviation(self) -> Array:
+        """What the verdict judges, shape (K,): the largest error of a hidden coordinate."""
+        return np.asarray(np.abs(self.error[:, self._columns(())]).max(axis=1))
+
+    @property
+    def remedy(self) -> str:
+        """What to do about it if it diverged."""
+        return REMEDY
+
+    @property
+    def judged(self) -> str:
+        """What the verdict judges, in words."""
+        return ", ".join(self.observer.form.hidden)
+
+    @cached_property
+    def unobservable_intervals(self) -> list[tuple[float, float]]:
         """Times in seconds of every gap's first and last sample, where the hidden coordinates have no estimate.
 
         Their estimates are NaN there, although the observer runs on; `reasons` says why.
@@ -168,14 +197,14 @@ class Run:
 
     @property
     def reasons(self) -> list[str]:
-        """Why each of the `gaps` is there."""
-        return [self.observer.gaps[self.lacking[k] - 1].reason for k, _ in self._stretches]
+        """Why each of the `unobservable_intervals` is there."""
+        return [self.observer.gaps[self.unobservable[k] - 1].reason for k, _ in self._stretches]
 
     @cached_property
     def _stretches(self) -> list[tuple[int, int]]:
         """First sample of every gap, and the first one after it."""
-        edges = np.flatnonzero(np.diff(self.lacking, prepend=0, append=0))
-        return [(int(k), int(end)) for k, end in pairwise(edges) if self.lacking[k]]
+        edges = np.flatnonzero(np.diff(self.unobservable, prepend=0, append=0))
+        return [(int(k), int(end)) for k, end in pairwise(edges) if self.unobservable[k]]
 
     def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
         """When the error entered the tolerance for good.
@@ -194,17 +223,18 @@ class Run:
         """
         if not tolerance > 0:
             raise ValueError(f"the tolerance is {tolerance}; it must be positive")
-        outside: NDArray[np.bool_] = ~np.all(np.abs(self.error[:, self._columns(names)]) < tolerance, axis=1)
-        if outside[-1]:
+        error = np.abs(self.error[:, self._columns(names)]).max(axis=1) if names else self.deviation
+        outside, times = ~(error[self._known] < tolerance), self.time[self._known]
+        if not len(times) or outside[-1]:
             return math.inf
         last = np.flatnonzero(outside)
-        return float(self.time[last[-1] + 1] - self.time[0]) if len(last) else 0.0
+        return float(times[last[-1] + 1] - self.time[0]) if len(last) else 0.0
 
     def rms(self, begin: float = -math.inf, end: float = math.inf, *names: str) -> float:
         """Root mean square of the error between two times, over the hidden coordinates or those named."""
-        part = (self.time >= begin) & (self.time <= end)
+        part = (self.time >= begin) & (self.time <= end) & self._known
         if not part.any():
-            raise ValueError(f"no sample lies between {begin} and {end} s")
+            raise ValueError(f"no sample with a truth lies between {begin} and {end} s")
         return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
 
     def verdict(self, tolerance: float = 0.05) -> str:
@@ -213,19 +243,19 @@ class Run:
         An estimate has converged if its error stayed within the tolerance for at least the last tenth of the run.
         """
         if self.diverged_at is not None:
-            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}")
+            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}", remedy=self.remedy)
         besides = ""
         if len(self.resets):
             which = "reset once" if len(self.resets) == 1 else "reset often"
             besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
         for reason in dict.fromkeys(self.reasons):
-            gaps = [gap for gap, why in zip(self.gaps, self.reasons, strict=True) if why == reason]
+            gaps = [gap for gap, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
             begin, end = (f"{time:.3g}" for time in gaps[0])
             besides += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
             if len(gaps) > 1:
                 besides += VERDICTS["more gaps"].format(count=len(gaps) - 1)
         length = float(self.time[-1] - self.time[0])
-        if self.recording.truth is None:
+        if self.recording.truth is None or not self._known.any():
             return VERDICTS["followed"].format(time=f"{length:.3g}") + besides
         settled = self.settling_time(tolerance)
         if math.isinf(settled):
@@ -233,12 +263,17 @@ class Run:
         else:
             which = "converged" if length - settled >= SETTLED_PART * length else "late"
         words = VERDICTS[which].format(
-            hidden=", ".join(self.observer.form.hidden),
-            error=f"{float(np.abs(self.error[-1, self._columns(())]).max()):.2g}",
+            judged=self.judged,
+            error=f"{self.deviation[self._known][-1]:.2g}",
             tolerance=f"{tolerance:g}",
             time=f"{settled:.3g}",
         )
         return words + besides
+
+    @property
+    def _known(self) -> NDArray[np.bool_]:
+        """Samples at which the truth is known."""
+        return np.asarray(np.isfinite(self.truth).all(axis=1))
 
     def _columns(self, names: Sequence[str]) -> list[int]:
         known = [symbol.name for symbol in self.observer.form.coordinates]

@@ -13,7 +13,7 @@ import time
 
 import numpy as np
 
-from percept_obs import linear, luenberger, record_points, track_points
+from percept_obs import linear, luenberger, record, track
 from percept_obs.points import PointsForm, PointsScenario
 from percept_obs.points.kernel import advance, arrays
 from percept_obs.points.scenarios import moving_body
@@ -39,9 +39,9 @@ def full(states):
 
 def loop(recording, observer):
     """The compiled loop alone, for all steps."""
-    form = recording.form
+    form = recording.view
     n = form.states
-    known = form.values(np.linspace(0, 60, 2 * STEPS + 1))
+    known = form.numbers(np.linspace(0, 60, 2 * STEPS + 1))
     images = np.repeat(recording.outputs[:-1, None], 3, axis=1)
     tables = (np.full(STEPS, 0.01), known, np.linalg.inv(observer.weight.at(0.0)), images)
     law = (False, 0.0, 0.0, np.zeros((n, n)))
@@ -55,17 +55,17 @@ def loop(recording, observer):
 def main() -> int:
     small = PointsScenario("one point", PointsForm(linear(np.zeros((3, 3)), np.ones(3)), np.eye(3)), [0, 0, 2], 1)
     begin = time.perf_counter()
-    track_points(record_points(small), luenberger(small.form), language="numba")
+    track(record(small), luenberger(small.form), language="numba")
     compiling = time.perf_counter() - begin
     print(f"the loop compiled with the first run in {compiling:.2f} s")
     print("points  states   first run   later runs   the loop alone, a step")
     first, later, alone = {}, {}, {}
     for points in COUNTS:
-        recording = record_points(moving_body(points))
-        observer = luenberger(recording.form, full(3 * points))
+        recording = record(moving_body(points))
+        observer = luenberger(recording.view, full(3 * points))
 
         def follow(recording=recording, observer=observer):
-            return track_points(recording, observer, language="numba")
+            return track(recording, observer, language="numba")
 
         first[points] = best_of(follow, 1)
         later[points] = best_of(follow, 3)

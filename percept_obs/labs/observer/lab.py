@@ -216,7 +216,7 @@ def _simulated_once(text: str) -> Recording:
 def _fitting(recording: Recording) -> Settings:
     """Settings that a recording brings with it."""
     duration = float(np.ptp(recording.time))
-    surface = next(kind for kind in SURFACES if recording.surface.fits(SURFACES[kind]()))
+    surface = next(kind for kind in SURFACES if recording.view.fits(SURFACES[kind]()))
     return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
 
 
@@ -290,8 +290,8 @@ def _check_choices(settings: Settings, recording: Recording | None) -> None:
     one_of({"noise kind": settings["noise"].get("kind")}, "noise kind", NOISES)
     one_of({"start mode": settings["start"].get("mode")}, "start mode", STARTS)
     one_of(settings, "hold", HOLDS if recording is None else HOLDS[:2])
-    if recording is not None and not recording.surface.fits(SURFACES[surface]()):
-        raise ValueError(f"the recording was seen on the {recording.surface.name}, not on the {surface}")
+    if recording is not None and not recording.view.fits(SURFACES[surface]()):
+        raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
     if recording is not None and settings["believed"] is not None:
         raise ValueError("a recording's motion varies and is measured; believed must be None with it")
 

@@ -37,7 +37,7 @@ def with_affine_motion(name: str, recording: Recording) -> Recording:
         times = np.unique(np.concatenate([times, motion.signal.times[inside]]))
     entries = vectorised(motion.parameters, [*motion.A, *motion.b])(*motion.known(times).T)
     rows = np.stack(entries, axis=-1)
-    if not any(recording.surface.fits(SURFACES[kind]()) for kind in ("pinhole", "chained")):
-        raise ValueError(f"the recording {name!r} was seen on the {recording.surface.name}; the lab knows the pinhole")
+    if not any(recording.view.fits(SURFACES[kind]()) for kind in ("pinhole", "chained")):
+        raise ValueError(f"the recording {name!r} was seen on the {recording.view.name}; the lab knows the pinhole")
     A, b = rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]
     return replace(recording, motion=affine(A[0], b[0]) if constant else affine(A, b, times))

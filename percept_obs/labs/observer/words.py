@@ -113,7 +113,7 @@ def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
     late = np.flatnonzero(run.time >= run.time[-1] - window)
     part = late[np.unique(np.linspace(0, len(late) - 1, INSTANTS).astype(int))]
     known = np.broadcast_to(recording.motion.known(run.time[part]), (len(part), 12))
-    shape = [recording.surface.values[s] for s in recording.surface.parameters]
+    shape = [recording.view.values[s] for s in recording.view.parameters]
     gains = {gain.name: gain.value for gain in observer.gains}
     others = run.state[part, size:]
     entries = _at_the_truth(structure)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())

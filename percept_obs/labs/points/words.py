@@ -8,6 +8,7 @@ import numpy as np
 
 from percept_obs.observability.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points import PointsRun
+from percept_obs.points.form import points_form
 from percept_obs.points.ray import ray_turning
 
 BOUND_WINDOW = 4.0
@@ -61,7 +62,7 @@ def _turning(run: PointsRun) -> str:
     """How fast rays turn, which no constant P outruns."""
     recording = run.recording
     assert recording.truth is not None
-    turning = ray_turning(recording.form, recording.time, recording.truth).mean(axis=0)
+    turning = ray_turning(points_form(recording), recording.time, recording.truth).mean(axis=0)
     slowest = int(np.argmin(turning))
     if turning[slowest] < STILL:
         return f"The input turns no ray of point {slowest + 1}, so that nothing carries an error along it across."

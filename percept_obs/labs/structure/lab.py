@@ -29,15 +29,15 @@ from percept_obs.labs.structure.texts import (
     observer_of,
     refused,
 )
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform
+from percept_obs.recording import Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.structure import (
     COROLLARIES,
     QUANTITIES,
     GivenDepth,
     ImpossibleChoice,
+    ScaledDepthCamera,
     StructureAndMotion,
     StructureScenario,
-    record_structure,
 )
 from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.system.motion import Motion, rigid
@@ -247,13 +247,9 @@ def _recorded_once(text: str, choice: StructureAndMotion) -> Recording:
     )
     setup = StructureScenario(scenario, settings["scale"], choice)
     make, period = NOISES[settings["noise"]["kind"]], settings["period"]
-    simulate = partial(
-        record_structure,
-        setup,
-        camera=Camera(period, make(settings["noise"]["size"])),
-        depth=GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"]),
-        seed=settings["seed"],
-    )
+    depth = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])
+    camera = ScaledDepthCamera(period, make(settings["noise"]["size"]), depth=depth)
+    simulate = partial(record, setup, camera=camera, seed=settings["seed"])
     try:
         return simulate(settings["duration"])
     except BehindCamera:
@@ -263,7 +259,7 @@ def _recorded_once(text: str, choice: StructureAndMotion) -> Recording:
 
 def _late_errors(title: str, run: Run) -> list[str]:
     """How far the estimates of the unknown quantities lie from the truth over the last tenth of the run."""
-    choice = run.recording.surface
+    choice = run.recording.view
     assert isinstance(choice, StructureAndMotion)
     late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
     found, true = (choice.quantities(values[late, 3:]) for values in (run.estimate, run.truth))

@@ -14,6 +14,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile import vectorised
+from percept_obs.system.view import OnePoint
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
@@ -23,7 +24,7 @@ class BehindCamera(ValueError):
 
 
 @dataclass(frozen=True)
-class ImagingSurface:
+class ImagingSurface(OnePoint):
     """A chart of an imaging surface through which a camera sees points of space.
 
     With the ray m(y) and the inverse distance eta, the point seen at y is m(y) / eta.

@@ -1,0 +1,105 @@
+"""A state in motion whose points a camera may see."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.points.form import PointsForm
+from percept_obs.points.kernel import advance, arrays, choose
+from percept_obs.recording import PLANT_STEP, Camera, halves, step_grid
+from percept_obs.system.motion import Motion
+
+Array = NDArray[np.float64]
+
+
+class LeavesEveryBound(ValueError):
+    """The state grows without end, so that nothing can be recorded of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class PointsScenario:
+    """A state in motion whose points a camera may see.
+
+    Parameters
+    ----------
+    name : str
+    form : PointsForm
+        With numbers for its motion.
+    state : sequence of n numbers
+        The state at time 0.
+    duration : float
+        In seconds.
+    source : str
+        Where the set-up comes from.
+
+    Raises
+    ------
+    ValueError
+        If the state has another size or is not finite, or the duration is not positive.
+    """
+
+    name: str
+    form: PointsForm
+    state: Sequence[float]
+    duration: float
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        state = np.asarray(self.state, dtype=float)
+        if state.shape != (self.form.states,) or not np.isfinite(state).all():
+            raise ValueError(
+                f"the state of {self.name!r} has shape {state.shape}; expected {self.form.states} finite numbers: "
+                f"{', '.join(self.form.names)}"
+            )
+        object.__setattr__(self, "state", tuple(state.tolist()))
+        if not (np.isfinite(self.duration) and self.duration > 0):
+            raise ValueError(f"the duration is {self.duration} s; it must be positive")
+
+    @property
+    def view(self) -> PointsForm:
+        """The form."""
+        return self.form
+
+    @property
+    def known_motion(self) -> Motion:
+        """The form's motion."""
+        return self.form.motion
+
+    @property
+    def camera(self) -> Camera:
+        """One sample every 10 ms without noise."""
+        return Camera()
+
+    def coordinates(self, times: ArrayLike) -> Array:
+        """States at times from 0 on that do not decrease, shape (K, n), integrated with steps of `PLANT_STEP` at most.
+
+        Raises
+        ------
+        LeavesEveryBound
+            If the state grows beyond all bounds before.
+        """
+        times = np.asarray(times, dtype=float)
+        form = self.form
+        grid, index = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
+        count = len(grid) - 1
+        unseen = np.full((count, 3, form.points, len(form.image_coordinates)), np.nan)
+        path, _, diverged = advance(
+            arrays(form, np.arange(form.states), np.arange(form.points)),
+            (False, 0.0, 0.0, np.zeros((1, 1))),
+            np.array(self.state),
+            np.zeros((1, 1)),
+            np.diff(grid),
+            form.numbers(halves(grid)),
+            np.eye(form.states)[None],
+            unseen,
+            choose(None, count * form.states),
+        )
+        if diverged is not None:
+            raise LeavesEveryBound(
+                f"the state of {self.name!r} leaves every bound at {grid[diverged]:.4g} s; shorten the duration"
+            )
+        return path[index[1:]]

@@ -1,0 +1,187 @@
+"""How a scene is sampled: a camera's clock, its noise, and what it loses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percept_obs.system.motion import Motion
+from percept_obs.system.view import View
+
+Array = NDArray[np.float64]
+Seed = np.random.Generator | int
+
+
+def _check_spread(name: str, value: float) -> None:
+    if not (np.isfinite(value) and value >= 0):
+        raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Uniform noise between -bound and bound."""
+
+    bound: float
+
+    def __post_init__(self) -> None:
+        _check_spread("bound", self.bound)
+
+    @property
+    def variance(self) -> float:
+        """bound^2 / 3."""
+        return self.bound**2 / 3
+
+    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+        """Independent samples."""
+        return generator.uniform(-self.bound, self.bound, shape)
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """Gaussian noise of standard deviation sigma."""
+
+    sigma: float
+
+    def __post_init__(self) -> None:
+        _check_spread("sigma", self.sigma)
+
+    @property
+    def variance(self) -> float:
+        """sigma^2."""
+        return self.sigma**2
+
+    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+        """Independent samples, by the Box-Muller transform of two uniform ones."""
+        first, second = generator.random((*shape, 2)).transpose(-1, *range(len(shape)))
+        return self.sigma * np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
+
+
+Noise = Uniform | Gaussian
+NO_NOISE = Uniform(0.0)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """How a scene is sampled.
+
+    Parameters
+    ----------
+    period : float
+        Time between samples in seconds.
+    noise : Uniform or Gaussian
+        Added to every output, independently.
+    dropout : float
+        Probability that a sample of a point is lost, from 0 to below 1; the first one never is.
+    reach : float
+        Largest absolute image coordinate that is seen; a point outside is not.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    """
+
+    period: float = 0.01
+    noise: Noise = NO_NOISE
+    dropout: float = 0.0
+    reach: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.period) and self.period > 0):
+            raise ValueError(f"the camera's period is {self.period} s; it must be positive")
+        if not 0 <= self.dropout < 1:
+            raise ValueError(f"the camera's dropout is {self.dropout}; it is a probability, 0 or more and below 1")
+        if not self.reach > 0:
+            raise ValueError(f"the camera's reach is {self.reach}; the largest coordinate it sees must be positive")
+
+    def times(self, duration: float) -> Array:
+        """Times of the samples in seconds, from 0 on.
+
+        Raises
+        ------
+        ValueError
+            If the duration holds no two of them.
+        """
+        count = int(np.floor(duration / self.period + 1e-9)) if np.isfinite(duration) else 0
+        if count < 1:
+            raise ValueError(f"a duration of {duration} s holds no two samples {self.period} s apart; record longer")
+        return self.period * np.arange(count + 1, dtype=float)
+
+    def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
+        """Samples of a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+        time : array of shape (K,)
+            Seconds.
+        truth : array of shape (K, n)
+            Coordinates of the scene's view.
+        generator : numpy Generator
+            Of the noise and then of the lost samples.
+
+        Returns
+        -------
+        outputs : array of shape (K, ..., m)
+            NaN where a point is not seen.
+        variance : float
+            Of the noise in each output.
+        """
+        exact = scene.view.outputs(truth)
+        outputs = exact + self.noise.draw(generator, exact.shape)
+        lost = self.lost(generator, exact.shape[:-1])
+        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach)] = np.nan
+        return outputs, self.noise.variance
+
+    def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+        """Which samples are lost by chance, the first ones never."""
+        lost = generator.random(shape) < self.dropout
+        lost[0] = False
+        return lost
+
+
+class Scene(Protocol):
+    """What a camera can be pointed at: a point, the points of a state, or an object whose structure is sought."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    @property
+    def duration(self) -> float:
+        """How long it lasts, in seconds."""
+
+    @property
+    def view(self) -> View:
+        """As what it is seen."""
+
+    @property
+    def known_motion(self) -> Motion:
+        """What an observer may know of the motion."""
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that is taken if none is asked for."""
+
+    def coordinates(self, times: ArrayLike) -> Array:
+        """True coordinates of the view at some times in seconds, shape (K, n)."""
+
+
+def seeded(seed: Seed) -> np.random.Generator:
+    """The Mersenne Twister MT19937 with its reference seeding, whose numbers are the same in every language.
+
+    Raises
+    ------
+    ValueError
+        If the seed is neither a Generator nor a whole number from 0 to 2^32 - 1.
+    """
+    if isinstance(seed, np.random.Generator):
+        return seed
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**32:
+        raise ValueError(f"the seed {seed!r} is neither a numpy Generator nor a whole number from 0 to 2^32 - 1")
+    bits = np.random.MT19937()
+    bits.state = cast(Any, np.random.RandomState(int(seed)).get_state(legacy=False))
+    return np.random.Generator(bits)

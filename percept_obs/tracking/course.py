@@ -1,0 +1,106 @@
+"""The table of known signals: what an observer may know at the starts, middles and ends of its steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percept_obs.recording import Recording, halves, step_grid
+from percept_obs.system.motion import Motion
+
+Array = NDArray[np.float64]
+Hold = Literal["zero", "first", "exact"]
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A recording, laid out in steps for an observer that follows it.
+
+    Parameters
+    ----------
+    recording : Recording
+    grid : array of shape (N + 1,)
+        Ends of the steps in seconds, from the first sample to the last.
+    index : integer array of shape (K,)
+        Where the samples stand in the grid.
+    hold : "zero", "first" or "exact"
+        What is taken for the outputs between samples.
+    longest_hold : float
+        Seconds after a sample from which on it is not held.
+    """
+
+    recording: Recording
+    grid: Array
+    index: NDArray[np.int_]
+    hold: Hold
+    longest_hold: float
+
+    @property
+    def steps(self) -> Array:
+        """Lengths of the steps in seconds, shape (N,)."""
+        return np.diff(self.grid)
+
+    def known(self, motion: Motion) -> Array:
+        """The motion's parameters at the starts, middles and ends, shape (2 N + 1, p) or (1, p)."""
+        return motion.known(halves(self.grid))
+
+    def arriving(self, samples: Array) -> Array:
+        """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
+        arriving = np.full((len(self.grid), samples.shape[1]), np.nan)
+        arriving[self.index] = samples
+        return arriving
+
+    def held(self, filled: bool) -> Array:
+        """Outputs at the start, the middle and the end of every step, shape (N, 3, ...).
+
+        Parameters
+        ----------
+        filled : bool
+            Whether lost samples are bridged by their neighbours; otherwise what is not seen is NaN.
+        """
+        recording, time = self.recording, self.recording.time
+        outputs = _bridged(recording, self.hold) if filled else recording.outputs
+        interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
+        before, after = outputs[interval], outputs[interval + 1]
+        if self.hold == "zero":
+            held = np.repeat(before[:, None], 3, axis=1)
+        elif self.hold == "first":
+            begin, length = time[interval], np.diff(time)[interval]
+            places = np.stack([self.grid[:-1], (self.grid[:-1] + self.grid[1:]) / 2, self.grid[1:]], axis=1)
+            share = (places - begin[:, None]) / length[:, None]
+            share = share.reshape(*share.shape, *(1,) * (outputs.ndim - 1))
+            held = (1 - share) * before[:, None] + share * after[:, None]
+        else:
+            assert recording.signal is not None
+            exact = recording.signal(halves(self.grid))
+            held = np.stack([exact[:-1:2], exact[1::2], exact[2::2]], axis=1)
+            held = np.where(np.isnan(before[:, None]), np.nan, held)
+        since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
+        held[since >= self.longest_hold] = np.nan
+        return np.asarray(held)
+
+
+def course(recording: Recording, hold: Hold, step: float, longest_hold: float) -> Course:
+    """Divide the intervals between samples into equal steps, no longer than given in seconds."""
+    return Course(recording, *step_grid(recording.time, step), hold, longest_hold)
+
+
+def last_samples(columns: Array) -> Array:
+    """Each sample of columns of shape (K, m), or where it was lost the last one before it."""
+    numbers = np.arange(len(columns))[:, None]
+    last = np.maximum.accumulate(np.where(np.isfinite(columns), numbers, 0))
+    return np.take_along_axis(columns, last, axis=0)
+
+
+def _bridged(recording: Recording, hold: Hold) -> Array:
+    """The outputs with lost samples replaced: by the last one, or on the line between their neighbours."""
+    if hold != "first":
+        return last_samples(recording.outputs)
+    columns = []
+    for column in recording.outputs.T:
+        there = np.isfinite(column)
+        columns.append(np.interp(recording.time, recording.time[there], column[there]) if there.any() else column)
+    return np.stack(columns, axis=-1)
