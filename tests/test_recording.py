@@ -207,7 +207,7 @@ def test_a_point_that_leaves_every_bound_is_refused():
         (lambda: Camera(dropout=1), "probability"),
         (lambda: Uniform(-1), "bound"),
         (lambda: Gaussian(np.inf), "sigma"),
-        (lambda: Scenario("s", STILL, (1, 2), 1, pinhole()), "three finite numbers"),
+        (lambda: Scenario("s", STILL, (1, 2), 1, pinhole()), "expected 3 finite numbers: X, Y, Z"),
         (lambda: Scenario("s", STILL, (1, 2, 3), 0, pinhole()), "duration"),
         (lambda: record(scenarios.ma2005_eq35(), 0), "holds no two samples"),
         (lambda: record(scenarios.ma2005_eq35(), 0.005), "holds no two samples"),

@@ -67,7 +67,7 @@ def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run)
 def test_what_does_not_belong_together_is_refused(recording, run):
     other = record(chwa2019_experiment("V.B"), 1.5)
     elsewhere = track(other, ismo(other.view.form), ZERO, **fine)
-    blind = seen_as(recording, recording.view, chwa2019_experiment("IV.A").scenario.motion)
+    blind = seen_as(recording, recording.view, chwa2019_experiment("IV.A").motion)
     point = track(record(scenarios.ma2005_eq35(), 1), ismo(BOTH))
     for runs, labels, message in (
         ([], None, "there are no runs"),

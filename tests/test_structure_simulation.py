@@ -1,5 +1,7 @@
 """What pictures of an object give: its scaled inverse depth, with what noise, bias and drift do to the estimates."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,7 +12,6 @@ from percept_obs import (
     DoesNotFit,
     PerspectiveSystem,
     Recording,
-    Scenario,
     affine,
     pinhole,
     record,
@@ -28,7 +29,6 @@ from percept_obs.structure import (
     ScaledDepthCamera,
     SizeDepth,
     StructureAndMotion,
-    StructureScenario,
     grid_patch,
     linear_view,
     seen_as,
@@ -131,7 +131,7 @@ def test_bias_and_drift_do_what_the_sensitivity_says():
 
 def test_a_constant_factor_of_the_inverse_depth_is_another_scale():
     """Twice ybar3 is half of d_s, and no velocity changes."""
-    doubled = StructureScenario(CASE.scenario, 5.2, CASE.choice)
+    doubled = replace(CASE, scale=5.2)
     recording = record(doubled, 3)
     run = track(recording, ismo(CASE.choice.form), hold="first", step=1e-3)
     found = CASE.choice.quantities(run.estimate[-1, 3:])
@@ -151,7 +151,7 @@ def test_noise_of_the_inverse_depth_in_proportion():
 
 def test_fewer_unknowns_are_found_in_the_least_squares_sense():
     choice = StructureAndMotion(("d_s", "v_c2"), ("v_p1", "v_p2", "v_p3"))
-    recording = record(StructureScenario(CASE.scenario, 10.4, choice), 2)
+    recording = record(replace(CASE, choice=choice), 2)
     run = track(recording, ismo(choice.form), hold="first", step=1e-3)
     np.testing.assert_allclose(run.estimate[-1, 3:], [10.4, -0.23 * 10.4], rtol=1e-3)
 
@@ -159,7 +159,7 @@ def test_fewer_unknowns_are_found_in_the_least_squares_sense():
 def test_seen_as_another_choice():
     recording = record(chwa2019_experiment("IV.B"), 1)
     fifth = COROLLARIES[4].choice(scale=10.4)
-    motion = chwa2019_experiment("IV.B").scenario.motion
+    motion = chwa2019_experiment("IV.B").motion
     again = seen_as(recording, fifth, motion, 10.4)
     np.testing.assert_array_equal(again.outputs, recording.outputs)
     np.testing.assert_allclose(again.truth[:, 3:], [[-0.22, -0.23, 0]] * 1001)
@@ -211,15 +211,14 @@ def test_what_does_not_fit_is_refused():
 def test_scenarios_that_make_no_sense_are_refused():
     for scale in (0.0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="it is one over a distance in metres"):
-            StructureScenario(CASE.scenario, scale, CASE.choice)
-    affine_motion = Scenario("affine", affine(np.eye(3), STILL), (1, 1, 1), 1.0, pinhole())
+            replace(CASE, scale=scale)
     with pytest.raises(ValueError, match=r"the affine motion is none of rigid\(\)"):
-        StructureScenario(affine_motion, 1.0, CASE.choice)
+        replace(CASE, motion=affine(np.eye(3), STILL))
     with pytest.raises(ValueError, match="the motion has no numbers"):
         CASE.choice.known_motion(rigid())
-    towards = Scenario("towards", rigid(STILL, (0.1, 0, 1.0), STILL), (0, 0, 1), 2.0, pinhole())
+    towards = replace(CASE, motion=rigid(STILL, (0.1, 0, 1.0), STILL), position=(0, 0, 1), scale=1.0)
     with pytest.raises(BehindCamera, match="only points at a positive distance are seen"):
-        record(StructureScenario(towards, 1.0, CASE.choice))
+        record(towards, 2.0)
     for duration in (0.0, 1e-4, float("inf")):
         with pytest.raises(ValueError, match="holds no two samples"):
             record(CASE, duration)
@@ -257,7 +256,7 @@ def test_sampled_velocities_serve_as_well_as_functions():
     sampled = rigid(np.zeros((101, 3)), samples, np.zeros((101, 3)), times=time)
     known = CASE.choice.known_motion(sampled)
     np.testing.assert_allclose(known.known([0.0, 0.5]), [[0, 0, 0, 0.3]] * 2)
-    recording = record(StructureScenario(Scenario("sampled", sampled, (1, 1, 4), 1.0, pinhole()), 2.0, CASE.choice))
+    recording = record(replace(CASE, motion=sampled, position=(1, 1, 4), duration=1.0, scale=2.0))
     np.testing.assert_allclose(recording.truth[500, 3:], [2, 0.1, -0.1])
 
 

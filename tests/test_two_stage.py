@@ -21,14 +21,14 @@ def wandering():
 def worst(run, setup, after):
     """Largest error of the object's velocity, so many seconds after it has begun to move."""
     time = run.moving.time
-    true = setup.scenario.motion.known(time)[:, 6:]
+    true = setup.motion.known(time)[:, 6:]
     return np.abs(run.object_velocity - true)[time >= time[0] + after].max()
 
 
 @pytest.mark.slow
 def test_a_camera_that_keeps_its_velocity(wandering):
     setup, recording = wandering
-    run = semigeneral(recording, setup.scenario.motion, 5.0, scale=setup.scale, **fine)
+    run = semigeneral(recording, setup.motion, 5.0, scale=setup.scale, **fine)
     assert run.found["d_s"] == pytest.approx(4, rel=1e-4)
     assert run.found["v_c2"] == pytest.approx(0.2, abs=1e-6)
     assert run.found["v_c3"] == pytest.approx(-0.1, abs=1e-6)
@@ -42,8 +42,8 @@ def test_a_camera_that_keeps_its_velocity(wandering):
 def test_a_camera_that_changes_its_velocity_needs_it_anew():
     setup = chwa2019_semigeneral("experiment")
     recording = record(setup)
-    given = semigeneral(recording, setup.scenario.motion, 5.0, camera="given", **fine)
-    kept = semigeneral(recording, setup.scenario.motion, 5.0, camera="kept", **fine)
+    given = semigeneral(recording, setup.motion, 5.0, camera="given", **fine)
+    kept = semigeneral(recording, setup.motion, 5.0, camera="kept", **fine)
     assert worst(given, setup, 1.5) < 0.01
     # v_c2 goes from -0.23 to -0.47 m/s, and the object is held responsible
     assert worst(kept, setup, 1.5) == pytest.approx(0.24, abs=0.01)
@@ -65,7 +65,7 @@ def test_another_observer_in_both_stages(wandering):
     def filter_of(form):
         return ekf(form, noise_variance=1e-7, hidden_process_noise=1.0, hidden_variance=100.0)
 
-    run = semigeneral(recording, setup.scenario.motion, 5.0, make=filter_of, **fine)
+    run = semigeneral(recording, setup.motion, 5.0, make=filter_of, **fine)
     assert run.found["d_s"] == pytest.approx(4, rel=1e-2)
     assert worst(run, setup, 2.0) < 0.1
 
@@ -74,9 +74,9 @@ def test_what_cannot_be_divided_is_refused(wandering):
     setup, recording = wandering
     for moves_at in (0.0, 10.0, 20.0, float("nan")):
         with pytest.raises(ValueError, match="each stage needs two samples"):
-            semigeneral(recording, setup.scenario.motion, moves_at)
+            semigeneral(recording, setup.motion, moves_at)
     with pytest.raises(ValueError, match="neither 'kept' nor 'given'"):
-        semigeneral(recording, setup.scenario.motion, 5.0, camera="free")
+        semigeneral(recording, setup.motion, 5.0, camera="free")
 
 
 def test_a_first_stage_without_a_scale_says_so():

@@ -65,7 +65,7 @@ def velocities() -> Values:
     """Velocities of the package's scenarios of the experiment."""
     values: Values = {}
     for section in SECTIONS:
-        motion = exactly(chwa2019_experiment(section).scenario.motion.values)
+        motion = exactly(chwa2019_experiment(section).motion.values)
         for name in ("v_c", "v_p"):
             letters = (next(symbol for symbol in motion if symbol.name == f"{name}{k}") for k in (1, 2, 3))
             values[velocity(name, section)] = column(*(motion[letter] for letter in letters))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import advance, arrays, choose
-from percept_obs.recording import PLANT_STEP, Camera, halves, step_grid
+from percept_obs.recording import PLANT_STEP, Scene, halves, step_grid
 from percept_obs.system.motion import Motion
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ class LeavesEveryBound(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class PointsScenario:
+class PointsScenario(Scene):
     """A state in motion whose points a camera may see.
 
     Parameters
@@ -49,15 +49,7 @@ class PointsScenario:
     source: str = ""
 
     def __post_init__(self) -> None:
-        state = np.asarray(self.state, dtype=float)
-        if state.shape != (self.form.states,) or not np.isfinite(state).all():
-            raise ValueError(
-                f"the state of {self.name!r} has shape {state.shape}; expected {self.form.states} finite numbers: "
-                f"{', '.join(self.form.names)}"
-            )
-        object.__setattr__(self, "state", tuple(state.tolist()))
-        if not (np.isfinite(self.duration) and self.duration > 0):
-            raise ValueError(f"the duration is {self.duration} s; it must be positive")
+        object.__setattr__(self, "state", self._check("state", self.state, self.form.names))
 
     @property
     def view(self) -> PointsForm:
@@ -68,11 +60,6 @@ class PointsScenario:
     def known_motion(self) -> Motion:
         """The form's motion."""
         return self.form.motion
-
-    @property
-    def camera(self) -> Camera:
-        """One sample every 10 ms without noise."""
-        return Camera()
 
     def coordinates(self, times: ArrayLike) -> Array:
         """States at times from 0 on that do not decrease, shape (K, n), integrated with steps of `PLANT_STEP` at most.

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -143,31 +145,42 @@ class Camera:
         return lost
 
 
-class Scene(Protocol):
+class Scene(ABC):
     """What a camera can be pointed at: a point, the points of a state, or an object whose structure is sought."""
 
-    @property
-    def name(self) -> str:
-        """What it is called."""
+    name: str
+    duration: float
 
     @property
-    def duration(self) -> float:
-        """How long it lasts, in seconds."""
-
-    @property
+    @abstractmethod
     def view(self) -> View:
         """As what it is seen."""
 
     @property
+    @abstractmethod
     def known_motion(self) -> Motion:
         """What an observer may know of the motion."""
 
+    @abstractmethod
+    def coordinates(self, times: ArrayLike) -> Array:
+        """True coordinates of the view at some times in seconds from 0 on, shape (K, n)."""
+
     @property
     def camera(self) -> Camera:
-        """The camera that is taken if none is asked for."""
+        """The camera that is taken if none is asked for: one sample every 10 ms without noise."""
+        return Camera()
 
-    def coordinates(self, times: ArrayLike) -> Array:
-        """True coordinates of the view at some times in seconds, shape (K, n)."""
+    def _check(self, what: str, values: Sequence[float], names: Sequence[str]) -> tuple[float, ...]:
+        """The finite numbers that the scene begins with, one for each name, and a positive duration."""
+        array = np.asarray(values, dtype=float)
+        if array.shape != (len(names),) or not np.isfinite(array).all():
+            raise ValueError(
+                f"the {what} of {self.name!r} has shape {array.shape}; expected {len(names)} finite numbers: "
+                f"{', '.join(names)}"
+            )
+        if not (np.isfinite(self.duration) and self.duration > 0):
+            raise ValueError(f"the duration is {self.duration} s; it must be positive")
+        return tuple(array.tolist())
 
 
 def seeded(seed: Seed) -> np.random.Generator:

@@ -17,6 +17,7 @@ from percept_obs.recording.grid import halves, step_grid
 from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
+from percept_obs.system.view import View
 
 Array = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ PLANT_STEP = 0.005
 
 
 @dataclass(frozen=True, eq=False)
-class Scenario:
+class Scenario(Scene):
     """A point in motion and the surface on which it is seen.
 
     Parameters
@@ -50,13 +51,8 @@ class Scenario:
     source: str = ""
 
     def __post_init__(self) -> None:
-        position = np.asarray(self.position, dtype=float)
-        if position.shape != (3,) or not np.isfinite(position).all():
-            raise ValueError(f"the position {self.position!r} must be three finite numbers, in metres")
-        object.__setattr__(self, "position", tuple(position.tolist()))
-        if not (np.isfinite(self.duration) and self.duration > 0):
-            raise ValueError(f"the duration is {self.duration} s; it must be positive")
-        self.surface.project(position)
+        object.__setattr__(self, "position", self._check("position", self.position, ("X", "Y", "Z")))
+        self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
         """Positions of the point, integrated with steps of at most `PLANT_STEP`.
@@ -86,7 +82,7 @@ class Scenario:
         return trace.states[last[1:]]
 
     @property
-    def view(self) -> ImagingSurface:
+    def view(self) -> View:
         """The surface."""
         return self.surface
 
@@ -94,11 +90,6 @@ class Scenario:
     def known_motion(self) -> Motion:
         """The whole motion."""
         return self.motion
-
-    @property
-    def camera(self) -> Camera:
-        """One sample every 10 ms without noise."""
-        return Camera()
 
     def coordinates(self, times: ArrayLike) -> Array:
         """Image coordinates and inverse distance of the point, shape (K, n).

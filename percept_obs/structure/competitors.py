@@ -111,7 +111,7 @@ def figure_runs(number: int, duration: float = 10.0, decibels: float = 100.0, se
             both = {
                 name: semigeneral(
                     recording,
-                    setup.scenario.motion,
+                    setup.motion,
                     duration / 2,
                     make=make,
                     camera=camera,

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.recording import Scenario
 from percept_obs.structure.corollaries import COROLLARIES
 from percept_obs.structure.simulation import StructureScenario
 from percept_obs.system.motion import rigid
@@ -133,8 +132,8 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
         return velocity(time - moves_at) if callable(velocity) else velocity
 
     motion = rigid(_STILL, lambda time: at(time, 1), lambda time: at(time, 2))
-    scenario = replace(still.scenario, name=f"Chwa 2019, {set_up} IV", motion=motion, duration=2 * moves_at)
-    return StructureScenario(scenario, still.scale, COROLLARIES[moving[0] - 1].choice())
+    name, choice = f"Chwa 2019, {set_up} IV", COROLLARIES[moving[0] - 1].choice()
+    return replace(still, name=name, motion=motion, duration=2 * moves_at, choice=choice)
 
 
 def chwa2019_crossing() -> StructureScenario:
@@ -158,5 +157,5 @@ def _structure(
 ) -> StructureScenario:
     """A point that starts at the given (y1, y2, ybar3), in the case of a corollary."""
     depth = 1 / (scale * ybar[2])
-    scenario = Scenario(name, rigid(*velocities), (ybar[0] * depth, ybar[1] * depth, depth), 10.0, pinhole(), source)
-    return StructureScenario(scenario, scale, COROLLARIES[number - 1].choice())
+    position, choice = (ybar[0] * depth, ybar[1] * depth, depth), COROLLARIES[number - 1].choice()
+    return StructureScenario(name, rigid(*velocities), position, 10.0, pinhole(), source, scale=scale, choice=choice)

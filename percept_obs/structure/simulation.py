@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -15,6 +15,7 @@ from percept_obs.structure.linear import LinearView
 from percept_obs.structure.pixels import PixelCamera, SignalToNoise, apparent_size, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
+from percept_obs.system.view import View
 
 Array = NDArray[np.float64]
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
@@ -146,49 +147,46 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
 
 
 @dataclass(frozen=True, eq=False)
-class StructureScenario:
+class StructureScenario(Scenario):
     """A point of an object in rigid motion, its scale, and what is known of them.
 
     Parameters
     ----------
-    scenario : Scenario
-        On the pinhole, with a motion from `rigid`.
+    name, motion, position, duration, surface, source
+        See `Scenario`; on the pinhole, with a motion from `rigid`.
     scale : float
         The true d_s in 1/m, so that ybar3 = y3 / d_s is measured.
     choice : StructureAndMotion
         What is unknown.  If it knows d_s, it is given the true one.
+
+    Raises
+    ------
+    ValueError
+        If d_s is not positive, or a scenario makes no sense.
+    ImpossibleChoice
+        If a velocity that is said to be zero is not.
     """
 
-    scenario: Scenario
-    scale: float
-    choice: StructureAndMotion
+    scale: float = field(kw_only=True)
+    choice: StructureAndMotion = field(kw_only=True)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not (np.isfinite(self.scale) and self.scale > 0):
             raise ValueError(f"d_s is {self.scale}; it is one over a distance in metres, finite and positive")
         if self.choice.parameters:
             object.__setattr__(self, "choice", replace(self.choice, scale=self.scale))
-        self.choice.known_motion(self.scenario.motion)
+        self.choice.known_motion(self.motion)
 
     @property
-    def name(self) -> str:
-        """Name of the point's scenario."""
-        return self.scenario.name
-
-    @property
-    def duration(self) -> float:
-        """Duration of the point's scenario in seconds."""
-        return self.scenario.duration
-
-    @property
-    def view(self) -> StructureAndMotion:
+    def view(self) -> View:
         """The choice."""
         return self.choice
 
     @property
     def known_motion(self) -> Motion:
         """What the choice knows of the motion."""
-        return self.choice.known_motion(self.scenario.motion)
+        return self.choice.known_motion(self.motion)
 
     @property
     def camera(self) -> Camera:
@@ -197,8 +195,8 @@ class StructureScenario:
 
     def coordinates(self, times: ArrayLike) -> Array:
         """True (y1, y2, ybar3) and theta at some times in seconds, shape (K, 3 + n)."""
-        ybar = self.scenario.coordinates(times) / [1.0, 1.0, self.scale]
-        return np.hstack([ybar, self.choice.theta_values(self.scale, self.scenario.motion, times)])
+        ybar = super().coordinates(times) / [1.0, 1.0, self.scale]
+        return np.hstack([ybar, self.choice.theta_values(self.scale, self.motion, times)])
 
 
 IMAGE_PLANE = PixelCamera((1.0, 1.0))
@@ -246,7 +244,7 @@ class ScaledDepthCamera(Camera):
         """
         if not isinstance(scene, StructureScenario):
             raise ValueError(f"a ScaledDepthCamera measures a StructureScenario, not {scene.name!r}; take a Camera")
-        points = pinhole().project(_object_points(scene.scenario, self.depth.offsets, time))
+        points = pinhole().project(_object_points(scene, self.depth.offsets, time))
         clean = self.pixels.pixels(points[..., :2])
         noise = Gaussian(self.ratio.sigma(clean)) if self.ratio else self.noise
         noisy = clean + noise.draw(generator, clean.shape)

@@ -29,7 +29,7 @@ from percept_obs.labs.structure.texts import (
     observer_of,
     refused,
 )
-from percept_obs.recording import Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.recording import Gaussian, Recording, Uniform, record
 from percept_obs.structure import (
     COROLLARIES,
     QUANTITIES,
@@ -192,7 +192,7 @@ def case_of(number: int) -> Settings:
             **{"v_c_swing": swings[0], "v_p_swing": swings[1]},
         }
     case = chwa2019_experiment(corollary.section)
-    known = case.scenario.motion.known(0.0)[0].tolist()
+    known = case.motion.known(0.0)[0].tolist()
     return fixed | {
         **{"ybar": [0.32, 0.3, 0.05], "scale": case.scale, "v_c": known[3:6], "v_p": known[6:]},
         **{"v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3},
@@ -242,14 +242,14 @@ def _recorded_once(text: str, choice: StructureAndMotion) -> Recording:
     settings = json.loads(text)
     y1, y2, ybar3 = settings["ybar"]
     depth = 1 / (settings["scale"] * ybar3)
-    scenario = Scenario(
-        "the lab's", motion_of(settings), (y1 * depth, y2 * depth, depth), settings["duration"], pinhole()
+    position, duration = (y1 * depth, y2 * depth, depth), settings["duration"]
+    scenario = StructureScenario(
+        "the lab's", motion_of(settings), position, duration, pinhole(), scale=settings["scale"], choice=choice
     )
-    setup = StructureScenario(scenario, settings["scale"], choice)
     make, period = NOISES[settings["noise"]["kind"]], settings["period"]
     depth = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])
     camera = ScaledDepthCamera(period, make(settings["noise"]["size"]), depth=depth)
-    simulate = partial(record, setup, camera=camera, seed=settings["seed"])
+    simulate = partial(record, scenario, camera=camera, seed=settings["seed"])
     try:
         return simulate(settings["duration"])
     except BehindCamera:
