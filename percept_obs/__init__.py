@@ -26,7 +26,7 @@ from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.motion import Motion, affine, linear, rigid
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane
+from percept_obs.system.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane, sphere
 from percept_obs.tracking.following import DoesNotFit, track
 from percept_obs.tracking.run import Run
 
@@ -72,6 +72,7 @@ __all__ = [
     "semigeneral",
     "sliding_mode",
     "smo",
+    "sphere",
     "track",
     "windowed",
     "with_point",

@@ -74,7 +74,7 @@ def check(options: argparse.Namespace) -> int:
 
 def compare(options: argparse.Namespace) -> int:
     """Run every observer on the same noisy recordings of Ma's examples, from a start of zero, and print a table."""
-    from percept_obs.observers import OBSERVERS, NeedsMoreOutputs
+    from percept_obs.observers import OBSERVERS
     from percept_obs.recording import Camera, Uniform, record
     from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
     from percept_obs.studies.comparison import compare, described, summary
@@ -84,12 +84,8 @@ def compare(options: argparse.Namespace) -> int:
 
     scenario = {"35": ma2005_eq35, "36": ma2005_eq36}[options.example]()
     form = PerspectiveSystem(affine(), pinhole()).measure(*options.outputs.split("+"))
-    observers, refused = [], []
-    for make in OBSERVERS:
-        try:
-            observers.append(make(form))
-        except NeedsMoreOutputs as error:
-            refused.append(str(error))
+    refusals = {make: make.refusal(form) for make in OBSERVERS}
+    observers = [make(form) for make, refusal in refusals.items() if not refusal]
     camera = Camera(noise=Uniform(options.noise))
     recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
     table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
@@ -99,7 +95,7 @@ def compare(options: argparse.Namespace) -> int:
         "medians with the 16 % and 84 % quantiles; a run fails if its error does not stay below 0.05"
     )
     print(described(table))
-    print("\n".join(refused))
+    print("\n".join(filter(None, refusals.values())))
     return 0
 
 

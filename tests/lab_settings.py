@@ -10,7 +10,7 @@ import numpy as np
 
 import percept_obs.labs
 from percept_obs.labs.observer.lab import runs
-from percept_obs.labs.observer.texts import BY_NAME, KEYS, OUTPUTS, OWN_SWITCH, SURFACES, WAYS, key_of, texts_of
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, keys, system_of, texts_of
 from percept_obs.system.motion import affine
 from percept_obs.tracking.following import StepTooLong, track
 
@@ -52,7 +52,7 @@ SMOOTH_CASES = {
 
 def run_in_node(node, lab, tasks):
     """What the page's engine makes of each of the settings, once all parts of the model have come."""
-    model = {**lab.model, "structures": {key: texts_of(key) for key in KEYS}}
+    model = {**lab.model, "structures": {key: texts_of(key) for key in keys()}}
     task = json.dumps({"model": model, "tasks": tasks}, allow_nan=False)
     script = FRONT / "tests/run_settings.js"
     answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
@@ -124,7 +124,8 @@ def random_settings(lab, seed):
     def one(*values):
         return values[rng.integers(len(values))]
 
-    surface, outputs = one(*SURFACES), list(one(*OUTPUTS))
+    surface = one(*SURFACES)
+    outputs = list(one(*system_of(surface).output_choices))
     refused = texts_of(key_of(surface, outputs))["refused"]
     chosen = [name for name in BY_NAME if rng.random() < 0.4 and name not in refused]
     gains = {

@@ -70,7 +70,7 @@ def test_the_claimed_covariance_is_honest(form):
         draw = np.random.default_rng(seed).normal(0, 0.1, 3)
         start = {s.name: float(recording.truth[0, int(s.name[1]) - 1] + draw[int(s.name[1]) - 1]) for s in form.x2}
         run = track(recording, observer, start, language="numba")
-        squared.append(np.mean(run.normalised_innovation[100:]))
+        squared.append(np.mean(run.nis[100:]))
         sigma = np.sqrt(run.covariance[100:, 2, 2])
         outside.append(np.mean(np.abs(run.error[100:, 2]) > 3 * sigma))
     assert np.mean(squared) == pytest.approx(outputs, rel=0.03)

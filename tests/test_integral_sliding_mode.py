@@ -115,7 +115,7 @@ def assert_only_the_start_is_missing(run, latest):
     assert run.reasons == ["what is left of the start may be half of what is found"]
     assert begin == 0
     assert end < latest
-    bare = replace(run.observer, gaps=())
+    bare = replace(run.observer, unobservable=())
     hidden = track(run.recording, bare, dict(zip(FORM.measured, run.estimate[0, :3], strict=True)), run.hold, **fine)
     assert not hidden.unobservable_intervals
     error = np.linalg.norm(hidden.error[:, 3:], axis=1) / np.linalg.norm(hidden.truth[:, 3:], axis=1)

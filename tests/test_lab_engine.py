@@ -16,7 +16,7 @@ from lab_settings import (
 from utias_folder import utias_folder
 
 from percept_obs.labs.observer.lab import observer_lab, runs
-from percept_obs.labs.observer.texts import KEYS, OWN_SWITCH, WAYS, texts_of
+from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS, keys, texts_of
 from percept_obs.observability.pointwise import windowed
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.surfaces import BehindCamera
@@ -52,7 +52,7 @@ def test_smooth_observers_agree_to_1e_9(lab, answers, case):
 def of_every_structure(lab, node):
     """What the page says of all observers of every structure, with noise and losses, and of every switch."""
     tasks = []
-    for key in KEYS:
+    for key in keys():
         surface, outputs = key.split()
         names = list(texts_of(key)["observers"])
         for k, start in enumerate(("own", "zero", "chosen", "own")):
@@ -74,11 +74,11 @@ def of_every_structure(lab, node):
             for s, answer in zip(whole, found, strict=True)
             if key == f"{s['surface']} {'+'.join(s['outputs'])}"
         ]
-        for key in KEYS
+        for key in keys()
     }
 
 
-@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize("key", keys())
 def test_every_observer_agrees_in_every_structure(of_every_structure, key):
     for settings, answer in of_every_structure[key]:
         assert_follows_python(settings, answer["runs"])

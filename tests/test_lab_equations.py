@@ -6,7 +6,7 @@ import sympy as sp
 from percept_obs import PerspectiveSystem, affine, pinhole
 from percept_obs.labs.shared.equations import cascade_equations, equations_of, kalman_equations
 from percept_obs.observers import OBSERVERS, extended_kalman, linear_approximation
-from percept_obs.observers.base import hats
+from percept_obs.observers.parts import hats
 
 
 @pytest.fixture(params=[("y1", "y2"), ("y1",)], ids="+".join)

@@ -14,6 +14,7 @@ from percept_obs import Camera, NotAffine, PerspectiveSystem, ekf, ibo, record, 
 from percept_obs.compile import vectorised
 from percept_obs.observers import (
     OBSERVERS,
+    Gain,
     NeedsMoreOutputs,
     NotIntegrable,
     de_luca,
@@ -24,7 +25,7 @@ from percept_obs.observers import (
     range_identification,
     spica,
 )
-from percept_obs.observers.base import Gain, hats, sigma2
+from percept_obs.observers.parts import hats, sigma2
 from percept_obs.system.forms import partition
 
 LEARNERS = (range_identification, integral_sliding_mode)
@@ -271,7 +272,7 @@ def test_other_gains_make_another_observer():
     assert {g.name: g.value for g in other.gains}["gain"] == 3
     assert {g.name: g.value for g in observer.gains}["gain"] == 10
     assert other.equations is observer.equations
-    assert Gain(sp.Symbol("k"), "k", 1, 0, 2, "nothing").value == 1.0
+    assert Gain(sp.Symbol("k"), "k", 1, 0, 2, "1", "nothing").value == 1.0
 
 
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)

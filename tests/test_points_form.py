@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 import sympy as sp
-from examples import sphere
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from percept_obs import PointsForm, affine, chained, linear, pinhole, plane, rigid
+from percept_obs import PointsForm, affine, chained, linear, pinhole, plane, rigid, sphere
 from percept_obs.points import (
     NotLinear,
     UnseenDirection,

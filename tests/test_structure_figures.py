@@ -28,7 +28,7 @@ def run(recording):
 @pytest.fixture(scope="module")
 def unguarded(recording):
     """The same run with what the observer's start makes of the unknowns."""
-    return track(recording, replace(ismo(recording.view.form), gaps=()), ZERO, **fine)
+    return track(recording, replace(ismo(recording.view.form), unobservable=()), ZERO, **fine)
 
 
 def test_each_unknown_has_a_row_with_its_unit_and_its_truth(run):

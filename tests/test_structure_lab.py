@@ -192,10 +192,10 @@ def test_one_of_two_stories_must_be_known(acts):
 @pytest.mark.slow
 def test_a_crossing_leaves_a_gap_or_makes_spikes(acts):
     guarded, bare = (next(iter(structure_runs_of(act).values())) for act in acts["crossing"])
-    assert len(guarded.gaps) == 3
+    assert len(guarded.unobservable_intervals) == 3
     assert np.nanmin(times_too_far(guarded)) > 0.9
     assert np.nanmax(times_too_far(guarded)) < 1.1
-    assert len(bare.gaps) == 1
+    assert len(bare.unobservable_intervals) == 1
     assert np.nanmax(np.abs(1 / times_too_far(bare) - 1)) > 0.5
 
 

@@ -209,7 +209,7 @@ def test_the_claimed_covariance():
     assert run.covariance.shape == (501, 3, 3)
     np.testing.assert_allclose(run.covariance, np.swapaxes(run.covariance, 1, 2))
     assert (np.linalg.eigvalsh(run.covariance) > 0).all()
-    for wrong in (lambda r: r.covariance, lambda r: r.normalised_innovation):
+    for wrong in (lambda r: r.covariance, lambda r: r.nis):
         with pytest.raises(ValueError, match="claims no covariance"):
             wrong(track(RECORDING, ibo(ONE), ZERO))
 

@@ -37,7 +37,6 @@ from percept_obs.figures.base import (
 from percept_obs.figures.labels import place_in_words, recording_of, story
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.recording import Recording
-from percept_obs.system.forms import NotAffine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.run import Run
 
@@ -227,10 +226,9 @@ def _draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str
     """Where w vanishes if one output is measured, in a constant motion."""
     # As fractions, roots of two entries are equal when they should be.
     numbers = {symbol: sp.Rational(repr(value)) for symbol, value in system.values.items()}
-    try:
-        form = system.measure(measured)
-    except NotAffine:
+    if system.partition(measured).culprits:
         return ""
+    form = system.measure(measured)
     w = form.w.subs(numbers)
     if not w.free_symbols <= set(form.x1):
         return ""

@@ -3,64 +3,21 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
-from sympy.logic.boolalg import Boolean
 from sympy.solvers.solveset import NonlinearError
 
 from percept_obs.compile import right_hand_side, vectorised
-from percept_obs.compile.equations import Equations, Expressions, Symbols
-from percept_obs.observers.inversion import Gap, largest
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.compile.equations import Equations
+from percept_obs.observers.gains import Gain
+from percept_obs.observers.inversion import Unobservable
+from percept_obs.observers.parts import hats
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
-
-
-@dataclass(frozen=True)
-class Gain:
-    """A constant of an observer that a user may choose.
-
-    Parameters
-    ----------
-    symbol : sympy symbol
-        Its letter in the equations.
-    name : str
-        Its keyword.
-    value : float
-    low, high : float
-        Range that is worth exploring.
-    meaning : str
-        What it does, in a few words.
-    condition : sympy relation
-        What the value must fulfil.
-    reason : str
-        Why it must.
-    """
-
-    symbol: sp.Symbol
-    name: str
-    value: float
-    low: float
-    high: float
-    meaning: str
-    condition: Any = sp.true
-    reason: str = ""
-
-    def __post_init__(self) -> None:
-        try:
-            value = float(self.value)
-        except (TypeError, ValueError):
-            raise ValueError(f"{self.name} = {self.value!r} is not a number") from None
-        object.__setattr__(self, "value", value)
-        if not math.isfinite(value):
-            raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
-        if not self.condition.subs(self.symbol, sp.Float(value)):
-            raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
 
 
 @dataclass(frozen=True)
@@ -92,7 +49,7 @@ class FastestRate:
     Parameters
     ----------
     rate : expression
-        Decay rate in 1/s, from the gains and `recovery.elapsed`.
+        Decay rate in 1/s, from the gains and `elapsed`.
     remedy : str
         What to do if the step is too long, besides shortening it.
     """
@@ -123,7 +80,7 @@ class Observer:
         What is known about the observer.
     constant_motion : bool
         Whether the equations hold for a motion with constant coefficients only.
-    gaps : tuple of Gap
+    unobservable : tuple of Unobservable
         Where the hidden coordinates have no estimate; of several that hold, the first tells the reason.
     fastest : FastestRate, optional
         What limits the integration step, if it is known.
@@ -138,7 +95,7 @@ class Observer:
     covariance: sp.ImmutableMatrix | None = None
     about: About | None = None
     constant_motion: bool = False
-    gaps: tuple[Gap, ...] = ()
+    unobservable: tuple[Unobservable, ...] = ()
     fastest: FastestRate | None = None
 
     def with_gains(self, **values: float) -> Observer:
@@ -267,126 +224,6 @@ class Observer:
         """The equations without the terms that the present gains put out."""
         out = {symbol: sp.S.Zero for symbol, value in self.gain_values.items() if value == 0}
         return self.equations.xreplace(out)._repr_latex_()
-
-
-M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
-
-BOUND_GAINS = (
-    Gain(M, "bound", 10, 1, 50, "largest norm of the estimate", M > 0, "it bounds a norm"),
-    Gain(
-        gamma,
-        "reset_ratio",
-        1.01,
-        1.001,
-        2,
-        "how far beyond the bound the estimate is reset",
-        gamma > 1,
-        "at 1 the reset maps the bound to itself and the estimate sticks to it",
-    ),
-)
-"""Gains of `kept_within`."""
-
-NOISE_GAIN = Gain(
-    sigma2,
-    "noise_variance",
-    0,
-    0,
-    1e-3,
-    "variance of the noise whose bias is taken out",
-    sigma2 >= 0,
-    "it is a variance",
-)
-"""Gain of `noise_bias`."""
-
-
-def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols of the estimates: yhat1 for y1."""
-    return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
-
-
-def output_injection(
-    form: CanonicalForm,
-    correction: sp.ImmutableMatrix,
-    measured_gain: sp.Expr,
-    hidden_gain: sp.Expr,
-    bias: sp.ImmutableMatrix | None = None,
-) -> Expressions:
-    """The flow of a copy of the system into which a correction of the outputs is fed back.
-
-    With the correction c, the gains L1, L2 and the bias b of w c::
-
-        x1hat' = L1 c + w^T x2hat + phi
-        x2hat' = L2 (w c - b) + g(x1, x2hat)
-
-    Parameters
-    ----------
-    form : CanonicalForm
-    correction : matrix of shape (n1, 1)
-        The innovation `innovation`, or a function of it.
-    measured_gain, hidden_gain : expressions
-    bias : matrix of shape (n2, 1), optional
-        Such as `noise_bias`; none when left out.
-
-    Returns
-    -------
-    tuple of n1 + n2 expressions
-    """
-    x2_hat = hats(form.x2)
-    injected = form.w * correction - (sp.zeros(len(x2_hat), 1) if bias is None else bias)
-    measured_rate = measured_gain * correction + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
-    hidden_rate = hidden_gain * injected + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
-    return (*measured_rate, *hidden_rate)
-
-
-def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
-    """Measured outputs minus their estimates, x1 - x1hat."""
-    return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
-
-
-RECOVERY_GAIN = Gain(
-    largest,
-    "largest_amplification",
-    1e5,
-    10,
-    1e7,
-    "how much recovering the hidden part may amplify an error of its rate",
-    largest > 0,
-    "it bounds a norm",
-)
-"""Gain of `recovery.recovered`."""
-
-
-def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
-    """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
-
-    Ma 2005, (12), p. 65.  A state that is not part of the estimate stays.
-    """
-    squared = sum(hat**2 for hat in estimate)
-    shrink = M / sp.sqrt(squared)
-    return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
-
-
-def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
-
-    The same sample n enters both factors: with the variance sigma^2 in each output,
-    E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
-    Exact when both are affine in the outputs, as for the identifier-based observer on the pinhole; otherwise the
-    curvature of either factor is left out.
-
-    Parameters
-    ----------
-    form : CanonicalForm
-    correction : matrix of shape (n1, 1)
-        What the observer multiplies by w, in terms of the measured outputs.
-
-    Returns
-    -------
-    matrix of shape (n2, 1)
-    """
-    # a sign's derivative is taken as 0: the noise moves it at single instants only
-    smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}
-    return sigma2 * sum((form.w.diff(x) * smooth[x] for x in form.x1), sp.zeros(len(form.x2), 1))
 
 
 def with_point(observer: Observer) -> Observer:

@@ -4,41 +4,44 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.compile.equations import Equations
-from percept_obs.observers.base import (
+from percept_obs.observers.family import Derived, family
+from percept_obs.observers.gains import Gain
+from percept_obs.observers.parts import (
     BOUND_GAINS,
     NOISE_GAIN,
-    About,
-    Gain,
-    Observer,
     hats,
     innovation,
     kept_within,
     noise_bias,
     output_injection,
 )
-from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.forms import CanonicalForm
 
 G, A, P = sp.symbols("G A P", real=True)
 
-GAINS = (
-    Gain(G, "gain", 10, 1, 30, "how fast the observer is", G > 0, "the error feedback must damp"),
-    Gain(A, "injection", 1, 0.1, 3, "weight of the innovation in the measured part"),
-    Gain(P, "lyapunov", -0.5, -5, -0.05, "weight of the innovation in the hidden part"),
-    *BOUND_GAINS,
-    NOISE_GAIN,
+
+@family(
+    name="identifier-based",
+    title="Identifier-based observer (IBO)",
+    source="Jankovic and Ghosh 1995; Ma, Chen and Moore 2005, (11)",
+    needs="any outputs with a canonical form",
+    claim="exponential between resets, if w is persistently exciting and G is large enough; "
+    "biased by noise that enters w",
+    gains=(
+        Gain(G, "gain", 10, 1, 30, "1/s", "how fast the observer is", G > 0, "the error feedback must damp"),
+        Gain(A, "injection", 1, 0.1, 3, "1", "weight of the innovation in the measured part"),
+        Gain(P, "lyapunov", -0.5, -5, -0.05, "s^2/m^2", "weight of the innovation in the hidden part"),
+        *BOUND_GAINS,
+        NOISE_GAIN,
+    ),
+    candidates=tuple(
+        {"gain": gain, "lyapunov": -feedback / gain**2}
+        for gain in (2, 3.5, 6, 10, 17)
+        for feedback in (60, 120, 250, 500, 1000)
+    ),
+    offered_for_structure=True,
 )
-
-
-ABOUT = About(
-    "Identifier-based observer (IBO)",
-    "Jankovic and Ghosh 1995; Ma, Chen and Moore 2005, (11)",
-    "any outputs with a canonical form",
-    "exponential between resets, if w is persistently exciting and G is large enough; biased by noise that enters w",
-)
-
-
-def identifier_based(form: PartitionedSystem, **gains: float) -> Observer:
+def identifier_based(form: CanonicalForm) -> Derived:
     """Identifier-based observer (IBO).
 
     With e = x1 - x1hat::
@@ -47,54 +50,14 @@ def identifier_based(form: PartitionedSystem, **gains: float) -> Observer:
         x2hat' = -G^2 P w e + g(x1, x2hat)
         when |xhat| >= gamma M:  xhat <- M xhat / |xhat|
 
-    Parameters
-    ----------
-    form : PartitionedSystem
-        With a canonical form.
-    gain : float
-        G, how fast the observer is; positive.  Default 10.
-    injection : float
-        A, weight of e in the measured part; the factor of the identity.  Default 1.
-    lyapunov : float
-        P, weight of e in the hidden part; the factor of the identity.  Default -1/2, the printed value, whose sign
-        repairs that of (11).
-    bound : float
-        M, bound on the estimate's norm; positive.  Default 10.
-    reset_ratio : float
-        gamma, how far beyond the bound the estimate must be to be reset; more than 1.  Default 1.01.
-    noise_variance : float
-        Variance of the noise in each output, whose bias is then taken out of the hidden part.  Default 0.
-
-    Returns
-    -------
-    Observer
-
-    Raises
-    ------
-    NotAffine
-        If there is no canonical form.
-    ValueError
-        If a gain is unknown or out of its range.
-
     Notes
     -----
-    Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  The bias is `noise_bias` of the correction e.
+    Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  A and P are factors of the identity; the printed P = -1/2 has a sign
+    that repairs that of (11).  `noise_variance` takes out the `noise_bias` of the correction e.
     """
-    form = form.canonical_form()
-    state = hats((*form.x1, *form.x2))
-    e = innovation(form)
+    state, e = hats((*form.x1, *form.x2)), innovation(form)
     flow = output_injection(form, e, G * A, -(G**2) * P, noise_bias(form, e))
-    equations = Equations(
-        state,
-        flow,
-        form.x1,
-        form.parameters,
-        tuple(gain.symbol for gain in GAINS),
-        (),
-        *kept_within(state, state),
-    )
-    observer = Observer("identifier-based", form, equations, hats(form.coordinates), GAINS, state, about=ABOUT)
-    return observer.with_gains(**gains)
+    return Derived(state, flow, reset=kept_within(state, state))
 
 
 ibo = identifier_based

@@ -6,19 +6,21 @@ import math
 
 import sympy as sp
 
-from percept_obs.compile.equations import Equations
-from percept_obs.observers.base import (
-    RECOVERY_GAIN,
-    About,
-    FastestRate,
-    Gain,
-    Observer,
-    hats,
-    innovation,
+from percept_obs.observers.base import FastestRate, Observer
+from percept_obs.observers.family import Derived, family
+from percept_obs.observers.gains import Gain, grid
+from percept_obs.observers.inversion import (
+    AMPLIFICATION_GAIN,
+    Unobservable,
+    elapsed,
+    first_innovation,
+    inverted,
+    needs_more_outputs,
+    start_left_over,
 )
-from percept_obs.observers.inversion import Gap, elapsed, first_innovation, recovered, starting
-from percept_obs.observers.switching import Switch, switch_named
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.observers.parts import hats, innovation
+from percept_obs.observers.switching import Switch, switch_named, switch_option
+from percept_obs.system.forms import CanonicalForm
 
 k1, k2, gamma, a, b, delta = sp.symbols("k1 k2 gamma a b delta", real=True)
 c = sp.Symbol("c", real=True)
@@ -27,28 +29,64 @@ IDEAL = "ideal"
 """Name of the switch that is infinitely fast, so that s = 0 at all times."""
 
 GAINS = (
-    Gain(k1, "feedback", 15, 1, 50, "weight of the integral sliding surface", k1 > 0, "it must damp"),
-    Gain(gamma, "switching_gain", 15, 1, 50, "bound on what is not known of the rate", gamma > 0, "it bounds a size"),
-    Gain(a, "sharpness", 1, 0.1, 10, "slope of the hyperbolic tangents at the start", a > 0, "they must push back"),
-    Gain(b, "sharpening", 0.1, 0, 1, "how fast that slope grows", b >= 0, "the slope may not turn around"),
-    RECOVERY_GAIN,
+    Gain(k1, "feedback", 15, 1, 50, "1/s", "weight of the integral sliding surface", k1 > 0, "it must damp"),
+    Gain(
+        gamma,
+        "switching_gain",
+        15,
+        1,
+        50,
+        "1/s",
+        "bound on what is not known of the rate",
+        gamma > 0,
+        "it bounds a size",
+    ),
+    Gain(
+        a, "sharpness", 1, 0.1, 10, "1", "slope of the hyperbolic tangents at the start", a > 0, "they must push back"
+    ),
+    Gain(b, "sharpening", 0.1, 0, 1, "1/s", "how fast that slope grows", b >= 0, "the slope may not turn around"),
+    AMPLIFICATION_GAIN,
 )
 SWITCHING_GAINS = (
-    Gain(k2, "reaching_gain", 1, 0.1, 20, "size of the switching that remains", k2 > 0, "it must push towards s = 0"),
-    Gain(delta, "boundary_layer", 0.5, 0.01, 2, "width over which the sign is smoothed", delta > 0, "it is a width"),
+    Gain(
+        k2,
+        "reaching_gain",
+        1,
+        0.1,
+        20,
+        "1/s^2",
+        "size of the switching that remains",
+        k2 > 0,
+        "it must push towards s = 0",
+    ),
+    Gain(
+        delta,
+        "boundary_layer",
+        0.5,
+        0.01,
+        2,
+        "1/s",
+        "width over which the sign is smoothed",
+        delta > 0,
+        "it is a width",
+    ),
 )
 
-ABOUT = About(
-    "Integral sliding mode observer (ISMO)",
-    "Chwa 2019, (8)-(14)",
-    "at least as many outputs as hidden coordinates",
-    "asymptotic, if gamma exceeds what is not known of the rate in every output, and the samples do not stand still in "
-    "between: held for 10 ms, even without noise, it does not settle on Ma's example (35); held for 1 ms it is off by "
-    "1.5 to 2.4 % after 1 s in Chwa's case IV.A",
+
+@family(
+    name="integral sliding mode",
+    title="Integral sliding mode observer (ISMO)",
+    source="Chwa 2019, (8)-(14)",
+    needs="at least as many outputs as hidden coordinates",
+    claim="asymptotic, if gamma exceeds what is not known of the rate in every output, and the samples do not stand "
+    "still in between: held for 10 ms, even without noise, it does not settle on Ma's example (35); held for 1 ms it "
+    "is off by 1.5 to 2.4 % after 1 s in Chwa's case IV.A",
+    gains=(*GAINS, *SWITCHING_GAINS),
+    options=(switch_option(IDEAL, "What stands for sgn(s), see below"),),
+    candidates=grid(feedback=(1, 2, 4), switching_gain=(0.25, 0.5), sharpening=(0,)),
+    objection_of=needs_more_outputs,
 )
-
-
-def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains: float) -> Observer:
+def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
     """Integral sliding mode observer (ISMO).
 
     It takes all of g = w^T x2 for an unknown disturbance.  With e = x1 - x1hat, se = e + eI,
@@ -62,45 +100,14 @@ def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains:
 
         x2hat solves w^T x2hat = ghat, with more outputs than hidden coordinates in the least-squares sense
 
-    Parameters
-    ----------
-    form : PartitionedSystem
-        With a canonical form and at least as many measured as hidden coordinates.
-    switch : "ideal", "sign", "hyperbolic tangent" or "fraction"
-        What stands for sgn(s).  The ideal switch is infinitely fast and keeps s = 0, so that v = -gamma tanh(c se)
-        is no state any more; the sign chatters by about gamma^2 c h at a step h, and the others smooth it over the
-        boundary layer, as long as the step resolves that.
-    feedback : float
-        k1, positive.  Default 15.
-    switching_gain : float
-        gamma, larger than the absolute value of each entry of w^T x2.  Default 15.
-    sharpness : float
-        a, slope of the hyperbolic tangents at the start; positive.  Default 1.
-    sharpening : float
-        b, how fast the slope grows, per second; not negative.  Default 0.1.  With 0 the observer's gain, and so the
-        noise that it passes on, does not grow with time; Theorem 1 asks it to be positive.
-    largest_amplification : float
-        c_max; where recovering x2 from ghat would amplify an error more than this, there is no estimate.  Default 1e5.
-        The start counts no more once it has shrunk by as much.
-    reaching_gain : float
-        k2, positive.  Default 1; not for the ideal switch.
-    boundary_layer : float
-        delta, width over which the sign is smoothed.  Default 0.5; not for the ideal switch.
+    The ideal switch is infinitely fast and keeps s = 0, so that v = -gamma tanh(c se) is no state any more, and k2 and
+    delta are no gains; the sign chatters by about gamma^2 c h at a step h, and the others smooth it over the boundary
+    layer, as long as the step resolves that.
 
-    Returns
-    -------
-    Observer
-        It starts from estimates of the measured outputs only, and gives none of the hidden coordinates while what is
-        left of that start in ghat may be half of them.
-
-    Raises
-    ------
-    NotAffine
-        If there is no canonical form.
-    NeedsMoreOutputs
-        If ghat never determines the hidden coordinates, as with one output for two of them.
-    ValueError
-        If a gain is unknown or out of its range, or the switch has no such name.
+    It starts from estimates of the measured outputs only, and gives none of the hidden coordinates while what is left
+    of that start in ghat may be half of them; the start counts no more once it has shrunk by c_max.  gamma must be
+    larger than the absolute value of each entry of w^T x2.  With b = 0 the observer's gain, and so the noise that it
+    passes on, does not grow with time; Theorem 1 asks b to be positive.
 
     Notes
     -----
@@ -108,7 +115,6 @@ def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains:
     using a monocular dynamic camera, IEEE Access 8, 2020 (published in November 2019), section III.  The paper starts
     from ghat(0) = x1hat(0) = 0, but (9)-(14) give ghat(0) = gamma tanh(a e(0)), which is 0 only where e(0) is.
     """
-    form = form.canonical_form()
     x1_hat, e = hats(form.x1), innovation(form)
     integral, v = (sp.symbols(f"{name}1:{len(e) + 1}", real=True) for name in ("eI", "v"))
     se = e + sp.ImmutableMatrix(integral)
@@ -125,20 +131,16 @@ def integral_sliding_mode(form: PartitionedSystem, switch: str = IDEAL, **gains:
         pseudo_input = [_pseudo_input(*row, sgn) for row in zip(g_hat - push, se, s, strict=True)]
         flow = (*(form.phi + g_hat), *push, b, *pseudo_input)
         state, start, used = (*state, *v), (*start, *(sp.S.Zero for _ in v)), (*GAINS, *SWITCHING_GAINS)
-    hidden, gap = recovered(form, g_hat)
-    by_coordinate = dict(zip((*form.x1, *form.x2), (*x1_hat, *hidden), strict=True))
-    observer = Observer(
-        "integral sliding mode",
-        form,
-        Equations(state, flow, form.x1, form.parameters, tuple(gain.symbol for gain in used)),
-        tuple(by_coordinate[x] for x in form.coordinates),
-        used,
+    hidden, unobservable = inverted(form, g_hat)
+    return Derived(
+        state,
+        flow,
         start,
-        about=ABOUT,
-        gaps=(gap, _starting(form, g_hat)),
+        (*x1_hat, *hidden),
+        unobservable=(unobservable, _start_left_over(form, g_hat)),
         fastest=_fastest(switch),
+        gains=used,
     )
-    return observer.with_gains(**gains)
 
 
 class GainTooSmall(ValueError):
@@ -216,15 +218,15 @@ def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch)
     return gamma * sech2 * (c * estimated_rate - b * se) - (gamma**2 * c * sech2 + k2) * sgn(s, delta) - se
 
 
-def _starting(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Gap:
-    """The gap at the start, from bounds on what it still does to ghat - g = gamma tanh(c e) - se'.
+def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobservable:
+    """What is unobservable at the start, from bounds on what it still does to ghat - g = gamma tanh(c e) - se'.
 
     On the surface e' = -gamma tanh(c e) + se', so that sinh(a |e|) shrinks at least like exp(-gamma a t); and se'
     begins with the rate g, of which ghat is the estimate, and shrinks at least like exp(-(k1 + gamma a) t).
     """
     slower, faster = (sp.exp(-rate * elapsed) for rate in (gamma * a, k1 + gamma * a))
     begun = first_innovation(form).applyfunc(lambda entry: gamma * sp.sinh(a * sp.Abs(entry)))
-    return starting(form, g_hat, begun * slower + g_hat.applyfunc(sp.Abs) * faster, slower)
+    return start_left_over(form, g_hat, begun * slower + g_hat.applyfunc(sp.Abs) * faster, slower)
 
 
 def _fastest(switch: str) -> FastestRate | None:

@@ -7,14 +7,18 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.observers.gains import Gain
+from percept_obs.system.forms import CanonicalForm, NeedsMoreOutputs, PartitionedSystem
 
-largest = sp.Symbol("c_max", real=True)
-"""How much an error of the rate may be amplified at most."""
+c_max = sp.Symbol("c_max", real=True)
+
+AMPLIFIES = "how much the inversion that gives the hidden part may amplify an error of its rate"
+AMPLIFICATION_GAIN = Gain(c_max, "largest_amplification", 1e5, 10, 1e7, "s/m", AMPLIFIES, c_max > 0, "it bounds a norm")
+"""Gain of `inverted`."""
 
 
 @dataclass(frozen=True)
-class Gap:
+class Unobservable:
     """Where an observer does not estimate the hidden coordinates, although it runs on.
 
     Parameters
@@ -39,7 +43,12 @@ def first_innovation(form: PartitionedSystem) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([sp.Symbol(f"e0_{output.name}", real=True) for output in form.x1])
 
 
-def recovered(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.ImmutableMatrix, Gap]:
+def needs_more_outputs(form: CanonicalForm) -> NeedsMoreOutputs | None:
+    """What an observer says that inverts w^T x2, if that never determines x2."""
+    return None if form.determines_hidden else NeedsMoreOutputs(form)
+
+
+def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.ImmutableMatrix, Unobservable]:
     """Hidden coordinates from an estimate of w^T x2, and where they do not follow from it.
 
     Parameters
@@ -51,7 +60,7 @@ def recovered(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutab
     Returns
     -------
     matrix of shape (n2, 1)
-    Gap
+    Unobservable
         Where what turns the rate into hidden coordinates has a Frobenius norm of c_max or more, so that it would
         amplify an error of the rate by up to this norm.
 
@@ -62,14 +71,17 @@ def recovered(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutab
     """
     numerator, determinant = form.cramer
     # both sides times the determinant squared, so that nothing is divided by zero
-    too_large = sp.Ge(sum(entry**2 for entry in numerator), (largest * determinant) ** 2)
-    return numerator * rate / determinant, Gap(too_large, f"{', '.join(form.hidden)} nearly drop out of what is seen")
+    too_large = sp.Ge(sum(entry**2 for entry in numerator), (c_max * determinant) ** 2)
+    reason = f"{', '.join(form.hidden)} nearly drop out of what is seen"
+    return numerator * rate / determinant, Unobservable(too_large, reason)
 
 
-def starting(form: CanonicalForm, rate: sp.ImmutableMatrix, left: sp.ImmutableMatrix, shrunk: sp.Expr) -> Gap:
+def start_left_over(
+    form: CanonicalForm, rate: sp.ImmutableMatrix, left: sp.ImmutableMatrix, shrunk: sp.Expr
+) -> Unobservable:
     """Where what is left of the start in an estimate of w^T x2 may be half of the hidden coordinates that follow.
 
-    It compares what recovering the hidden coordinates makes of both, so that the same rest is of no account where they
+    It compares what the inversion makes of both, so that the same rest is of no account where the hidden coordinates
     follow easily, and hides them where they hardly do.
 
     Parameters
@@ -80,13 +92,13 @@ def starting(form: CanonicalForm, rate: sp.ImmutableMatrix, left: sp.ImmutableMa
     left : matrix of shape (n1, 1)
         Bounds on what is left in it.
     shrunk : expression
-        The factor by which that has shrunk; below 1 / c_max no recovery makes it what it was again.
+        The factor by which that has shrunk; below 1 / c_max no inversion makes it what it was again.
 
     Returns
     -------
-    Gap
+    Unobservable
     """
     numerator, _ = form.cramer
     squared = [sum(entry**2 for entry in matrix) for matrix in (numerator, left, numerator * rate)]
-    half = sp.Ge(4 * squared[0] * squared[1], squared[2])
-    return Gap(sp.And(half, sp.Ge(largest * shrunk, 1)), "what is left of the start may be half of what is found")
+    half = sp.And(sp.Ge(4 * squared[0] * squared[1], squared[2]), sp.Ge(c_max * shrunk, 1))
+    return Unobservable(half, "what is left of the start may be half of what is found")

@@ -4,30 +4,51 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.compile.equations import Equations
-from percept_obs.observers.base import About, Gain, Observer, hats
-from percept_obs.system.forms import PartitionedSystem
+from percept_obs.observers.family import Derived, Option, family
+from percept_obs.observers.gains import Gain, grid
+from percept_obs.observers.parts import hats
+from percept_obs.system.forms import CanonicalForm
 
 Q, R, P0 = sp.symbols("Q R P0", real=True)
 
-GAINS = (
-    Gain(Q, "process_weight", 0.1, 1e-3, 10, "how much the frozen model is doubted", Q >= 0, "it is a weight"),
-    Gain(
-        R, "measurement_weight", 0.1, 1e-4, 10, "how much the measurement is doubted", R > 0, "the gain divides by it"
+
+def not_quadratic(form: CanonicalForm) -> ValueError | None:
+    """What is said where the hidden rate is not quadratic in the hidden coordinates."""
+    jacobian = form.g.jacobian(form.x2).expand()
+    if any(sp.expand(entry.diff(a, b)) != 0 for entry in jacobian for a in form.x2 for b in form.x2):
+        return ValueError("the hidden rate is not quadratic in the hidden coordinates; use the extended Kalman filter")
+    return None
+
+
+@family(
+    name="linear approximation",
+    title="Linear approximation observer (LAO)",
+    source="Ma 2004",
+    needs="any outputs with a hidden rate that is at most quadratic",
+    claim="iterates converge on a finite time; none is claimed for one output",
+    gains=(
+        Gain(
+            Q, "process_weight", 0.1, 1e-3, 10, "1/s", "how much the frozen model is doubted", Q >= 0, "it is a weight"
+        ),
+        Gain(
+            R,
+            "measurement_weight",
+            0.1,
+            1e-4,
+            10,
+            "s",
+            "how much the measurement is doubted",
+            R > 0,
+            "the gain divides by it",
+        ),
+        Gain(P0, "start_weight", 1, 1e-2, 10, "1", "how much the start is doubted", P0 > 0, "it is a weight"),
     ),
-    Gain(P0, "start_weight", 1, 1e-2, 10, "how much the start is doubted", P0 > 0, "it is a weight"),
+    options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
+    # only the ratios to the measurement's weight matter, and a large one is stiff
+    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
+    objection_of=not_quadratic,
 )
-
-
-ABOUT = About(
-    "Linear approximation observer (LAO)",
-    "Ma 2004",
-    "any outputs with a hidden rate that is at most quadratic",
-    "iterates converge on a finite time; none is claimed for one output",
-)
-
-
-def linear_approximation(form: PartitionedSystem, iterates: int = 6, **gains: float) -> Observer:
+def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     """Linear approximation observer (LAO).
 
     The hidden rate g is quadratic in x2, so that g(x2) = g(0) + (J(0) + J(x2)) x2 / 2 with its Jacobian J.  With J
@@ -39,45 +60,18 @@ def linear_approximation(form: PartitionedSystem, iterates: int = 6, **gains: fl
 
     The iterates run side by side, as one cascade; the last one is the estimate.
 
-    Parameters
-    ----------
-    form : PartitionedSystem
-        With a canonical form, and a hidden rate that is at most quadratic in the hidden coordinates.
-    iterates : int
-        Number of filters in the cascade.  Default 6.
-    process_weight : float
-        Q, not negative; with 0 the estimate never settles.  Default 0.1.
-    measurement_weight : float
-        R, positive.  Default 0.1.
-    start_weight : float
-        P(0), the factor of the identity, positive.  Default 1.
-
-    Returns
-    -------
-    Observer
-
-    Raises
-    ------
-    NotAffine
-        If there is no canonical form.
-    ValueError
-        If the hidden rate is not quadratic, the number of iterates is not positive, or a gain is out of its range.
-
     Notes
     -----
     L. Ma, Vision-based measurements for dynamic systems and control, PhD thesis, Utah State University, 2004, after
     C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
+    With Q = 0 the estimate never settles.
     """
     if not isinstance(iterates, int) or iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
-    form = form.canonical_form()
     x, n1 = (*form.x1, *form.x2), len(form.x1)
     size = len(x)
     jacobian = form.g.jacobian(form.x2).expand()
     at_zero = dict.fromkeys(form.x2, sp.S.Zero)
-    curvature = [entry.diff(a, b) for entry in jacobian for a in form.x2 for b in form.x2]
-    if any(sp.expand(entry) != 0 for entry in curvature):
-        raise ValueError("the hidden rate is not quadratic in the hidden coordinates; use the extended Kalman filter")
     offset = sp.Matrix([*form.phi, *form.g.subs(at_zero)])
     C = sp.eye(size)[:n1, :]
 
@@ -98,11 +92,7 @@ def linear_approximation(form: PartitionedSystem, iterates: int = 6, **gains: fl
         flow += [*rate, *(P_rate[i, j] for i, j in upper)]
         start += [*hats(x), *(P0 if i == j else sp.S.Zero for i, j in upper)]
         previous = dict(zip(form.x2, estimate[n1:], strict=True))
-    equations = Equations(tuple(state), tuple(flow), form.x1, form.parameters, tuple(symbol.symbol for symbol in GAINS))
-    last = dict(zip(x, estimate, strict=True))
-    result = tuple(last[c] for c in form.coordinates)
-    observer = Observer("linear approximation", form, equations, result, GAINS, tuple(start), about=ABOUT)
-    return observer.with_gains(**gains)
+    return Derived(tuple(state), tuple(flow), tuple(start), estimate)
 
 
 def _symmetric(size: int, number: int) -> sp.Matrix:

@@ -7,6 +7,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from percept_obs.observers.family import Option
+
 Switch = Callable[[sp.Expr, sp.Expr], sp.Expr]
 
 SWITCHES: MappingProxyType[str, Switch] = MappingProxyType(
@@ -17,6 +19,11 @@ SWITCHES: MappingProxyType[str, Switch] = MappingProxyType(
     }
 )
 """Ways to switch, by name: the sign itself, and two boundary layers of a given width that smooth it."""
+
+
+def switch_option(own: str, meaning: str) -> Option:
+    """The choice among these ways to switch, and the observer's own, which comes first."""
+    return Option("switch", own, meaning, tuple(dict.fromkeys((own, *SWITCHES))))
 
 
 def switch_named(name: str) -> Switch:

@@ -12,7 +12,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.observers.base import Observer
+from percept_obs.observers import Observer
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
 from percept_obs.papers.base import (
     Check,
@@ -41,7 +41,7 @@ alpha = sp.Symbol("alpha", real=True)
 @cache
 def observer() -> Observer:
     """The package's observer of one measured entry whose rate is Omega + g."""
-    form = CanonicalForm((ybar,), (g,), column(1), column(Omega), column(0), (Omega,), (ybar, g))
+    form = CanonicalForm((ybar,), (g,), (Omega,), (ybar, g), w=column(1), phi=column(Omega), g=column(0))
     return integral_sliding_mode(form, "sign")
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.observers import Observer, identifier_based, sliding_mode
-from percept_obs.observers.base import M, gamma
 from percept_obs.observers.identifier_based import A, G, P
+from percept_obs.observers.parts import M, gamma
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta, lambda0
 from percept_obs.papers.base import (
     Check,

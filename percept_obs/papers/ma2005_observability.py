@@ -12,7 +12,7 @@ import sympy as sp
 from percept_obs.compile import vectorised
 from percept_obs.observability.pointwise import instantaneous, windowed
 from percept_obs.observers import identifier_based
-from percept_obs.observers.base import M, gamma
+from percept_obs.observers.parts import M, gamma
 from percept_obs.papers.base import (
     Check,
     Entry,

@@ -9,8 +9,8 @@ from functools import cache, partial
 import sympy as sp
 
 from percept_obs.observers import Observer, identifier_based, sliding_mode
-from percept_obs.observers.base import sigma2
 from percept_obs.observers.identifier_based import A, G, P
+from percept_obs.observers.parts import sigma2
 from percept_obs.observers.sliding_mode import alpha, delta
 from percept_obs.papers.base import (
     Entry,
@@ -64,9 +64,8 @@ sgn_e1 = e1.applyfunc(sp.sign)
 def smallest_form() -> CanonicalForm:
     """The form with n1 = n2 = 1 and any w, phi and g(x2)."""
     p, q, slope_, rest = sp.symbols("p q w phi", real=True)
-    return CanonicalForm(
-        (p,), (q,), column(slope_), column(rest), column(sp.Function("g", real=True)(q)), (slope_, rest), (p, q)
-    )
+    rate = column(sp.Function("g", real=True)(q))
+    return CanonicalForm((p,), (q,), (slope_, rest), (p, q), w=column(slope_), phi=column(rest), g=rate)
 
 
 SMALL = smallest_form()

@@ -8,7 +8,8 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.observers.base import About, hats
+from percept_obs.observers.base import About
+from percept_obs.observers.parts import hats
 from percept_obs.points.form import PointsForm
 from percept_obs.points.lyapunov_matrix import Weight, weight
 

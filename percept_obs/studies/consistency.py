@@ -168,7 +168,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
         raise ValueError(f"the run diverged at {run.diverged_at:.3g} s; a filter that diverges is not consistent")
-    normalised = run.normalised_innovation
+    normalised = run.nis
     counted = np.isfinite(normalised) & (run.time >= run.time[0] + after)
     found = int(counted.sum())
     if not 1 <= samples <= found:

@@ -3,32 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import product
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.observers import (
-    NeedsMoreOutputs,
-    NotIntegrable,
-    Observer,
-    de_luca,
-    extended_kalman,
-    identifier_based,
-    immersion_and_invariance,
-    integral_sliding_mode,
-    linear_approximation,
-    range_identification,
-    sliding_mode,
-    spica,
-)
+from percept_obs.observers import OBSERVERS, Observer
+from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
 from percept_obs.studies.least_squares import WindowEstimate
-from percept_obs.system.forms import NotAffine, PartitionedSystem
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.following import DoesNotFit
 from percept_obs.tracking.run import Run
 
@@ -36,7 +23,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Gains = Mapping[str, float]
-Make = Callable[..., Observer]
 Follow = Callable[[Recording, Observer], Run]
 Estimate = Callable[[Recording], WindowEstimate]
 
@@ -50,57 +36,12 @@ COLUMNS = (
 """Columns of the table."""
 
 
-def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
-    """Every combination of the gains' values."""
-    return tuple(dict(zip(values, each, strict=True)) for each in product(*values.values()))
-
-
-def _identifier_based() -> Iterator[dict[str, float]]:
-    for gain, feedback in product((2, 3.5, 6, 10, 17), (60, 120, 250, 500, 1000)):
-        yield {"gain": gain, "lyapunov": -feedback / gain**2}
-
-
-def _extended_kalman() -> Iterator[dict[str, float]]:
-    for deviation, doubt in product((0.004, 0.008, 0.016, 0.032), (0, 1e-4, 1e-3)):
-        yield {
-            "noise_variance": deviation**2,
-            "process_noise": doubt,
-            "measured_variance": 1e-4,
-            "hidden_variance": 1,
-        }
-
-
-def _range_identification() -> Iterator[dict[str, float]]:
-    # the equations are symmetric in both rates: take them equal
-    for rate, switching, layer in product((3, 4, 6), (1, 3, 10), (0.05, 0.1, 0.2)):
-        yield {"filter_rate": rate, "feedback": rate, "switching_gain": switching, "boundary_layer": layer}
-
-
-HAND_HELD: Mapping[Make, tuple[Gains, ...]] = MappingProxyType(
-    {
-        identifier_based: tuple(_identifier_based()),
-        sliding_mode: grid(hidden_gain=(20, 50, 120), switching_gain=(0.7, 1.7, 4), boundary_layer=(0.1, 0.2, 0.5, 1)),
-        extended_kalman: tuple(_extended_kalman()),
-        de_luca: grid(measured_gain=(2, 3.5, 6, 10, 17), hidden_gain=(60, 120, 250, 500, 1000)),
-        spica: grid(hidden_gain=(20, 40, 60, 80, 110, 150, 200, 270, 370, 500, 700, 1000)),
-        immersion_and_invariance: grid(gain=(5, 10, 20, 40, 80)),
-        integral_sliding_mode: grid(feedback=(1, 2, 4), switching_gain=(0.25, 0.5), sharpening=(0,)),
-        range_identification: tuple(_range_identification()),
-        # only the ratios to the measurement's weight matter, and a large one is stiff
-        linear_approximation: grid(
-            process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)
-        ),
-    }
-)
-"""Gains worth trying on a camera that a hand carries at 0.1 to 0.5 m/s past points some metres away, by observer."""
-
-
 def choose_and_report(
     choosing: Sequence[Recording],
     reporting: Sequence[Recording],
     form: PartitionedSystem,
     follow: Follow,
-    candidates: Mapping[Make, Sequence[Gains]] = HAND_HELD,
+    candidates: Mapping[Family, Sequence[Gains]] | None = None,
     batch: Mapping[str, Estimate] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),
@@ -115,8 +56,9 @@ def choose_and_report(
         What the observers observe.
     follow : function of (recording, observer)
         How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
-    candidates : mapping of functions such as `identifier_based` to their gains
-        Those with the least sum of median errors after the given times are chosen.
+    candidates : mapping of families such as `identifier_based` to their gains, optional
+        Those with the least sum of median errors after the given times are chosen; those of every observer's own file
+        when left out.
     batch : mapping of labels to functions of a recording, optional
         Estimates to stand beside the observers, such as `moving_window_least_squares`; nothing is chosen for them.
     after : sequence of float
@@ -146,6 +88,8 @@ def choose_and_report(
         raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
     if {id(recording) for recording in choosing} & {id(recording) for recording in reporting}:
         raise ValueError("a recording is in both halves: gains flatter the report if they were chosen on it")
+    if candidates is None:
+        candidates = {make: make.candidates for make in OBSERVERS}
     if not candidates or not all(len(gains) for gains in candidates.values()):
         raise ValueError("every observer needs at least one candidate for its gains")
     questions = list(product(references, after))
@@ -166,10 +110,14 @@ def choose_and_report(
             rows.append({**told, "reference": reference, "after": seconds, **numbers})
 
     for make, settings in tqdm(candidates.items(), desc="choosing gains", delay=2, leave=False):
+        refusal, chosen = make.refusal(form), None
         try:
-            chosen = best_setting(choosing, [make(form, **gains) for gains in settings], follow, after)
-        except (DoesNotFit, NeedsMoreOutputs, NotAffine, NotIntegrable) as refusal:
-            told = {"observer": make.__name__.replace("_", " "), "gains": "", "refusal": str(refusal)}
+            observers = [] if refusal else [make(form, **gains) for gains in settings]
+            chosen = best_setting(choosing, observers, follow, after) if observers else None
+        except DoesNotFit as misfit:
+            refusal = str(misfit)
+        if chosen is None:
+            told = {"observer": make.name, "gains": "", "refusal": refusal}
             rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
             continue
         values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}

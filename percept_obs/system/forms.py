@@ -92,17 +92,24 @@ class PartitionedSystem:
         NotAffine
             If the measured coordinates' rate is not affine in the hidden ones.
         """
-        n1 = len(self.x1)
-        measured_rate, g = self.rate[:n1, :].expand(), self.rate[n1:, :]
-        w = measured_rate.jacobian(self.x2).T.expand()
-        culprits = _culprits(w, self.x2)
-        if culprits:
-            raise NotAffine(self.measured, culprits)
+        if self.culprits:
+            raise NotAffine(self.measured, self.culprits)
+        n1, w = len(self.x1), self._weight
         away = dict.fromkeys(self.x2, sp.S.Zero)
         # What is affine but not written so still holds hidden coordinates; their value does not matter there.
         w = w if not w.free_symbols & set(self.x2) else w.subs(away)
-        phi = measured_rate.subs(away)
-        return CanonicalForm(self.x1, self.x2, w, phi, g, self.parameters, self.coordinates, self.surface)
+        phi, g = self.rate[:n1, :].expand().subs(away), self.rate[n1:, :]
+        return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.surface, w=w, phi=phi, g=g)
+
+    @cached_property
+    def culprits(self) -> tuple[str, ...]:
+        """Names of the hidden coordinates that do not enter the measured ones' rate linearly; none: a form exists."""
+        return _culprits(self._weight, self.x2)
+
+    @cached_property
+    def _weight(self) -> sp.ImmutableMatrix:
+        """What multiplies the hidden coordinates in the measured ones' rate, shape (n2, n1)."""
+        return self.rate[: len(self.x1), :].expand().jacobian(self.x2).T.expand()
 
     def _repr_latex_(self) -> str:
         lines = [
@@ -112,23 +119,17 @@ class PartitionedSystem:
         return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class CanonicalForm(PartitionedSystem):
     """The system x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
 
     Parameters
     ----------
-    x1, x2 : tuples of n1 and n2 symbols
-        Measured and hidden coordinates.
+    x1, x2, parameters, coordinates, surface
+        See `PartitionedSystem`; its rate follows from w, phi and g.
     w : matrix of shape (n2, n1)
     phi : matrix of shape (n1, 1)
     g : matrix of shape (n2, 1)
-    parameters : tuple of symbols
-        Known motion and surface.
-    coordinates : tuple of symbols
-        All coordinates in the order of the surface.
-    surface : View or None
-        Where the outputs are seen.
     """
 
     rate: sp.ImmutableMatrix = field(init=False)
@@ -136,27 +137,25 @@ class CanonicalForm(PartitionedSystem):
     phi: sp.ImmutableMatrix = field(kw_only=True)
     g: sp.ImmutableMatrix = field(kw_only=True)
 
-    def __init__(
-        self,
-        x1: tuple[sp.Symbol, ...],
-        x2: tuple[sp.Symbol, ...],
-        w: sp.ImmutableMatrix,
-        phi: sp.ImmutableMatrix,
-        g: sp.ImmutableMatrix,
-        parameters: tuple[sp.Symbol, ...],
-        coordinates: tuple[sp.Symbol, ...],
-        surface: View | None = None,
-    ) -> None:
-        rate = sp.ImmutableMatrix([*(w.T * sp.ImmutableMatrix(x2) + phi), *g])
-        super().__init__(x1, x2, rate, parameters, coordinates, surface)
-        for name, part in (("w", w), ("phi", phi), ("g", g)):
-            object.__setattr__(self, name, part)
+    def __post_init__(self) -> None:
+        rate = sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
+        object.__setattr__(self, "rate", rate)
 
     def canonical_form(self) -> CanonicalForm:
         """The form itself."""
         return self
 
+    @property
+    def culprits(self) -> tuple[str, ...]:
+        """None."""
+        return ()
+
     @cached_property
+    def determines_hidden(self) -> bool:
+        """Whether w^T x2 determines x2: there are outputs enough, and D of `cramer` is not zero everywhere."""
+        return len(self.x2) <= len(self.x1) and not self._cramer[1].expand().is_zero
+
+    @property
     def cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
         """Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
 
@@ -173,13 +172,15 @@ class CanonicalForm(PartitionedSystem):
         NeedsMoreOutputs
             If w^T x2 never determines x2: there are fewer outputs than hidden coordinates, or D is zero everywhere.
         """
-        if len(self.x2) > len(self.x1):
+        if not self.determines_hidden:
             raise NeedsMoreOutputs(self)
+        return self._cramer
+
+    @cached_property
+    def _cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
         square = self.w.T if self.w.is_square else self.w * self.w.T
         # neither is multiplied out, for small differences would be lost in the sum of large terms
         determinant, adjugate = square.det(method="laplace"), square.adjugate(method="laplace")
-        if determinant.expand().is_zero:
-            raise NeedsMoreOutputs(self)
         return adjugate if self.w.is_square else adjugate * self.w, determinant
 
     def derivation(self) -> Derivation:
@@ -221,7 +222,7 @@ def partition(
     return PartitionedSystem(x1, x2, ordered, parameters, coordinates, surface)
 
 
-def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> list[str]:
+def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> tuple[str, ...]:
     """Hidden coordinates on which w depends, or that multiply those: where a second derivative is not zero."""
     draw = random.Random(0)
     points = [{s: sp.Float(draw.uniform(0.1, 0.9), 30) for s in sorted(w.free_symbols, key=str)} for _ in range(3)]
@@ -229,6 +230,6 @@ def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> list[str]:
     for (row, hidden), other in product(enumerate(x2), x2):
         for entry in w.row(row):
             second = entry.diff(other)
-            if any(abs(sp.N(second.subs(point), 30)) > 1e-20 for point in points):
+            if any(abs(second.evalf(30, point)) > 1e-20 for point in points):
                 guilty |= {hidden, other}
-    return [symbol.name for symbol in x2 if symbol in guilty]
+    return tuple(symbol.name for symbol in x2 if symbol in guilty)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 
 import sympy as sp
 
@@ -113,6 +114,13 @@ class PerspectiveSystem:
             If a name is unknown, repeated, or the inverse distance, or none is given.
         """
         return self.partition(*names).canonical_form()
+
+    @cached_property
+    def output_choices(self) -> tuple[tuple[str, ...], ...]:
+        """Names of outputs that give a canonical form if they are measured, all of them first."""
+        names = [symbol.name for symbol in self.surface.image_coordinates]
+        choices = (chosen for count in range(len(names), 0, -1) for chosen in combinations(names, count))
+        return tuple(chosen for chosen in choices if not self.partition(*chosen).culprits)
 
     def derivation(self) -> Derivation:
         """The way from X' = A X + b to the rate, step by step."""

@@ -175,7 +175,7 @@ def _follow(
 def _estimates(
     observer: Observer, inputs: Sequence[Array], time: Array, first: Array
 ) -> tuple[Array, NDArray[np.int_]]:
-    """Estimates at the samples, NaN for the hidden coordinates in a gap, and in which gap each sample lies.
+    """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
     Parameters
     ----------
@@ -193,9 +193,9 @@ def _estimates(
     unobservable = np.zeros(len(time), dtype=int)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
         estimate = np.stack(vectorised(symbols, observer.estimate, observer.gain_values)(*inputs), axis=-1)
-        if observer.gaps:
+        if observer.unobservable:
             symbols = (*symbols, elapsed, *first_innovation(form))
-            conditions = [gap.condition for gap in observer.gaps]
+            conditions = [where.condition for where in observer.unobservable]
             begun = np.broadcast_to(first - estimate[0, measured], (len(time), len(measured)))
             found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
             for k, holds in reversed(list(enumerate(found, 1))):

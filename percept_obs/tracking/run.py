@@ -64,7 +64,7 @@ class Run:
     resets : array
         Times, in seconds, at which the estimate was reset.
     unobservable : array of shape (K,) of int
-        Which of `Observer.gaps` leaves the hidden coordinates without an estimate, counted from 1; 0 where none does.
+        Which of `Observer.unobservable` hides the hidden coordinates, counted from 1; 0 where they have an estimate.
     """
 
     recording: Recording
@@ -133,8 +133,8 @@ class Run:
         return np.stack(entries, axis=-1).reshape(len(self.state), *observer.covariance.shape)
 
     @cached_property
-    def normalised_innovation(self) -> Array:
-        """Squared innovation before the update, over the variance that was claimed for it, shape (K,).
+    def nis(self) -> Array:
+        """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
 
         Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost.
         With the residual r after the update, its covariance R - P and r = R S^-1 (innovation), the squared innovation
@@ -189,7 +189,7 @@ class Run:
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:
-        """Times in seconds of every gap's first and last sample, where the hidden coordinates have no estimate.
+        """First and last time in seconds of every stretch where the hidden coordinates have no estimate.
 
         Their estimates are NaN there, although the observer runs on; `reasons` says why.
         """
@@ -197,12 +197,12 @@ class Run:
 
     @property
     def reasons(self) -> list[str]:
-        """Why each of the `unobservable_intervals` is there."""
-        return [self.observer.gaps[self.unobservable[k] - 1].reason for k, _ in self._stretches]
+        """Why there is no estimate in each of the `unobservable_intervals`."""
+        return [self.observer.unobservable[self.unobservable[k] - 1].reason for k, _ in self._stretches]
 
     @cached_property
     def _stretches(self) -> list[tuple[int, int]]:
-        """First sample of every gap, and the first one after it."""
+        """First sample of every such stretch, and the first one after it."""
         edges = np.flatnonzero(np.diff(self.unobservable, prepend=0, append=0))
         return [(int(k), int(end)) for k, end in pairwise(edges) if self.unobservable[k]]
 
@@ -249,11 +249,11 @@ class Run:
             which = "reset once" if len(self.resets) == 1 else "reset often"
             besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
         for reason in dict.fromkeys(self.reasons):
-            gaps = [gap for gap, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
-            begin, end = (f"{time:.3g}" for time in gaps[0])
+            alike = [part for part, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
+            begin, end = (f"{time:.3g}" for time in alike[0])
             besides += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
-            if len(gaps) > 1:
-                besides += VERDICTS["more gaps"].format(count=len(gaps) - 1)
+            if len(alike) > 1:
+                besides += VERDICTS["more gaps"].format(count=len(alike) - 1)
         length = float(self.time[-1] - self.time[0])
         if self.recording.truth is None or not self._known.any():
             return VERDICTS["followed"].format(time=f"{length:.3g}") + besides

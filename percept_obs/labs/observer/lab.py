@@ -12,16 +12,16 @@ import numpy as np
 
 from percept_obs.labs.observer.texts import (
     BY_NAME,
-    KEYS,
-    OUTPUTS,
     OWN_SWITCH,
     SURFACES,
     WAYS,
     form_of,
     key_of,
+    keys,
     model_for_the_page,
     observer_of,
     structure_for_the_page,
+    system_of,
     ways_of,
 )
 from percept_obs.labs.observer.tracks import track_for_the_page, with_affine_motion
@@ -103,7 +103,7 @@ class ObserverLab(Lab):
         fit.pop("title", None)
         self._opening: Settings = {**_opening_settings(), **fit, "scenario": scenario}
         self._opening = self.check(self._opening | settings)
-        near = sorted(KEYS, key=lambda key: key.split()[0] != self._opening["surface"])
+        near = sorted(keys(), key=lambda key: key.split()[0] != self._opening["surface"])
         here = key_of(self._opening["surface"], self._opening["outputs"])
         parts = sorted(near, key=lambda key: key != here)
         super().__init__("observer_lab", self._model(), self._opening, PRINTING, parts)
@@ -226,7 +226,7 @@ def _refused(recording: Recording) -> dict[str, str]:
     if signal is None or signal.constant:
         return {}
     reason = "it needs a motion with constant coefficients, but the recording's varies"
-    return {name: reason for name in BY_NAME if observer_of("pinhole", OUTPUTS[0], name).constant_motion}
+    return {name: reason for name, make in BY_NAME.items() if make.constant_motion}
 
 
 def _as_settings(scenario: Scenario) -> Settings:
@@ -276,7 +276,7 @@ def _checked_switches(given: Mapping[str, str]) -> dict[str, str]:
 
 def _check_choices(settings: Settings, recording: Recording | None) -> None:
     surface = one_of(settings, "surface", SURFACES)
-    offered = [o for o in OUTPUTS if recording is None or set(o) <= set(recording.names)]
+    offered = [o for o in system_of(surface).output_choices if recording is None or set(o) <= set(recording.names)]
     if tuple(settings["outputs"]) not in offered:
         raise ValueError(
             f"outputs is {settings['outputs']!r}; it must be one of {', '.join(map(str, map(list, offered)))}"

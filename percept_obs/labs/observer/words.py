@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from percept_obs.compile import vectorised
 from percept_obs.labs.observer.texts import observer_of
 from percept_obs.observability.pointwise import windowed
-from percept_obs.observers.base import hats
+from percept_obs.observers.parts import hats
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.tracking.run import Run
@@ -61,7 +61,7 @@ def _honesty_in_words(run: Run) -> str:
     start = f"{run.observer.name}: normalised innovation test"
     try:
         # the estimate starts from the first sample, which therefore tells nothing
-        squares = run.normalised_innovation[1:]
+        squares = run.nis[1:]
     except np.linalg.LinAlgError:
         return f"{start}: impossible, its covariance is singular."
     squares = squares[np.isfinite(squares)]

@@ -11,8 +11,8 @@ import sympy as sp
 
 from percept_obs.labs.shared.markup import after, dotted, formula, markup, row, words
 from percept_obs.observers import Observer, extended_kalman, linear_approximation
-from percept_obs.observers.base import hats
 from percept_obs.observers.inversion import elapsed
+from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
@@ -52,7 +52,7 @@ def lecture_form() -> CanonicalForm:
     x1, x2 = sp.symbols("x1 x2", real=True)
     blocks = (("w", (x1,)), ("phi", (x1,)), ("g", (x1, x2)))
     w, phi, g = (sp.ImmutableMatrix([[sp.Function(name, real=True)(*of)]]) for name, of in blocks)
-    return CanonicalForm((x1,), (x2,), w, phi, g, (), (x1, x2))
+    return CanonicalForm((x1,), (x2,), (), (x1, x2), w=w, phi=phi, g=g)
 
 
 def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
@@ -79,12 +79,11 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     begun = [formula(s, value, letters) for s, value in starts if value in letters.values()]
     if begun:
         lines.append(row("at the start", *_listed(begun)))
-    for gap in observer.gaps:
-        in_time = gap.condition.has(elapsed)  # a condition that is long and of no use by hand
-        where = (
-            [f"no estimate while {gap.reason}"] if in_time else ["no estimate where", markup(gap.condition, letters)]
-        )
-        lines.append(row(*where))
+    for where in observer.unobservable:
+        if where.condition.has(elapsed):  # long, and of no use by hand
+            lines.append(row(f"no estimate while {where.reason}"))
+        else:
+            lines.append(row("no estimate where", markup(where.condition, letters)))
     if equations.reset:
         changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
         after_it = [formula(after(s), new, letters) for s, new in changed]

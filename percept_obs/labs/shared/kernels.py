@@ -10,8 +10,8 @@ import sympy as sp
 from percept_obs.compile import function_source, source
 from percept_obs.labs.shared.markup import markup
 from percept_obs.observers import Gain, Observer
-from percept_obs.observers.base import hats
 from percept_obs.observers.inversion import elapsed, first_innovation
+from percept_obs.observers.parts import hats
 
 Texts = dict[str, Any]
 
@@ -48,6 +48,7 @@ def gain_for_the_page(gain: Gain) -> Texts:
         "value": gain.value,
         "low": gain.low,
         "high": gain.high,
+        "unit": gain.unit,
         "meaning": gain.meaning,
         "allowed": function_source((gain.symbol,), (sp.Piecewise((1, gain.condition), (0, True)),)),
         "condition": "" if gain.condition == sp.true else str(gain.condition),
@@ -60,8 +61,8 @@ def kernel_for_the_page(observer: Observer) -> Texts:
     form, equations = observer.form, observer.equations
     known = (*form.x1, *form.parameters, *equations.gains)
     claimed, fastest = observer.covariance, observer.fastest
-    conditions = [(k, gap.condition) for k, gap in enumerate(observer.gaps, 1)]
-    begun = (elapsed, *first_innovation(form)) if observer.gaps else ()
+    conditions = [(k, where.condition) for k, where in enumerate(observer.unobservable, 1)]
+    begun = (elapsed, *first_innovation(form)) if observer.unobservable else ()
     return {
         "gains": [gain.name for gain in observer.gains],
         "run": source(equations, "javascript"),
@@ -72,7 +73,7 @@ def kernel_for_the_page(observer: Observer) -> Texts:
         "gap": None
         if not conditions
         else function_source((*known, *equations.state, *begun), (sp.Piecewise(*conditions, (0, True)),)),
-        "gapReasons": [gap.reason for gap in observer.gaps],
+        "gapReasons": [where.reason for where in observer.unobservable],
         "fastest": fastest and function_source((elapsed, *equations.gains), (fastest.rate,)),
         "remedy": fastest and fastest.remedy,
     }

@@ -14,12 +14,13 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from percept_obs import observers
 from percept_obs.compile import function_source, source
 from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.kernels import Texts, kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.markup import formula, markup
-from percept_obs.observers import Observer, de_luca, extended_kalman, identifier_based, integral_sliding_mode
+from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.observers.integral_sliding_mode import IDEAL
 from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
 from percept_obs.system.forms import CanonicalForm, partition
@@ -31,15 +32,14 @@ _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
 LARGEST = 3
 """How many unknowns there are at most."""
 
+ISMO_WAYS = {
+    "ideal": ("ideal switch", IDEAL),
+    "layer": ("boundary layer", "hyperbolic tangent"),
+    "sign": ("sign", "sign"),
+}
 OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
-    {
-        "ideal": ("ISMO, ideal switch", partial(integral_sliding_mode, switch=IDEAL)),
-        "layer": ("ISMO, boundary layer", partial(integral_sliding_mode, switch="hyperbolic tangent")),
-        "sign": ("ISMO, sign", partial(integral_sliding_mode, switch="sign")),
-        "extended_kalman": ("extended Kalman filter", extended_kalman),
-        "identifier_based": ("identifier-based", identifier_based),
-        "de_luca": ("De Luca", de_luca),
-    }
+    {key: (f"ISMO, {way}", partial(integral_sliding_mode, switch=switch)) for key, (way, switch) in ISMO_WAYS.items()}
+    | {make.key: (make.name, make) for make in observers.OBSERVERS if make.offered_for_structure}
 )
 """Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
 

@@ -1,0 +1,217 @@
+"""A family of observers: all that is known of it, in one value that makes an observer of a form."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from percept_obs.compile.equations import Equations, Expressions, Symbols
+from percept_obs.observers.base import About, FastestRate, Observer
+from percept_obs.observers.gains import Gain
+from percept_obs.observers.inversion import Unobservable
+from percept_obs.observers.parts import hats
+from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
+
+
+@dataclass(frozen=True)
+class Option:
+    """What shapes an observer's equations, besides the form and the gains.
+
+    Parameters
+    ----------
+    name : str
+        Its keyword.
+    value : object
+        The default.
+    meaning : str
+    offered : tuple of str
+        The values among which it is chosen, if they can be listed.
+    """
+
+    name: str
+    value: Any
+    meaning: str
+    offered: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Two lines of a docstring."""
+        kind = " or ".join(f'"{value}"' for value in self.offered) or type(self.value).__name__
+        return f"{self.name} : {kind}\n    {self.meaning}.  Default {self.value!r}."
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What an observer's file derives from a form, with (x1, x2) for the measured and hidden coordinates.
+
+    Parameters
+    ----------
+    state : symbols
+        The observer's state.
+    flow : expressions, one a state
+    start : expressions, one a state, optional
+        The state at the first sample, see `Observer`; the state's symbols when left out, if they are estimates.
+    estimate : n expressions, optional
+        Estimates of (x1, x2); the `hats` when left out.
+    update : one tuple of expressions a measured output
+    reset : condition, and expressions, one a state
+    covariance : matrix of shape (n, n), optional
+        Covariance of the estimates of (x1, x2).
+    unobservable : tuple of Unobservable
+    fastest : FastestRate, optional
+    gains : tuple of Gain, optional
+        Those of the family's that these equations have; all when left out.
+    """
+
+    state: Symbols
+    flow: Expressions
+    start: Expressions | None = None
+    estimate: Expressions | None = None
+    update: tuple[Expressions, ...] = ()
+    reset: tuple[Boolean, Expressions] = (sp.false, ())
+    covariance: sp.ImmutableMatrix | None = None
+    unobservable: tuple[Unobservable, ...] = ()
+    fastest: FastestRate | None = None
+    gains: tuple[Gain, ...] | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Family:
+    """What makes observers of one kind: called with a form, options and gains, it gives an `Observer`.
+
+    Made by `family`, the decorator of the function that derives the equations.
+
+    Parameters
+    ----------
+    derive : function of a form and the options
+        Gives what is `Derived` from the form.
+    name : str
+        What its observers are called, in short.
+    about : About
+    gains : tuple of Gain
+        With their default values.
+    options : tuple of Option
+    candidates : tuple of mappings of gains' names to values
+        Worth trying on a camera that a hand carries at 0.1 to 0.5 m/s past points some metres away.
+    any_form : bool
+        Whether it needs no canonical form.
+    objection_of : function of a form, optional
+        What it needs besides: the error that is raised for this form, or None if it exists.
+    constant_motion : bool
+        Whether the equations hold for a motion with constant coefficients only.
+    offered_for_structure : bool
+        Whether the lab of structure and motion offers it; integral sliding modes stand there in three ways.
+    """
+
+    derive: Callable[..., Derived]
+    name: str
+    about: About
+    gains: tuple[Gain, ...]
+    options: tuple[Option, ...] = ()
+    candidates: tuple[Mapping[str, float], ...] = ({},)
+    any_form: bool = False
+    objection_of: Callable[[CanonicalForm], ValueError | None] | None = None
+    constant_motion: bool = False
+    offered_for_structure: bool = False
+
+    def __post_init__(self) -> None:
+        described = {"__doc__": self._docstring(), "__signature__": self._signature()}
+        for name in ("__name__", "__qualname__", "__module__"):
+            described[name] = getattr(self.derive, name)
+        for name, value in described.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def key(self) -> str:
+        """Name of the function in Python, by which tables and settings know it."""
+        return self.derive.__name__
+
+    @property
+    def switches(self) -> tuple[str, ...]:
+        """Ways in which it switches, its own first; none if it does not switch."""
+        return next((option.offered for option in self.options if option.name == "switch"), ())
+
+    def objection(self, form: PartitionedSystem) -> ValueError | None:
+        """The error that making an observer of this form raises; None if there is one."""
+        if self.any_form:
+            return None
+        if form.culprits:
+            return NotAffine(form.measured, form.culprits)
+        return self.objection_of(form.canonical_form()) if self.objection_of else None
+
+    def refusal(self, form: PartitionedSystem) -> str:
+        """Why there is no such observer of this form; empty if there is one."""
+        return str(self.objection(form) or "")
+
+    def __call__(self, form: PartitionedSystem, *options: Any, **chosen: Any) -> Observer:
+        """An observer of this form; raises what is told by `objection`, or by its options and gains."""
+        objection = self.objection(form)
+        if objection is not None:
+            raise objection
+        form = form if self.any_form else form.canonical_form()
+        named = dict(zip((option.name for option in self.options), options, strict=False))
+        named |= {option.name: chosen.pop(option.name) for option in self.options if option.name in chosen}
+        derived = self.derive(form, **{option.name: option.value for option in self.options} | named)
+        gains = self.gains if derived.gains is None else derived.gains
+        x = (*form.x1, *form.x2)
+        order = [x.index(coordinate) for coordinate in form.coordinates]
+        estimate, covariance = derived.estimate or hats(x), derived.covariance
+        symbols = tuple(gain.symbol for gain in gains)
+        return Observer(
+            self.name,
+            form,
+            Equations(derived.state, derived.flow, form.x1, form.parameters, symbols, derived.update, *derived.reset),
+            tuple(estimate[k] for k in order),
+            gains,
+            derived.start or derived.state,
+            covariance and covariance.extract(order, order),
+            self.about,
+            self.constant_motion,
+            derived.unobservable,
+            derived.fastest,
+        ).with_gains(**chosen)
+
+    def _signature(self) -> inspect.Signature:
+        named, rest = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.VAR_KEYWORD
+        options = [inspect.Parameter(option.name, named, default=option.value) for option in self.options]
+        return inspect.Signature([inspect.Parameter("form", named), *options, inspect.Parameter("gains", rest)])
+
+    def _docstring(self) -> str:
+        text = inspect.getdoc(self.derive) or self.about.title
+        head, mark, notes = text.partition("\n\nNotes\n-----\n")
+        form = f"form : PartitionedSystem\n    What is observed; needed: {self.about.needs}."
+        parameters = "\n".join(map(str, (form, *self.options, *self.gains)))
+        errors = (
+            "ValueError\n    If `refusal` tells why there is none of this form, or a gain or an option makes no sense."
+        )
+        if not self.any_form:
+            errors = f"NotAffine\n    If there is no canonical form.\n{errors}"
+        sections = {"Parameters": parameters, "Returns": "Observer", "Raises": errors}
+        made = "".join(f"\n\n{title}\n{'-' * len(title)}\n{lines}" for title, lines in sections.items())
+        return f"{head}{made}{mark}{notes}"
+
+    def __repr__(self) -> str:
+        return f"{self.key}{self._signature()}"
+
+
+def family(
+    *, name: str, title: str, source: str, needs: str, claim: str, gains: tuple[Gain, ...], **others: Any
+) -> Callable[[Callable[..., Derived]], Family]:
+    """Make a `Family` of the function that derives its equations; its docstring gets the lines on the gains.
+
+    Parameters
+    ----------
+    name : str
+    title, source, needs, claim : str
+        See `About`.
+    gains : tuple of Gain
+    **others
+        See `Family`.
+    """
+    about = About(title, source, needs, claim)
+    return partial(Family, name=name, about=about, gains=gains, **others)

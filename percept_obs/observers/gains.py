@@ -1,0 +1,72 @@
+"""Constants of an observer that a user may choose, and grids of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import sympy as sp
+
+
+@dataclass(frozen=True)
+class Gain:
+    """A constant of an observer that a user may choose.
+
+    Parameters
+    ----------
+    symbol : sympy symbol
+        Its letter in the equations.
+    name : str
+        Its keyword.
+    value : float
+    low, high : float
+        Range that is worth exploring.
+    unit : str
+        Such as "1/s", for image coordinates without a unit and hidden ones in 1/m; "1" for a number.
+    meaning : str
+        What it does, in a few words.
+    condition : sympy relation
+        What the value must fulfil.
+    reason : str
+        Why it must.
+
+    Raises
+    ------
+    ValueError
+        If the value is not a finite number, or does not fulfil the condition.
+    """
+
+    symbol: sp.Symbol
+    name: str
+    value: float
+    low: float
+    high: float
+    unit: str
+    meaning: str
+    condition: Any = sp.true
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        try:
+            value = float(self.value)
+        except (TypeError, ValueError):
+            raise ValueError(f"{self.name} = {self.value!r} is not a number") from None
+        object.__setattr__(self, "value", value)
+        if not math.isfinite(value):
+            raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
+        if not self.condition.subs(self.symbol, sp.Float(value)):
+            raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
+
+    def __str__(self) -> str:
+        """Two lines of a docstring."""
+        unit = "" if self.unit == "1" else f", in {self.unit}"
+        condition = "" if self.condition == sp.true else f"; {self.condition}"
+        return f"{self.name} : float\n    {self.symbol}, {self.meaning}{unit}{condition}.  Default {self.value:.4g}."
+
+
+def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
+    """Every combination of the gains' values."""
+    return tuple(dict(zip(values, each, strict=True)) for each in product(*values.values()))

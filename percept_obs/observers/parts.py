@@ -1,0 +1,114 @@
+"""Parts that observers' equations are made of: estimates, innovation, output injection, bias of noise, a bound."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from percept_obs.compile.equations import Expressions, Symbols
+from percept_obs.observers.gains import Gain
+from percept_obs.system.forms import CanonicalForm
+
+M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
+
+STICKS = "at 1 the reset maps the bound to itself and the estimate sticks to it"
+BOUND_GAINS = (
+    Gain(M, "bound", 10, 1, 50, "1/m", "largest norm of the estimate", M > 0, "it bounds a norm"),
+    Gain(
+        gamma, "reset_ratio", 1.01, 1.001, 2, "1", "how far beyond the bound the estimate is reset", gamma > 1, STICKS
+    ),
+)
+"""Gains of `kept_within`."""
+
+NOISE_GAIN = Gain(
+    sigma2,
+    "noise_variance",
+    0,
+    0,
+    1e-3,
+    "1",
+    "variance of the noise whose bias is taken out",
+    sigma2 >= 0,
+    "it is a variance",
+)
+"""Gain of `noise_bias`."""
+
+
+def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
+    """Symbols of the estimates: yhat1 for y1."""
+    return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
+
+
+def output_injection(
+    form: CanonicalForm,
+    correction: sp.ImmutableMatrix,
+    measured_gain: sp.Expr,
+    hidden_gain: sp.Expr,
+    bias: sp.ImmutableMatrix | None = None,
+) -> Expressions:
+    """The flow of a copy of the system into which a correction of the outputs is fed back.
+
+    With the correction c, the gains L1, L2 and the bias b of w c::
+
+        x1hat' = L1 c + w^T x2hat + phi
+        x2hat' = L2 (w c - b) + g(x1, x2hat)
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    correction : matrix of shape (n1, 1)
+        The innovation `innovation`, or a function of it.
+    measured_gain, hidden_gain : expressions
+    bias : matrix of shape (n2, 1), optional
+        Such as `noise_bias`; none when left out.
+
+    Returns
+    -------
+    tuple of n1 + n2 expressions
+    """
+    x2_hat = hats(form.x2)
+    injected = form.w * correction - (sp.zeros(len(x2_hat), 1) if bias is None else bias)
+    measured_rate = measured_gain * correction + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
+    hidden_rate = hidden_gain * injected + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
+    return (*measured_rate, *hidden_rate)
+
+
+def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
+    """Measured outputs minus their estimates, x1 - x1hat."""
+    return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
+
+
+def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
+    """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
+
+    Ma 2005, (12), p. 65.  A state that is not part of the estimate stays.
+    """
+    squared = sum(hat**2 for hat in estimate)
+    shrink = M / sp.sqrt(squared)
+    return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
+
+
+def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
+
+    The same sample n enters both factors: with the variance sigma^2 in each output,
+    E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
+    Exact when both are affine in the outputs, as for the identifier-based observer on the pinhole; otherwise the
+    curvature of either factor is left out.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+    correction : matrix of shape (n1, 1)
+        What the observer multiplies by w, in terms of the measured outputs.
+
+    Returns
+    -------
+    matrix of shape (n2, 1)
+    """
+    # a sign's derivative is taken as 0: the noise moves it at single instants only
+    smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}
+    return sigma2 * sum((form.w.diff(x) * smooth[x] for x in form.x1), sp.zeros(len(form.x2), 1))
