@@ -36,7 +36,7 @@ def test_a_right_claim_passes_in_about_95_of_100_recordings(form):
 
 
 @pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
-@pytest.mark.parametrize(("factor", "judgement"), [(1 / 4, "overconfident"), (1, "consistent"), (4, "too modest")])
+@pytest.mark.parametrize(("factor", "judgement"), [(1 / 4, "overconfident"), (1, "consistent"), (4, "conservative")])
 def test_a_wrong_noise_variance_is_told(form, factor, judgement):
     found = check_consistency(filtered(form, variance=factor * SIGMA**2))
     assert found.judgement == judgement
@@ -59,9 +59,9 @@ def test_averages_move_over_the_samples_that_there_are():
     lost[100:110] = np.nan
     run = filtered(BOTH, replace(RECORDING, outputs=lost))
     found = check_consistency(run, samples=20, after=2.0)
-    assert len(found.normalised) == 401 - 40 - 10
+    assert len(found.nis) == 401 - 40 - 10
     assert found.time[0] == pytest.approx(2.0)
-    np.testing.assert_allclose(found.averages[7], found.normalised[7:27].mean())
+    np.testing.assert_allclose(found.averages[7], found.nis[7:27].mean())
     assert found.average_time[7] == found.time[26]
     assert len(found.averages) == len(found.average_time)
 

@@ -1,4 +1,4 @@
-"""The extended Kalman filter is a Kalman filter where the system is linear, converges on any surface, and is honest."""
+"""The extended Kalman filter is a Kalman filter where the system is linear, converges on any surface, is consistent."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_both_outputs_stay_close_from_two_seconds_on():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
-def test_the_claimed_covariance_is_honest(form):
+def test_the_claimed_covariance_is_consistent(form):
     """Normalised innovations have the mean that their number of outputs asks; errors keep within three sigma."""
     camera = Camera(noise=Gaussian(0.01))
     observer = ekf(form, noise_variance=1e-4, measured_variance=1e-4, hidden_variance=0.01)

@@ -284,13 +284,13 @@ def test_consistency_is_drawn_with_its_interval_and_verdict(runs):
     figure = figures.consistency(found)
     (ax,) = figure.axes
     np.testing.assert_array_equal(line(ax, "mean of 40 samples"), [found.average_time, found.averages])
-    np.testing.assert_array_equal(line(ax, "samples"), [found.time, found.normalised])
+    np.testing.assert_array_equal(line(ax, "samples"), [found.time, found.nis])
     assert set(line(ax, "expected mean")[1]) == {1}
     (interval,) = (patch for patch in ax.patches if patch.get_label() == "95 % interval")
     low, high = found.interval(40)
     np.testing.assert_allclose([interval.get_y(), interval.get_y() + interval.get_height()], [low, high])
     assert found.verdict()[1:] in figure.text
-    outside = (found.normalised > ax.get_ylim()[1]).sum()
+    outside = (found.nis > ax.get_ylim()[1]).sum()
     assert f"Outside the axis: {outside} of the normalised innovations" in figure.text
     paint(figure)
 

@@ -185,9 +185,9 @@ def _rigid(motion):
         ({"observers": ["extended_kalman"]}, "claims to know the inverse distance"),
         ({"outputs": ["y1"], "noise": NOISY}, "noise pushes the estimate of y2"),
         ({}, "a small error shrinks to"),
-        ({"observers": ["extended_kalman"], "noise": NOISY}, "It is honest"),
-        ({"observers": ["extended_kalman"], "noise": {"kind": "uniform", "size": 0.03}}, "It is overconfident"),
-        ({"observers": ["extended_kalman"]}, "It is too modest"),
+        ({"observers": ["extended_kalman"], "noise": NOISY}, "it is consistent"),
+        ({"observers": ["extended_kalman"], "noise": {"kind": "uniform", "size": 0.03}}, "it is overconfident"),
+        ({"observers": ["extended_kalman"]}, "it is conservative"),
         (
             {"observers": ["integral_sliding_mode"], "switches": {"integral_sliding_mode": "hyperbolic tangent"}},
             "too fast",

@@ -101,11 +101,11 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Figure:
     low, high = found.interval(found.samples)
     ax.axhspan(low, high, color=GREEN, alpha=0.2, linewidth=0, label=f"{100 * found.confidence:g} % interval")
     ax.axhline(found.outputs, color=BLACK, linewidth=1, linestyle="--", label="expected mean")
-    ax.plot(found.time, found.normalised, **dots(found.normalised, label="samples"))
+    ax.plot(found.time, found.nis, **dots(found.nis, label="samples"))
     name = f"mean of {found.samples} samples"
     ax.plot(found.average_time, found.averages, color=BLUE, linewidth=1.6, label=name)
     firm = np.array([low, high, *found.averages, 0.0])
-    left_out = linear_axis(ax, firm, found.normalised, "the normalised innovations", reach=1.0)
+    left_out = linear_axis(ax, firm, found.nis, "the normalised innovations", reach=1.0)
     ax.set_xlim(found.time[0], found.time[-1])
     ax.set_xlabel("time (s)")
     ax.set_ylabel("normalised innovation")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -14,6 +15,15 @@ Array = NDArray[np.float64]
 
 DEVIATIONS = 2.0
 """Claimed standard deviations to either side of an estimate: 95 % of a normal distribution."""
+
+JUDGEMENTS = MappingProxyType(
+    {
+        "consistent": "the innovations are as large as the filter claims",
+        "overconfident": "the innovations are larger than the filter claims, so doubt the motion or the samples more",
+        "conservative": "the innovations are smaller than the filter claims, so doubt the samples less",
+    }
+)
+"""What each judgement says."""
 
 
 def claimed_interval(run: Run) -> tuple[Array, Array]:
@@ -57,7 +67,7 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Consistency:
-    """Whether normalised innovations are as large as they should be.
+    """Whether normalised innovations squared (NIS) are as large as they should be.
 
     If the filter's claims are right they are distributed as chi-squared with `outputs` degrees of freedom, each
     independent of the others, so N times the mean of N of them is chi-squared with N `outputs`.
@@ -66,8 +76,8 @@ class Consistency:
     ----------
     time : array of shape (K,)
         When there was a sample of all outputs, in seconds.
-    normalised : array of shape (K,)
-        Normalised innovations.
+    nis : array of shape (K,)
+        See `Run.nis`.
     outputs : int
         Number of measured outputs, which is the mean to be expected.
     samples : int
@@ -77,15 +87,15 @@ class Consistency:
     """
 
     time: Array
-    normalised: Array
+    nis: Array
     outputs: int
     samples: int
     confidence: float
 
     @property
     def averages(self) -> Array:
-        """Mean of each normalised innovation and the N - 1 before it, shape (K - N + 1,)."""
-        means: Array = sliding_window_view(self.normalised, self.samples).mean(axis=1)
+        """Mean of each NIS and the N - 1 before it, shape (K - N + 1,)."""
+        means: Array = sliding_window_view(self.nis, self.samples).mean(axis=1)
         return means
 
     @property
@@ -95,11 +105,11 @@ class Consistency:
 
     @property
     def mean(self) -> float:
-        """Mean of all normalised innovations."""
-        return float(self.normalised.mean())
+        """Mean of all NIS."""
+        return float(self.nis.mean())
 
     def interval(self, count: int) -> tuple[float, float]:
-        """Where the mean of so many normalised innovations lies, with the probability `confidence`."""
+        """Where the mean of so many NIS lies, with the probability `confidence`."""
         from scipy.stats import chi2
 
         low, high = chi2.interval(self.confidence, count * self.outputs)
@@ -107,25 +117,27 @@ class Consistency:
 
     @property
     def judgement(self) -> str:
-        """One of "consistent", "overconfident" (innovations are too large) and "too modest"."""
-        low, high = self.interval(len(self.normalised))
-        return "overconfident" if self.mean > high else "too modest" if self.mean < low else "consistent"
+        """One of "consistent", "overconfident" (innovations are too large) and "conservative" (too small)."""
+        low, high = self.interval(len(self.nis))
+        return "overconfident" if self.mean > high else "conservative" if self.mean < low else "consistent"
+
+    @property
+    def summary(self) -> str:
+        """The judgement in words, with the mean that it rests on."""
+        low, high = self.interval(len(self.nis))
+        return (
+            f"{self.judgement}: {JUDGEMENTS[self.judgement]}. The mean NIS of {len(self.nis)} samples is "
+            f"{self.mean:.3g}; {self.outputs} is expected, and {low:.3g} to {high:.3g} with a probability of "
+            f"{100 * self.confidence:g} %"
+        )
 
     def verdict(self) -> str:
-        """The judgement in words, with its numbers."""
-        reason = {
-            "consistent": "the innovations are as large as the filter claims",
-            "overconfident": "the innovations are larger than the filter claims",
-            "too modest": "the innovations are smaller than the filter claims",
-        }
-        low, high = self.interval(len(self.normalised))
+        """The summary, and how many of the moving averages lie where they should."""
         lowest, highest = self.interval(self.samples)
         inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
         return (
-            f"{self.judgement}: {reason[self.judgement]}. The mean normalised innovation of {len(self.normalised)} "
-            f"samples is {self.mean:.3g}; {self.outputs} is expected, and {low:.3g} to {high:.3g} with a probability "
-            f"of {100 * self.confidence:g} %. Of the moving averages of {self.samples} samples {100 * inside:.0f} % "
-            f"lie in their interval, {lowest:.3g} to {highest:.3g}"
+            f"{self.summary}. Of the moving averages of {self.samples} samples {100 * inside:.0f} % lie in their "
+            f"interval, {lowest:.3g} to {highest:.3g}"
         )
 
     def __repr__(self) -> str:
@@ -168,9 +180,9 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
         raise ValueError(f"the run diverged at {run.diverged_at:.3g} s; a filter that diverges is not consistent")
-    normalised = run.nis
-    counted = np.isfinite(normalised) & (run.time >= run.time[0] + after)
+    nis = run.nis
+    counted = np.isfinite(nis) & (run.time >= run.time[0] + after)
     found = int(counted.sum())
     if not 1 <= samples <= found:
         raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} to average")
-    return Consistency(run.time[counted], normalised[counted], len(run.observer.form.x1), samples, confidence)
+    return Consistency(run.time[counted], nis[counted], len(run.observer.form.x1), samples, confidence)

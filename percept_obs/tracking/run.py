@@ -136,9 +136,9 @@ class Run:
     def nis(self) -> Array:
         """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
 
-        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost.
-        With the residual r after the update, its covariance R - P and r = R S^-1 (innovation), the squared innovation
-        is r^T (R - P)^-1 r.
+        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost, or
+        where P equals R to rounding.  With the residual r after the update, its covariance R - P and
+        r = R S^-1 (innovation), the squared innovation is r^T (R - P)^-1 r.
 
         Raises
         ------
@@ -152,6 +152,7 @@ class Run:
             raise ValueError(f"the {self.observer.name} observer has no measurement update")
         residual = self.innovation[:, :, None]
         left = variance * np.eye(len(measured)) - claimed
+        left[np.linalg.det(left) == 0] = np.nan
         return (np.swapaxes(residual, 1, 2) @ np.linalg.solve(left, residual))[:, 0, 0]
 
     @cached_property
