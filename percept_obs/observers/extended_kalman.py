@@ -13,8 +13,8 @@ R, Q, Q2, P1, P2 = sp.symbols("R Q Q2 P01 P02", real=True)
 
 EXACT = "with 0 the filter divides by the variance of what it knows exactly"
 HIDDEN_DOUBT = "what is added to it in the hidden part, which may change more than the motion says"
-VARIANCE = "it is a variance"
-CORRECTED = "it is a variance, and a start known exactly is never corrected"
+WHY = "it is a variance"
+NEVER = "it is a variance, and a start known exactly is never corrected"
 
 
 @family(
@@ -25,24 +25,10 @@ CORRECTED = "it is a variance, and a start known exactly is never corrected"
     claim="local: the covariance must stay bounded, as it does where the linearised system is observable",
     gains=(
         Gain(R, "noise_variance", 1e-4 / 3, 1e-7, 1e-2, "1", "variance of the noise in each output", R > 0, EXACT),
-        Gain(
-            Q,
-            "process_noise",
-            0,
-            0,
-            1e-2,
-            "1/s",
-            "variance per second by which the motion is doubted",
-            Q >= 0,
-            VARIANCE,
-        ),
-        Gain(Q2, "hidden_process_noise", 0, 0, 1, "1/(m^2 s)", HIDDEN_DOUBT, Q2 >= 0, VARIANCE),
-        Gain(
-            P1, "measured_variance", 1, 1e-4, 10, "1", "variance of the start in the measured part", P1 > 0, CORRECTED
-        ),
-        Gain(
-            P2, "hidden_variance", 1, 1e-4, 10, "1/m^2", "variance of the start in the hidden part", P2 > 0, CORRECTED
-        ),
+        Gain(Q, "process_noise", 0, 0, 1e-2, "1/s", "variance per second by which the motion is doubted", Q >= 0, WHY),
+        Gain(Q2, "hidden_process_noise", 0, 0, 1, "1/(m^2 s)", HIDDEN_DOUBT, Q2 >= 0, WHY),
+        Gain(P1, "measured_variance", 1, 1e-4, 10, "1", "variance of the start in the measured part", P1 > 0, NEVER),
+        Gain(P2, "hidden_variance", 1, 1e-4, 10, "1/m^2", "variance of the start in the hidden part", P2 > 0, NEVER),
     ),
     candidates=tuple(
         {"noise_variance": deviation**2, "process_noise": doubt, "measured_variance": 1e-4, "hidden_variance": 1}

@@ -21,18 +21,7 @@ from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 
 @dataclass(frozen=True)
 class Option:
-    """What shapes an observer's equations, besides the form and the gains.
-
-    Parameters
-    ----------
-    name : str
-        Its keyword.
-    value : object
-        The default.
-    meaning : str
-    offered : tuple of str
-        The values among which it is chosen, if they can be listed.
-    """
+    """What shapes an observer's equations, besides the form and the gains: a keyword and its default."""
 
     name: str
     value: Any
@@ -47,25 +36,10 @@ class Option:
 
 @dataclass(frozen=True)
 class Derived:
-    """What an observer's file derives from a form, with (x1, x2) for the measured and hidden coordinates.
+    """What an observer's file derives from a form: parts of its `Equations` and of the `Observer`.
 
-    Parameters
-    ----------
-    state : symbols
-        The observer's state.
-    flow : expressions, one a state
-    start : expressions, one a state, optional
-        The state at the first sample, see `Observer`; the state's symbols when left out, if they are estimates.
-    estimate : n expressions, optional
-        Estimates of (x1, x2); the `hats` when left out.
-    update : one tuple of expressions a measured output
-    reset : condition, and expressions, one a state
-    covariance : matrix of shape (n, n), optional
-        Covariance of the estimates of (x1, x2).
-    unobservable : tuple of Unobservable
-    fastest : FastestRate, optional
-    gains : tuple of Gain, optional
-        Those of the family's that these equations have; all when left out.
+    `start` is the state where that consists of estimates, and `estimate` are the `hats`, unless they are given;
+    `estimate` and `covariance` are in the order (x1, x2); `gains` are those of the family that the equations have.
     """
 
     state: Symbols
@@ -77,22 +51,22 @@ class Derived:
     covariance: sp.ImmutableMatrix | None = None
     unobservable: tuple[Unobservable, ...] = ()
     fastest: FastestRate | None = None
-    gains: tuple[Gain, ...] | None = None
+    gains: tuple[Gain, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Family:
     """What makes observers of one kind: called with a form, options and gains, it gives an `Observer`.
 
-    Made by `family`, the decorator of the function that derives the equations.
+    Made by `family`, the decorator of the function that derives the equations; its docstring gets lines on the gains.
 
     Parameters
     ----------
     derive : function of a form and the options
         Gives what is `Derived` from the form.
+    about : About
     name : str
         What its observers are called, in short.
-    about : About
     gains : tuple of Gain
         With their default values.
     options : tuple of Option
@@ -109,8 +83,8 @@ class Family:
     """
 
     derive: Callable[..., Derived]
-    name: str
     about: About
+    name: str
     gains: tuple[Gain, ...]
     options: tuple[Option, ...] = ()
     candidates: tuple[Mapping[str, float], ...] = ({},)
@@ -120,10 +94,8 @@ class Family:
     offered_for_structure: bool = False
 
     def __post_init__(self) -> None:
-        described = {"__doc__": self._docstring(), "__signature__": self._signature()}
-        for name in ("__name__", "__qualname__", "__module__"):
-            described[name] = getattr(self.derive, name)
-        for name, value in described.items():
+        told = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
+        for name, value in (told | {"__doc__": self._docstring(), "__signature__": self._signature()}).items():
             object.__setattr__(self, name, value)
 
     @property
@@ -154,18 +126,21 @@ class Family:
         if objection is not None:
             raise objection
         form = form if self.any_form else form.canonical_form()
-        named = dict(zip((option.name for option in self.options), options, strict=False))
-        named |= {option.name: chosen.pop(option.name) for option in self.options if option.name in chosen}
-        derived = self.derive(form, **{option.name: option.value for option in self.options} | named)
-        gains = self.gains if derived.gains is None else derived.gains
+        if len(options) > len(self.options):
+            raise TypeError(f"{self!r} takes {len(self.options)} options, not {len(options)}; name the gains")
+        settings = {option.name: option.value for option in self.options}
+        settings |= dict(zip(settings, options, strict=False))
+        settings |= {name: chosen.pop(name) for name in settings if name in chosen}
+        derived = self.derive(form, **settings)
+        gains = derived.gains or self.gains
         x = (*form.x1, *form.x2)
-        order = [x.index(coordinate) for coordinate in form.coordinates]
         estimate, covariance = derived.estimate or hats(x), derived.covariance
-        symbols = tuple(gain.symbol for gain in gains)
+        order = [x.index(coordinate) for coordinate in form.coordinates]
+        known = (form.x1, form.parameters, tuple(gain.symbol for gain in gains))
         return Observer(
             self.name,
             form,
-            Equations(derived.state, derived.flow, form.x1, form.parameters, symbols, derived.update, *derived.reset),
+            Equations(derived.state, derived.flow, *known, derived.update, *derived.reset),
             tuple(estimate[k] for k in order),
             gains,
             derived.start or derived.state,
@@ -199,19 +174,6 @@ class Family:
         return f"{self.key}{self._signature()}"
 
 
-def family(
-    *, name: str, title: str, source: str, needs: str, claim: str, gains: tuple[Gain, ...], **others: Any
-) -> Callable[[Callable[..., Derived]], Family]:
-    """Make a `Family` of the function that derives its equations; its docstring gets the lines on the gains.
-
-    Parameters
-    ----------
-    name : str
-    title, source, needs, claim : str
-        See `About`.
-    gains : tuple of Gain
-    **others
-        See `Family`.
-    """
-    about = About(title, source, needs, claim)
-    return partial(Family, name=name, about=about, gains=gains, **others)
+def family(*, title: str, source: str, needs: str, claim: str, **others: Any) -> Callable[..., Family]:
+    """Make a `Family` of the function that derives its equations, with what is known `About` it and the `others`."""
+    return partial(Family, about=About(title, source, needs, claim), **others)

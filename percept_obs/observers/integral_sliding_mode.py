@@ -25,51 +25,22 @@ from percept_obs.system.forms import CanonicalForm
 k1, k2, gamma, a, b, delta = sp.symbols("k1 k2 gamma a b delta", real=True)
 c = sp.Symbol("c", real=True)
 
+BOUNDS, WIDTH = "it bounds a size", "it is a width"
+BACK, SURFACE = "they must push back", "it must push towards s = 0"
+
 IDEAL = "ideal"
 """Name of the switch that is infinitely fast, so that s = 0 at all times."""
 
 GAINS = (
     Gain(k1, "feedback", 15, 1, 50, "1/s", "weight of the integral sliding surface", k1 > 0, "it must damp"),
-    Gain(
-        gamma,
-        "switching_gain",
-        15,
-        1,
-        50,
-        "1/s",
-        "bound on what is not known of the rate",
-        gamma > 0,
-        "it bounds a size",
-    ),
-    Gain(
-        a, "sharpness", 1, 0.1, 10, "1", "slope of the hyperbolic tangents at the start", a > 0, "they must push back"
-    ),
+    Gain(gamma, "switching_gain", 15, 1, 50, "1/s", "bound on what is not known of the rate", gamma > 0, BOUNDS),
+    Gain(a, "sharpness", 1, 0.1, 10, "1", "slope of the hyperbolic tangents at the start", a > 0, BACK),
     Gain(b, "sharpening", 0.1, 0, 1, "1/s", "how fast that slope grows", b >= 0, "the slope may not turn around"),
     AMPLIFICATION_GAIN,
 )
 SWITCHING_GAINS = (
-    Gain(
-        k2,
-        "reaching_gain",
-        1,
-        0.1,
-        20,
-        "1/s^2",
-        "size of the switching that remains",
-        k2 > 0,
-        "it must push towards s = 0",
-    ),
-    Gain(
-        delta,
-        "boundary_layer",
-        0.5,
-        0.01,
-        2,
-        "1/s",
-        "width over which the sign is smoothed",
-        delta > 0,
-        "it is a width",
-    ),
+    Gain(k2, "reaching_gain", 1, 0.1, 20, "1/s^2", "size of the switching that remains", k2 > 0, SURFACE),
+    Gain(delta, "boundary_layer", 0.5, 0.01, 2, "1/s", "width over which the sign is smoothed", delta > 0, WIDTH),
 )
 
 

@@ -10,6 +10,7 @@ from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
 
 Q, R, P0 = sp.symbols("Q R P0", real=True)
+WEIGHT, DIVIDES = "it is a weight", "the gain divides by it"
 
 
 def not_quadratic(form: CanonicalForm) -> ValueError | None:
@@ -27,21 +28,9 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
     needs="any outputs with a hidden rate that is at most quadratic",
     claim="iterates converge on a finite time; none is claimed for one output",
     gains=(
-        Gain(
-            Q, "process_weight", 0.1, 1e-3, 10, "1/s", "how much the frozen model is doubted", Q >= 0, "it is a weight"
-        ),
-        Gain(
-            R,
-            "measurement_weight",
-            0.1,
-            1e-4,
-            10,
-            "s",
-            "how much the measurement is doubted",
-            R > 0,
-            "the gain divides by it",
-        ),
-        Gain(P0, "start_weight", 1, 1e-2, 10, "1", "how much the start is doubted", P0 > 0, "it is a weight"),
+        Gain(Q, "process_weight", 0.1, 1e-3, 10, "1/s", "how much the frozen model is doubted", Q >= 0, WEIGHT),
+        Gain(R, "measurement_weight", 0.1, 1e-4, 10, "s", "how much the measurement is doubted", R > 0, DIVIDES),
+        Gain(P0, "start_weight", 1, 1e-2, 10, "1", "how much the start is doubted", P0 > 0, WEIGHT),
     ),
     options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
     # only the ratios to the measurement's weight matter, and a large one is stiff

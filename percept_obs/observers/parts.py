@@ -14,25 +14,16 @@ from percept_obs.system.forms import CanonicalForm
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
 
-STICKS = "at 1 the reset maps the bound to itself and the estimate sticks to it"
+VARIANCE = "it is a variance"
+WHY = "at 1 the reset maps the bound to itself and the estimate sticks to it"
 BOUND_GAINS = (
     Gain(M, "bound", 10, 1, 50, "1/m", "largest norm of the estimate", M > 0, "it bounds a norm"),
-    Gain(
-        gamma, "reset_ratio", 1.01, 1.001, 2, "1", "how far beyond the bound the estimate is reset", gamma > 1, STICKS
-    ),
+    Gain(gamma, "reset_ratio", 1.01, 1.001, 2, "1", "how far beyond the bound the estimate is reset", gamma > 1, WHY),
 )
 """Gains of `kept_within`."""
 
 NOISE_GAIN = Gain(
-    sigma2,
-    "noise_variance",
-    0,
-    0,
-    1e-3,
-    "1",
-    "variance of the noise whose bias is taken out",
-    sigma2 >= 0,
-    "it is a variance",
+    sigma2, "noise_variance", 0, 0, 1e-3, "1", "variance of the noise whose bias is taken out", sigma2 >= 0, VARIANCE
 )
 """Gain of `noise_bias`."""
 

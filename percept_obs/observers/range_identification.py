@@ -13,7 +13,7 @@ from percept_obs.system.forms import CanonicalForm
 
 alpha, k, gamma, delta = sp.symbols("alpha k gamma delta", real=True)
 
-PUSHES, WIDTH = "it must push towards e = 0", "it is a width"
+FORGETS, PUSHES, WIDTH = "it must forget", "it must push towards e = 0", "it is a width"
 
 
 @family(
@@ -24,17 +24,7 @@ PUSHES, WIDTH = "it must push towards e = 0", "it is a width"
     claim="asymptotic, if the switching gain exceeds the bounds on f' and f'' and the point stays off the focus of "
     "expansion",
     gains=(
-        Gain(
-            alpha,
-            "filter_rate",
-            3,
-            0.5,
-            20,
-            "1/s",
-            "how fast the filtered innovation forgets",
-            alpha > 0,
-            "it must forget",
-        ),
+        Gain(alpha, "filter_rate", 3, 0.5, 20, "1/s", "how fast the filtered innovation forgets", alpha > 0, FORGETS),
         Gain(k, "feedback", 5, 0.5, 30, "1/s", "weight of the innovation", k > 0, "it must damp"),
         Gain(gamma, "switching_gain", 20, 0.1, 50, "1/s^2", "size of the switching term", gamma > 0, PUSHES),
         Gain(delta, "boundary_layer", 0.05, 0.001, 0.5, "1", "width over which the sign is smoothed", delta > 0, WIDTH),

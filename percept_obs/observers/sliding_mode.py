@@ -20,7 +20,8 @@ from percept_obs.system.forms import CanonicalForm
 
 alpha, alpha1, delta, lambda0 = sp.symbols("alpha alpha1 delta lambda0", real=True)
 
-FOLLOWS = "the hidden part must follow the switching term"
+WHY = "the hidden part must follow the switching term"
+SHRINK = "the switching gains may not shrink"
 DIVIDES = "with 0 the switching term divides by the error"
 PUSHES = "the switching term must push towards the measurement"
 
@@ -33,27 +34,9 @@ PUSHES = "the switching term must push towards the measurement"
     claim="exponential, if w is persistently exciting and the gains are large enough",
     gains=(
         Gain(
-            alpha,
-            "hidden_gain",
-            5,
-            0.5,
-            30,
-            "s/m^2",
-            "weight of the switching term in the hidden part",
-            alpha > 0,
-            FOLLOWS,
+            alpha, "hidden_gain", 5, 0.5, 30, "s/m^2", "weight of the switching term in the hidden part", alpha > 0, WHY
         ),
-        Gain(
-            alpha1,
-            "adaptation",
-            10,
-            0,
-            50,
-            "1/s^2",
-            "how fast the switching gains grow",
-            alpha1 >= 0,
-            "the switching gains may not shrink",
-        ),
+        Gain(alpha1, "adaptation", 10, 0, 50, "1/s^2", "how fast the switching gains grow", alpha1 >= 0, SHRINK),
         Gain(delta, "boundary_layer", 0.2, 0.005, 1, "1", "width over which the sign is smoothed", delta > 0, DIVIDES),
         Gain(lambda0, "switching_gain", 1, 0.1, 10, "1/s", "the switching gains at the start", lambda0 > 0, PUSHES),
         *BOUND_GAINS,
