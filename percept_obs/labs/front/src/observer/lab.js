@@ -68,7 +68,8 @@ export class ObserverLab extends Live {
 
   // What is there to show it with.
 
-  fitted(settings) {
+  fitted(asked) {
+    const settings = withOutputsOf(this.model.surfaces[asked.surface], asked);
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
     if (!lost.length) return settings;
@@ -130,4 +131,10 @@ export class ObserverLab extends Live {
   summary(serial) {
     return summaryOf(this.shown, serial, this.model);
   }
+}
+
+/** The settings, with all outputs where the surface does not allow those that were chosen. */
+function withOutputsOf({ outputs }, settings) {
+  const allowed = outputs.some((names) => names.join() === settings.outputs.join());
+  return allowed ? settings : { ...settings, outputs: [...outputs[0]] };
 }

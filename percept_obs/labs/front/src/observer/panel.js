@@ -54,9 +54,10 @@ export class Panel extends Fieldsets {
     outputs.show = () => {
       show();
       const track = model.recordings[lab.settings.scenario];
+      const offered = model.surfaces[lab.settings.surface].outputs.map((names) => names.join("+"));
       for (const input of outputs.parts) {
         const missing = track && !input.value.split("+").every((name) => track.names.includes(name));
-        input.disabled = Boolean(missing);
+        input.disabled = Boolean(missing) || !offered.includes(input.value);
       }
     };
     return this.fieldset("Measure", {}, this.add(outputs));
