@@ -2,8 +2,11 @@
 
 from dataclasses import replace
 
+import sympy as sp
+
 from percept_obs import Camera, PerspectiveSystem, Uniform, affine, pinhole, plane, rigid
 from percept_obs.system import surfaces
+from percept_obs.system.forms import partition
 
 AFFINE = PerspectiveSystem(affine(), pinhole())
 BOTH = AFFINE.measure("y1", "y2")
@@ -25,3 +28,7 @@ SURFACES = {make.__name__: shaped(make()) for make in surfaces.SURFACES}
 SURFACES["plane with three outputs"] = shaped(plane(outputs=3))
 ON_SPHERE = PerspectiveSystem(affine(), SURFACES["sphere"])
 MOTIONS = {"affine": affine(), "rigid": rigid()}
+
+x, z = sp.symbols("x z", real=True)
+SQUARE = partition((x, z), sp.ImmutableMatrix([z**2 - x, x * z - z]), ["x"], ())
+"""A small system without a canonical form."""

@@ -1,16 +1,17 @@
-"""Laws that every observer keeps, on every form: a truthful start stays true, and derivatives are right."""
+"""What every observer tells of itself is so: its needs, gains, start, error dynamics; and what each is known for."""
 
+import inspect
+import re
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
-from examples import AFFINE, BOTH, MOTIONS, NOISY, ON_SPHERE, ONE, OTHER, SURFACES, ZERO
+from examples import AFFINE, BOTH, FORMS, MOTIONS, NOISY, ON_SPHERE, ONE, SQUARE, SURFACES, ZERO
 from scipy.integrate import solve_ivp
 
-from percept_obs import Camera, NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
+from percept_obs import NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
 from percept_obs.compile import vectorised
 from percept_obs.observers import (
     OBSERVERS,
@@ -26,31 +27,14 @@ from percept_obs.observers import (
     spica,
 )
 from percept_obs.observers.parts import hats, sigma2
-from percept_obs.system.forms import partition
 
-LEARNERS = (range_identification, integral_sliding_mode)
-"""Observers that learn w^T x2, which must then determine x2."""
-
-COPIES = [make for make in OBSERVERS if make not in (*LEARNERS, linear_approximation)]
-"""Observers that copy the system; the first filter of the cascade errs."""
-
-FORMS = {"y1": ONE, "y2": OTHER, "y1+y2": BOTH}
 PAIRS = [
-    pytest.param(make, form, id=f"{make.__name__}-{name}")
+    pytest.param(make, form, id=f"{make.key}-{name}")
     for make in OBSERVERS
     for name, form in FORMS.items()
-    if make not in LEARNERS or form is BOTH
+    if not make.refusal(form)
 ]
-x, z = sp.symbols("x z", real=True)
-SQUARE = partition((x, z), sp.ImmutableMatrix([z**2 - x, x * z - z]), ["x"], ())
-"""A small system without a canonical form."""
-WITHOUT_FORM = pytest.param(ekf, SQUARE, id="extended_kalman-x")
-each = pytest.mark.parametrize(("make", "form"), [*PAIRS, WITHOUT_FORM])
-each_smooth = pytest.mark.parametrize(("make", "form"), [p for p in PAIRS if p.values[0] is not smo])
-
-
-def outputs_of(name):
-    return ("y1", "y2", "y3") if "three" in name else ("y1", "y2")
+each_observer = pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 
 
 def draw(symbols, seed):
@@ -59,86 +43,27 @@ def draw(symbols, seed):
     return {s: sp.Float(generator.uniform(0.2, 1.0), 17) for s in symbols}
 
 
-@pytest.mark.parametrize("make", COPIES, ids=lambda make: make.__name__)
-@pytest.mark.parametrize("surface", SURFACES)
-def test_a_truthful_start_stays_true(make, surface):
-    system = PerspectiveSystem(MOTIONS["affine"], SURFACES[surface])
-    if make is immersion_and_invariance and surface == "sphere":
-        with pytest.raises(NotIntegrable):
-            make(system.measure("y1", "y2"))
-        return
-    form = system.measure(*outputs_of(surface))
-    recording = record(scenarios.ma2005_eq35(SURFACES[surface]), 5)
-    start = dict(zip(map(str, system.coordinates), recording.truth[0], strict=True))
-    run = track(recording, make(form), start, hold="exact", language="python")
-    assert np.abs(run.error).max() < 1e-7
-    assert len(run.resets) == 0
-
-
-@pytest.mark.parametrize(("make", "form"), [p for p in PAIRS if p.values[0] in COPIES])
-def test_a_truthful_start_stays_true_with_less_measured(make, form):
-    recording = record(scenarios.ma2005_eq36(), 10)
-    run = track(recording, make(form), recording.truth[0], hold="exact", language="python")
-    assert np.abs(run.error).max() < 1e-7
-
-
-@pytest.mark.parametrize("names", [("y1",), ("y2",)], ids="+".join)
-def test_a_truthful_start_stays_true_without_a_canonical_form(names):
-    recording = record(scenarios.ma2005_eq35(ON_SPHERE.surface), 5)
-    run = track(recording, ekf(ON_SPHERE.partition(*names)), recording.truth[0], hold="exact", language="python")
-    assert np.abs(run.error).max() < 1e-7
-
-
-@pytest.mark.parametrize("make", [make for make in OBSERVERS if make is not ekf], ids=lambda make: make.__name__)
-def test_an_observer_that_needs_a_canonical_form_derives_it_or_says_what_to_do(make):
-    assert make(AFFINE.partition("y1", "y2")).equations == make(BOTH).equations
-    with pytest.raises(NotAffine, match="or use the extended Kalman filter"):
-        make(ON_SPHERE.partition("y1"))
-
-
-def test_every_iterate_of_the_cascade_brings_the_estimate_nearer():
-    recording = record(scenarios.ma2005_eq35(), 5)
-    worst = [
-        np.abs(
-            track(
-                recording, linear_approximation(BOTH, iterates=n), recording.truth[0], "exact", language="python"
-            ).error
-        ).max()
-        for n in (1, 2, 3, 4)
-    ]
-    assert all(later < earlier / 3 for earlier, later in pairwise(worst))
-
-
-@each_smooth
-def test_halving_the_step_divides_the_error_by_sixteen(make, form):
-    recording = record(scenarios.ma2005_eq35(), 2, Camera(period=0.2))
-    # a wide boundary layer, so that steps of these lengths resolve it
-    observer = make(form, boundary_layer=2.0) if make is range_identification else make(form)
-    coarse, fine, reference = (
-        track(recording, observer, ZERO, step=0.2 / n, language="python").state[-1] for n in (16, 32, 512)
-    )
-    ratio = np.linalg.norm(coarse - reference) / np.linalg.norm(fine - reference)
-    assert 12 < ratio < 21
-
-
-@each
-def test_the_jacobian_against_a_finite_difference(make, form):
-    eq = make(form).equations
-    values = draw([*eq.state, *eq.measured, *eq.parameters, *eq.gains], 5)
-    others = {s: v for s, v in values.items() if s not in eq.state}
-    flow = vectorised(eq.state, [e.subs(others) for e in eq.flow])
-    at = np.array([float(values[s]) for s in eq.state])
-    step = 1e-6
-    columns = [
-        (np.array(flow(*(at + step * d))) - np.array(flow(*(at - step * d)))) / (2 * step) for d in np.eye(len(at))
-    ]
-    jacobian = np.array(make(form).jacobian().subs(values), dtype=float)
-    np.testing.assert_allclose(np.stack(columns, axis=1), jacobian, rtol=1e-6, atol=1e-6)
+@each_observer
+def test_what_an_observer_needs_can_be_asked_and_is_told_when_it_is_made_anyway(make):
+    forms = (*FORMS.values(), AFFINE.partition("y1"), ON_SPHERE.partition("y1"), ON_SPHERE.measure("y1", "y2"))
+    for form in forms:
+        refusal = make.refusal(form)
+        if refusal:
+            with pytest.raises(ValueError, match=re.escape(refusal)):
+                make(form)
+        else:
+            assert make(form).form.coordinates == form.coordinates
+    assert not make.refusal(BOTH)
+    if not make.any_form:
+        assert make(AFFINE.partition("y1", "y2")).equations == make(BOTH).equations
+        with pytest.raises(NotAffine, match="or use the extended Kalman filter"):
+            make(ON_SPHERE.partition("y1"))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("make", "form"), [p for p in [*PAIRS, WITHOUT_FORM] if p.values[0] is not integral_sliding_mode]
+    ("make", "form"),
+    [*(p for p in PAIRS if p.values[0] is not integral_sliding_mode), (ekf, SQUARE)],
 )
 def test_error_dynamics_against_a_finite_difference(make, form):
     """Point and observer move a little along their rates; the error changes as its dynamics say."""
@@ -275,14 +200,29 @@ def test_other_gains_make_another_observer():
     assert Gain(sp.Symbol("k"), "k", 1, 0, 2, "1", "nothing").value == 1.0
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
+@each_observer
 def test_every_gain_lies_in_its_range_and_says_what_it_does(make):
     about = make(BOTH).about
+    assert about is make.about
     assert all((about.title, about.source, about.needs, about.claim))
-    for gain in make(BOTH).gains:
+    for gain in make.gains:
         assert gain.low <= gain.value <= gain.high
         assert gain.meaning
-        assert gain.name in make.__doc__
+        assert gain.unit
+        assert f"\n{gain.name} : float\n    {gain.symbol}, {gain.meaning}" in make.__doc__
+    for option in make.options:
+        assert f"\n{option.name} : " in make.__doc__
+        assert inspect.signature(make).parameters[option.name].default == option.value
+    assert {gain.name for switch in make.switches for gain in make(BOTH, switch=switch).gains} <= {
+        gain.name for gain in make.gains
+    }
+
+
+def test_options_may_be_named_or_not_and_no_gain_may_go_without_its_name():
+    assert smo(ONE, "sign", bound=3) == smo(ONE, switch="sign", bound=3)
+    assert repr(smo) == "sliding_mode(form, switch='fraction', **gains)"
+    with pytest.raises(TypeError, match="takes 1 options, not 2; name the gains"):
+        smo(ONE, "sign", 5)
 
 
 @pytest.mark.parametrize("start", [{"z": 1.0}, {"y3": float("nan")}])
@@ -311,7 +251,7 @@ def test_terms_that_a_gain_of_zero_puts_out_are_not_shown():
     assert " Q " not in ekf(ONE)._repr_latex_()
 
 
-@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.__name__)
+@each_observer
 def test_the_start_is_what_its_expressions_say(make):
     observer = make(BOTH)
     values = draw([*BOTH.x1, *hats(BOTH.coordinates), *BOTH.parameters], 3)
@@ -425,8 +365,11 @@ def test_noise_leaves_little_error_with_both_outputs(make):
         assert run.rms(20, 80, "y3") <= 0.005
 
 
-def test_the_readme_says_what_is_known_of_each():
-    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8").replace("\\|", "|")
+def test_the_readme_has_a_row_for_each():
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    wanted = []
     for make in OBSERVERS:
-        about = make(BOTH).about
-        assert f"| {about.title} | `{make.__name__}` | {about.source} | {about.needs} | {about.claim} |" in readme
+        cells = make.about.title, f"`{make.key}`", make.about.source, make.about.needs, make.about.claim
+        wanted.append(f"| {' | '.join(cells)} |".replace("|w|", "\\|w\\|"))
+    found = [line for line in readme.splitlines() if line.startswith("| ") and "`" in line.split(" | ")[1]]
+    assert found == wanted, "the table of README.md should be:\n" + "\n".join(wanted)

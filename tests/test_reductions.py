@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
-from examples import BOTH, ONE, OTHER
+from examples import BOTH, FORMS, ONE
 from scipy.linalg import expm, solve_continuous_are
 
 from percept_obs.compile import Table, solve
@@ -19,7 +19,6 @@ from percept_obs.observers import (
 )
 from percept_obs.system.forms import partition
 
-FORMS = {"y1": ONE, "y2": OTHER, "y1+y2": BOTH}
 each_form = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 
 G, A, P, H, Lam, alpha, k, lam, delta, R, Q = sp.symbols("G A P H Lambda alpha k lambda delta R Q", real=True)

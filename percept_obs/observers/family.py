@@ -78,6 +78,8 @@ class Family:
         What it needs besides: the error that is raised for this form, or None if it exists.
     constant_motion : bool
         Whether the equations hold for a motion with constant coefficients only.
+    stays_at_truth : bool
+        Whether it stays at the truth if it is started there, without noise: whether it copies the system.
     offered_for_structure : bool
         Whether the lab of structure and motion offers it; integral sliding modes stand there in three ways.
     """
@@ -91,6 +93,7 @@ class Family:
     any_form: bool = False
     objection_of: Callable[[CanonicalForm], ValueError | None] | None = None
     constant_motion: bool = False
+    stays_at_truth: bool = True
     offered_for_structure: bool = False
 
     def __post_init__(self) -> None:

@@ -56,6 +56,7 @@ SWITCHING_GAINS = (
     options=(switch_option(IDEAL, "What stands for sgn(s), see below"),),
     candidates=grid(feedback=(1, 2, 4), switching_gain=(0.25, 0.5), sharpening=(0,)),
     objection_of=needs_more_outputs,
+    stays_at_truth=False,
 )
 def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
     """Integral sliding mode observer (ISMO).

@@ -36,6 +36,7 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
     # only the ratios to the measurement's weight matter, and a large one is stiff
     candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
     objection_of=not_quadratic,
+    stays_at_truth=False,
 )
 def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     """Linear approximation observer (LAO).

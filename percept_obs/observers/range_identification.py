@@ -39,6 +39,7 @@ FORGETS, PUSHES, WIDTH = "it must forget", "it must push towards e = 0", "it is 
         for layer in (0.05, 0.1, 0.2)
     ),
     objection_of=needs_more_outputs,
+    stays_at_truth=False,
 )
 def range_identification(form: CanonicalForm, switch: str) -> Derived:
     """Range identification observer (RIO).
