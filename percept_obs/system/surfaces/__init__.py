@@ -1,24 +1,16 @@
-"""Imaging surfaces, one a file."""
+"""Imaging surfaces, one a file.
 
-from percept_obs.system.surfaces.base import POINT, BehindCamera, ImagingSurface
-from percept_obs.system.surfaces.chained import chained
-from percept_obs.system.surfaces.pinhole import pinhole
-from percept_obs.system.surfaces.plane import plane
-from percept_obs.system.surfaces.sphere import sphere
+The order of the imports is that in which labs list the surfaces.
+"""
 
-SURFACES = (pinhole, chained, plane, sphere)
+from types import FunctionType
+
+from percept_obs.system.surfaces.base import POINT as POINT, BehindCamera as BehindCamera
+from percept_obs.system.surfaces.base import ImagingSurface as ImagingSurface
+from percept_obs.system.surfaces.pinhole import pinhole as pinhole
+from percept_obs.system.surfaces.chained import chained as chained
+from percept_obs.system.surfaces.plane import plane as plane
+from percept_obs.system.surfaces.sphere import sphere as sphere
+
+SURFACES = tuple(value for value in list(globals().values()) if isinstance(value, FunctionType))
 """Every surface; the laws that tests hold run over this list, and the labs offer it."""
-
-__all__ = [
-    "POINT",
-    "SURFACES",
-    "BehindCamera",
-    "ImagingSurface",
-    "X",
-    "Y",
-    "Z",
-    "chained",
-    "pinhole",
-    "plane",
-    "sphere",
-]
