@@ -14,7 +14,7 @@ import percept_obs.tracking.following as tracking
 from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, kernels, solve, source
 from percept_obs.compile.equations import Equations
-from percept_obs.observers import OBSERVERS, integral_sliding_mode, linear_approximation, range_identification
+from percept_obs.observers import OBSERVERS, linear_approximation
 
 x, y, u, k, c = sp.symbols("x y u k c", real=True)
 FORMS = {"y1": ONE, "y1+y2": BOTH}
@@ -24,9 +24,9 @@ EVERY = {make.__name__: make for make in OBSERVERS} | {
 }
 PAIRS = [
     pytest.param(make, form, id=f"{name}-{outputs}")
-    for name, make in EVERY.items()
+    for family, (name, make) in zip(OBSERVERS, EVERY.items(), strict=True)
     for outputs, form in FORMS.items()
-    if make not in (range_identification, integral_sliding_mode) or form is BOTH
+    if not family.refusal(form)
 ]
 
 

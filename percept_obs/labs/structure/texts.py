@@ -178,7 +178,7 @@ def _determinant(choice: StructureAndMotion, letters: dict[str, sp.Symbol]) -> s
 
 
 def kernels_for_the_page(count: int, observers: tuple[str, ...] = tuple(OBSERVERS)) -> Texts:
-    """The loops of observers for so many unknowns, and what guards the recovery of theta."""
+    """The loops of observers for so many unknowns, and what guards the inversion that gives theta."""
     form = general_form(count)
     numerator, determinant = form.cramer
     size = sp.sqrt(sum(entry**2 for entry in numerator))
