@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import product
 
 import sympy as sp
@@ -178,10 +178,13 @@ class CanonicalForm(PartitionedSystem):
 
     @cached_property
     def _cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
-        square = self.w.T if self.w.is_square else self.w * self.w.T
+        # on curved surfaces w is divided by something; times that, neither N nor D has a division
+        divisor = reduce(sp.lcm, (sp.denom(sp.together(entry)) for entry in self.w), sp.S.One)
+        w = self.w if divisor == 1 else (divisor * self.w).applyfunc(sp.cancel)
+        square = w.T if w.is_square else w * w.T
         # neither is multiplied out, for small differences would be lost in the sum of large terms
         determinant, adjugate = square.det(method="laplace"), square.adjugate(method="laplace")
-        return adjugate if self.w.is_square else adjugate * self.w, determinant
+        return divisor * (adjugate if w.is_square else adjugate * w), determinant
 
     def derivation(self) -> Derivation:
         """The form in formulas, one part after the other."""
