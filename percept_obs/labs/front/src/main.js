@@ -1,9 +1,11 @@
 // The bundle's entrance: anywidget calls render() for each view of a lab.
 //
-// To add a lab: a folder beside observer/ with a class that extends Live (common/live.js) and says how settings become
-// pictures and words; name it below, as its Python side names it in `kind`. Charts, controls, groups of controls, the
-// layout, modules made from printed texts, and the line to Python are in common/ and know nothing of observers.
+// To add a lab: a folder beside observer/ with an engine that makes results of settings (types.js says of what) and a
+// class that extends Live (common/page/live.js) and draws them; name it below, as its Python side names it in `kind`.
+// What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
 
+import { element } from "./common/page/controls.js";
+import style from "./common/page/style.css";
 import { ObserverLab } from "./observer/lab.js";
 import { PointsLab } from "./points/lab.js";
 import { StructureLab } from "./structure/lab.js";
@@ -12,7 +14,7 @@ const LABS = { observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: 
 
 export default {
   render({ model, el }) {
-    const place = document.createElement("div");
+    const place = element("div", {}, element("style", {}, style));
     el.append(place);
     let lab;
     try {

@@ -1,14 +1,14 @@
 // Runs settings of the lab of many points, given on standard input, with the page's own engine.
 import { readFileSync } from "node:fs";
-import { pythonOf } from "../src/points/code.js";
-import { Engine } from "../src/points/engine.js";
-import { Functions } from "../src/points/functions.js";
-import { summaryOf } from "../src/points/text.js";
+import { pythonOf } from "../src/points/model/code.js";
+import { PointsEngine } from "../src/points/model/engine.js";
+import { PointsKernels } from "../src/points/model/kernels.js";
+import { summaryOf } from "../src/points/model/text.js";
 import { loadHere } from "./load_here.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
-const functions = new Functions(model, loadHere);
-const engine = new Engine(model);
+const functions = new PointsKernels(model, loadHere);
+const engine = new PointsEngine(model);
 const numbers = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
 const answers = [];
 for (const settings of tasks) {

@@ -1,10 +1,10 @@
 // Runs lab settings given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { pythonOf } from "../src/observer/code.js";
-import { Engine } from "../src/observer/engine.js";
+import { pythonOf } from "../src/observer/model/code.js";
+import { Engine } from "../src/observer/model/engine.js";
 import { loadHere } from "./load_here.js";
-import { Kernels } from "../src/observer/kernels.js";
-import { summaryOf } from "../src/common/words.js";
+import { Kernels } from "../src/observer/model/kernels.js";
+import { summaryOf } from "../src/common/model/words.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
 const kernels = new Kernels(model, loadHere);

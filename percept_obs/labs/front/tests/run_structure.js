@@ -1,9 +1,10 @@
 // Runs settings of the structure lab given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { summaryOf } from "../src/common/words.js";
-import { pythonOf } from "../src/structure/code.js";
-import { StructureEngine } from "../src/structure/engine.js";
-import { StructureKernels } from "../src/structure/kernels.js";
+import { summaryOf } from "../src/common/model/words.js";
+import { pythonOf } from "../src/structure/model/code.js";
+import { StructureEngine } from "../src/structure/model/engine.js";
+import { StructureKernels } from "../src/structure/model/kernels.js";
+import { quantityOf, rangeOf } from "../src/structure/model/quantities.js";
 import { loadHere } from "./load_here.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
@@ -13,7 +14,7 @@ const numbers = (values) => values && Array.from(values, (v) => (Number.isFinite
 const answers = [];
 for (const settings of tasks) {
   await kernels.prepare(settings);
-  const shown = engine.run(settings, kernels.of(settings), kernels.refusal(settings));
+  const shown = engine.run(settings, kernels.of(settings));
   const answer = { problem: shown.problem ?? null, refusal: shown.refusal, corollary: kernels.corollary(settings) };
   answer.code = pythonOf(shown, model);
   if (!shown.problem && !shown.refusal) {
@@ -21,14 +22,14 @@ for (const settings of tasks) {
     for (const part of ["time", "outputs", "truth"]) answer[part] = numbers(shown[part]);
     answer.determinant = numbers(shown.guard.determinants);
     answer.limits = shown.limits;
-    answer.quantities = Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(shown.quantityOf(name))]));
+    answer.quantities = Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, shown.truth, name))]));
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [
         run.name,
         {
           estimate: numbers(run.estimate),
-          range: numbers(run.distances()),
-          quantities: Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(run.quantityOf(name))])),
+          range: numbers(rangeOf(shown, run.estimate)),
+          quantities: Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, run.estimate, name))])),
           gaps: run.gaps,
           divergedAt: run.divergedAt,
         },

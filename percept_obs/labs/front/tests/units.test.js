@@ -1,16 +1,16 @@
 // The parts of the page that need no browser: random numbers, tables, scales, measures, words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { same } from "../src/common/equal.js";
-import { settlingTime } from "../src/common/errors.js";
-import { moduleText, Modules } from "../src/common/modules.js";
-import { smallestEigenvalue, windowed } from "../src/observer/measures.js";
-import { uniformFrom } from "../src/common/random.js";
-import { linearScale, logScale, readable, short, spread } from "../src/common/scales.js";
-import { held, interpolate, lastSamples, stepGrid } from "../src/common/tables.js";
-import { inWords, mainly } from "../src/points/directions.js";
-import { spansOf } from "../src/points/measures.js";
-import { eigen, pseudoInverse, spectrum } from "../src/points/symmetric.js";
+import { same } from "../src/common/model/settings.js";
+import { settlingTime } from "../src/common/model/errors.js";
+import { moduleText, Modules } from "../src/common/model/modules.js";
+import { smallestEigenvalue, windowed } from "../src/observer/model/measures.js";
+import { uniformFrom } from "../src/common/model/random.js";
+import { linearScale, logScale, readable, short, spread } from "../src/common/model/scales.js";
+import { held, interpolate, lastSamples, stepGrid } from "../src/common/model/tables.js";
+import { inWords, mainly } from "../src/points/model/directions.js";
+import { spansOf } from "../src/points/model/measures.js";
+import { eigen, pseudoInverse, spectrum } from "../src/points/model/symmetric.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {

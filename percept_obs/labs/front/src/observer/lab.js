@@ -1,51 +1,45 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
-import { chartInWords } from "../common/chart_parts.js";
-import { TimeChart } from "../common/charts.js";
-import { ImagePlane } from "../common/image_plane.js";
-import { build } from "../common/layout.js";
-import { Live } from "../common/live.js";
-import { linearScale } from "../common/scales.js";
-import { readingAt, summaryOf, verdict } from "../common/words.js";
-import { pythonOf } from "./code.js";
-import { Engine, translationTowards } from "./engine.js";
-import { Formulas } from "./formula.js";
-import { Kernels } from "./kernels.js";
-import { Panel } from "./panel.js";
-import { chartOf, LABELS } from "./pictures.js";
-import { PRESETS, settingsOf } from "./presets.js";
-import { imagePlaneInWords, reasons } from "./text.js";
+import { Results } from "../common/model/results.js";
+import { ImagePlane } from "../common/page/image_plane.js";
+import { Live } from "../common/page/live.js";
+import { open } from "../common/page/opening.js";
+import { pythonOf } from "./model/code.js";
+import { Engine, translationTowards } from "./model/engine.js";
+import { Kernels } from "./model/kernels.js";
+import { PRESETS, settingsOf } from "./model/presets.js";
+import { imagePlaneInWords, reasons } from "./model/text.js";
+import { Formulas } from "./page/formula.js";
+import { Panel } from "./page/panel.js";
+import { chartOf, LABELS } from "./page/pictures.js";
+import { SCHEMA } from "./schema.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
 export class ObserverLab extends Live {
   constructor(widget, place) {
-    super(widget);
+    super(widget, SCHEMA);
     this.kernels = new Kernels(this.model);
-    this.engine = new Engine(this.model);
-    this.ghostEngine = new Engine(this.model);
-    this.plane = new ImagePlane({
+    this.results = new Results(this.kernels, () => new Engine(this.model));
+    const plane = new ImagePlane({
       name: "foe",
       label: "Focus of expansion",
       tag: "FOE",
       placeOf: (shown) => shown.foe,
+      inWords: imagePlaneInWords,
       onMove: (foe) => this.moveFoe(foe),
       onRest: () => this.rest(),
     });
-    this.charts = Object.fromEntries(this.model.pictures.map((name) => [name, new TimeChart(name, LABELS[name])]));
-    this.figures = [this.plane, ...Object.values(this.charts)];
+    this.planes = [plane];
     this.formulas = new Formulas(this.model);
-    this.panel = new Panel(this.model, this);
-    this.view = build(this, place, PRESETS);
-    this.open();
+    this.panel = new Panel(this);
+    open(this, place, LABELS, PRESETS);
   }
 
-  // What the hand does.
-
   moveFoe(place) {
-    const kernels = this.kernels.of(this.settings);
-    if (!kernels || this.settings.scenario in this.model.recordings) return;
-    const b = translationTowards(place, this.settings, kernels);
+    const functions = this.kernels.of(this.settings);
+    if (!functions || this.settings.scenario in this.model.recordings) return;
+    const b = translationTowards(place, this.settings, functions);
     if (b.every((value) => Math.abs(value) <= 1000)) this.change({ b });
   }
 
@@ -62,14 +56,7 @@ export class ObserverLab extends Live {
     return settingsOf(act, this.model.standard);
   }
 
-  copy() {
-    return pythonOf(this.shown, this.model);
-  }
-
-  // What is there to show it with.
-
-  fitted(asked) {
-    const settings = withOutputsOf(this.model.surfaces[asked.surface], asked);
+  fitted(settings) {
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
     if (!lost.length) return settings;
@@ -79,57 +66,16 @@ export class ObserverLab extends Live {
     return { ...settings, observers: left.length ? left : [ALWAYS_POSSIBLE] };
   }
 
-  // What is shown.
-
-  show(settings) {
-    const { kept } = settings;
-    if (kept && this.keptGhost?.settings !== kept) this.keptGhost = this.ghostEngine.run(kept, this.kernels.of(kept));
-    this.ghost = kept && !this.keptGhost.problem ? this.keptGhost : null;
-    return this.engine.run(settings, this.kernels.of(settings));
+  chartOf(name) {
+    return chartOf(name, this.shown, this.ghost, this.theme);
   }
 
-  draw() {
-    const { shown, ghost, cursor, theme } = this;
-    this.plane.draw(shown, ghost, cursor, theme);
-    this.drawn = {};
-    if (shown.problem) this.cursor = null;
-    const chosen = this.model.pictures.filter((name) => shown.settings.pictures.includes(name));
-    for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
-    if (shown.problem) return;
-    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
-    const recorded = shown.settings.scenario in this.model.recordings;
-    const span = { low: shown.time[0], high: recorded ? shown.time.at(-1) : shown.settings.duration };
-    span.ticks = linearScale(span.low, span.high, this.width < 600 ? 4 : 8).ticks;
-    for (const name of chosen) {
-      const chart = chartOf(name, shown, ghost, theme);
-      this.drawn[name] = chart;
-      this.charts[name].draw({ ...chart, span, cursor, theme, last: name === chosen.at(-1) });
-    }
+  reasons() {
+    return reasons(this.shown);
   }
 
-  speak() {
-    const { shown, cursor, model } = this;
-    this.view.words({
-      verdicts: shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) })),
-      reasons: reasons(shown),
-      reading: cursor === null || shown.problem ? "" : readingAt(shown, cursor),
-      problem: shown.problem,
-      legend: [
-        ...(shown.truth ? [["truth", "truth"]] : []),
-        ...shown.runs.map(({ order, title }) => [order, title]),
-        ...(shown.settings.kept ? [["kept", "kept run"]] : []),
-      ],
-    });
-  }
-
-  describe() {
-    this.plane.describe(imagePlaneInWords(this.shown));
-    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].describe(chartInWords(chart));
-    this.formulas.show(this.shown.settings);
-  }
-
-  summary(serial) {
-    return summaryOf(this.shown, serial, this.model);
+  copy() {
+    return pythonOf(this.shown, this.model);
   }
 }
 

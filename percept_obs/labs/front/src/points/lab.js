@@ -1,36 +1,28 @@
 // The lab of many points: points of one state before a moving camera, and an observer that follows them.
 
-import { chartInWords } from "../common/chart_parts.js";
-import { TimeChart } from "../common/charts.js";
-import { build } from "../common/layout.js";
-import { Live } from "../common/live.js";
-import { linearScale } from "../common/scales.js";
-import { pythonOf } from "./code.js";
-import { Engine } from "./engine.js";
-import { Formulas } from "./formula.js";
-import { Functions } from "./functions.js";
-import { ImagePlane } from "./image_plane.js";
-import { Panel } from "./panel.js";
-import { chartOf, LABELS } from "./pictures.js";
-import { PRESETS, settingsOf } from "./presets.js";
-import { decayInWords, imagePlaneInWords, readingAt, reasons, summaryOf, verdict } from "./text.js";
-
-const FARTHEST = 1000;
+import { Results } from "../common/model/results.js";
+import { Live } from "../common/page/live.js";
+import { open } from "../common/page/opening.js";
+import { pythonOf } from "./model/code.js";
+import { PointsEngine } from "./model/engine.js";
+import { PointsKernels } from "./model/kernels.js";
+import { PRESETS, settingsOf } from "./model/presets.js";
+import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
+import { Formulas } from "./page/formula.js";
+import { ImagePlane } from "./page/image_plane.js";
+import { Panel } from "./page/panel.js";
+import { chartOf, LABELS } from "./page/pictures.js";
+import { SCHEMA } from "./schema.js";
 
 export class PointsLab extends Live {
   constructor(widget, place) {
-    super(widget);
-    this.kernels = new Functions(this.model);
-    this.engine = new Engine(this.model);
-    this.ghostEngine = new Engine(this.model);
-    this.bound = { of: null, rate: null };
-    this.plane = new ImagePlane(this, this.model.mostPoints);
-    this.charts = Object.fromEntries(this.model.pictures.map((name) => [name, new TimeChart(name, LABELS[name])]));
-    this.figures = [this.plane, ...Object.values(this.charts)];
+    super(widget, SCHEMA);
+    this.kernels = new PointsKernels(this.model);
+    this.results = new Results(this.kernels, () => new PointsEngine(this.model));
+    this.planes = [new ImagePlane(this, this.model.mostPoints)];
     this.formulas = new Formulas(this.model);
-    this.panel = new Panel(this.model, this);
-    this.view = build(this, place, PRESETS);
-    this.open();
+    this.panel = new Panel(this);
+    open(this, place, LABELS, PRESETS);
   }
 
   // What the hand does.
@@ -41,8 +33,8 @@ export class PointsLab extends Live {
   }
 
   put(k, place) {
-    if (!place.every((value) => Math.abs(value) <= FARTHEST)) return;
-    this.change({ points: this.settings.points.map((old, i) => (i === k ? place : old)) });
+    if (!place.every((value) => Math.abs(value) <= this.schema.points.most)) return;
+    this.change({ points: this.settings.points.with(k, place) });
   }
 
   /** Move a point in the image, with its depth kept. */
@@ -72,8 +64,7 @@ export class PointsLab extends Live {
   removePoint(k) {
     const { points, hidden } = this.settings;
     if (points.length === 1 || k >= points.length) return;
-    const others = (list) => list.filter((_, i) => i !== k);
-    this.change({ points: others(points), hidden: others(hidden) }, true);
+    this.change({ points: points.toSpliced(k, 1), hidden: hidden.toSpliced(k, 1) }, true);
   }
 
   /** A span in which a point may be hidden. */
@@ -83,7 +74,7 @@ export class PointsLab extends Live {
   }
 
   hide(k, times, chosen = true) {
-    this.change({ hidden: this.settings.hidden.map((old, i) => (i === k ? times : old)) }, chosen);
+    this.change({ hidden: this.settings.hidden.with(k, times) }, chosen);
   }
 
   /** Let nothing turn and nothing move but the first point, along its ray. */
@@ -98,77 +89,47 @@ export class PointsLab extends Live {
     return settingsOf(act, this.model.standard);
   }
 
-  copy() {
-    return pythonOf(this.shown, this.model);
-  }
-
-  // What is there to show it with.
-
   progress() {
     return { done: 0, of: 1, reason: "The page prepares these equations." };
   }
 
   // What is shown.
 
-  show(settings) {
-    const { kept } = settings;
-    if (kept && this.ghost?.settings !== kept) this.ghost = this.ghostEngine.run(kept, this.kernels.of(kept));
-    if (!kept) this.ghost = null;
-    return this.engine.run(settings, this.kernels.of(settings));
-  }
-
   /** The guaranteed rate of decay, if Python has told it of what is shown. */
   guaranteed() {
-    return this.bound.of === this.shown.settings ? this.bound.rate : null;
+    return this.answered()?.bound ?? null;
   }
 
-  draw() {
-    const { shown, ghost, cursor, theme } = this;
-    this.plane.draw(shown, ghost, cursor, theme);
-    this.drawn = {};
-    const chosen = this.model.pictures.filter((name) => shown.settings.pictures.includes(name));
-    for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
-    const span = { low: 0, high: shown.settings.duration };
-    span.ticks = linearScale(span.low, span.high, this.width < 600 ? 4 : 8).ticks;
+  chartOf(name) {
     const more = { bound: this.guaranteed(), unseen: this.model.unseen };
-    for (const name of chosen) {
-      const chart = chartOf(name, shown, ghost, theme, more);
-      this.drawn[name] = chart;
-      this.charts[name].draw({ ...chart, span, cursor, theme, last: name === chosen.at(-1) });
-    }
+    return chartOf(name, this.shown, this.ghost, this.theme, more);
   }
 
-  speak() {
-    const { shown, cursor, model } = this;
-    const points = Array.from({ length: shown.points }, (_, k) => [k, `point ${k + 1}`]);
-    this.view.words({
-      verdicts: [
-        { which: "truth", title: "Error", text: verdict(shown, model) },
-        { which: "fit", title: "Decay", text: decayInWords(shown, this.guaranteed()) },
-      ],
-      reasons: reasons(shown, model),
-      reading: cursor === null ? "" : readingAt(shown, cursor),
-      legend: [
-        ...points,
-        ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]]),
-        ...(shown.settings.kept ? [["kept", "kept run"]] : []),
-      ],
-    });
+  verdicts() {
+    return [
+      { which: "truth", title: "Error", text: verdict(this.shown, this.model) },
+      { which: "fit", title: "Decay", text: decayInWords(this.shown, this.guaranteed()) },
+    ];
   }
 
-  describe() {
-    this.plane.describe(imagePlaneInWords(this.shown), this.shown);
-    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].describe(chartInWords(chart));
-    this.formulas.show(this.shown.settings);
+  reasons() {
+    return reasons(this.shown, this.model);
+  }
+
+  readingAt(cursor) {
+    return readingAt(this.shown, cursor);
+  }
+
+  legend() {
+    const points = Array.from({ length: this.shown.points }, (_, k) => [k, `point ${k + 1}`]);
+    return [...points, ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]])];
+  }
+
+  copy() {
+    return pythonOf(this.shown, this.model);
   }
 
   summary(serial) {
     return summaryOf(this.shown, serial, this.model);
-  }
-
-  analysed(analysis) {
-    super.analysed(analysis);
-    this.bound = { of: this.settings, rate: analysis.bound ?? null };
-    this.schedule();
   }
 }

@@ -1,0 +1,79 @@
+// What cameras of single points share: when they sample, what noise adds, how far the point stays in front.
+
+import { move, project } from "./plant.js";
+import { draws } from "./random.js";
+import { column, plantGrid, sampleTimes } from "./tables.js";
+
+const NOTHING = new Float64Array(0);
+
+/** The times of samples, and the steps of what moves before them. */
+export function clockOf(memory, period, duration) {
+  return memory.once("clock", [period, duration], () => {
+    const time = sampleTimes(period, duration);
+    return { time, plant: plantGrid(time) };
+  });
+}
+
+/** The error that a draw stands for, in noise of a kind and a size. */
+export function errorOf(kind, size, draw) {
+  return kind === "uniform" ? -size + 2 * size * draw : size * draw;
+}
+
+/**
+ * Records settings; keeps in `memory` the parts that the next settings do not change.  A camera of its own says in
+ * methods of its own:
+ *   placeOf(settings)                the settings that the true path depends on
+ *   path(settings, functions, lines) positions at the ends of steps, with the shape of the surface
+ *   sampled(seen, settings, drawn)   the samples, with noise
+ */
+export class PointCamera {
+  constructor(model, memory, drawsOf) {
+    this.model = model;
+    this.memory = memory;
+    this.drawsOf = drawsOf;
+  }
+
+  /** Times, samples and true coordinates; or the problem that there is. */
+  record(settings, functions) {
+    const { memory } = this;
+    const { noise, dropout, bias, drift, seed } = settings;
+    const place = this.placeOf(settings);
+    const seen = memory.once("seen", place, () => this.see(settings, functions));
+    if (seen.problem) return seen;
+    return memory.once("samples", [place, noise, dropout, bias, drift, seed], () => {
+      const drawn = memory.once("draws", [noise.kind, seed, seen.time.length], () =>
+        draws(noise.kind, seed, seen.time.length, this.drawsOf),
+      );
+      return { ...seen, outputs: this.sampled(seen, settings, drawn) };
+    });
+  }
+
+  see(settings, functions) {
+    const { time, plant } = clockOf(this.memory, settings.period, settings.duration);
+    const count = time.length;
+    const truth = new Float64Array(3 * count);
+    const inFront = this.look(settings, functions, plant, truth);
+    if (inFront < 2) {
+      const problem = inFront
+        ? "the point leaves the half-space in front of the camera at once"
+        : "the point starts behind the camera; move X0 in front of it";
+      return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
+    }
+    const leavesAt = inFront < count ? time[inFront] : null;
+    return { time: time.subarray(0, inFront), truth: truth.subarray(0, 3 * inFront), leavesAt };
+  }
+
+  /** The exact coordinates at some times, a column each. */
+  exact(settings, functions, times) {
+    const found = new Float64Array(3 * times.length);
+    this.look(settings, functions, plantGrid(times), found);
+    return [0, 1, 2].map((c) => column(found, 3, c));
+  }
+
+  /** Fill in coordinates at the ends of steps; how many of them are in front of the camera from the first on. */
+  look(settings, functions, lines, found) {
+    const { start, known, shape } = this.path(settings, functions, lines);
+    const points = move(start, functions.plant, known, lines, (part, length) => this.memory.room(part, length));
+    return project(points, functions.project, shape, found);
+  }
+}

@@ -1,0 +1,35 @@
+// What the Python texts of all labs have in common.
+
+import { switchOf } from "./settings.js";
+
+export const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
+
+/** Numbers as a list of Python's. */
+export function list(values) {
+  return `[${values.join(", ")}]`;
+}
+
+/** Lines of imports: names by the module that has them; nothing of a module that none is wanted of. */
+export function imports(wanted) {
+  const lines = Object.entries(wanted).map(([place, names]) => [place, [...names].sort().join(", ")]);
+  return lines.filter(([, names]) => names).map(([place, names]) => `from ${place} import ${names}\n`).join("");
+}
+
+/** How long the point is seen, which may be shorter than what was asked for. */
+export function durationOf({ settings, time, leavesAt }) {
+  return leavesAt === null ? settings.duration : time.at(-1);
+}
+
+/** Lines in which each observer follows and says what happened; its maker comes with what it is told of its switch. */
+export function trackings(settings, { observers }, { makerOf, form, options, tolerance = "" }) {
+  return settings.observers.flatMap((name) => {
+    const { gains, ways } = observers[name];
+    const [maker, way] = makerOf(name);
+    const used = gains.filter((gain) => ways[switchOf(settings, name)].includes(gain.name));
+    const changed = used.filter((gain) => settings.gains[name][gain.name] !== gain.value);
+    const given = changed.map((gain) => `, ${gain.name}=${settings.gains[name][gain.name]}`).join("");
+    const result = settings.observers.length > 1 ? `run_${name}` : "run";
+    const call = ["recording", `${maker}(${form}${way}${given})`, ...options].join(", ");
+    return [`${result} = track(${call})`, `print(${result}.verdict(${tolerance}))`];
+  });
+}

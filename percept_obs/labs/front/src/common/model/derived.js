@@ -1,0 +1,24 @@
+// What follows from a result's rows of numbers: made when it is first asked for, and kept as long as they are.
+
+import { column } from "./tables.js";
+
+const kept = new WeakMap();
+
+/** What is made of these rows under a name, once. */
+export function derived(rows, name, make) {
+  if (!kept.has(rows)) kept.set(rows, new Map());
+  const found = kept.get(rows);
+  if (!found.has(name)) found.set(name, make());
+  return found.get(name);
+}
+
+/** One column of rows so wide. */
+export function columnOf(rows, width, which) {
+  return derived(rows, `column ${which}`, () => column(rows, width, which));
+}
+
+/** Distances of rows whose last column is inverse: none where that is not positive. */
+export function distancesOf(rows, width) {
+  const inverse = columnOf(rows, width, width - 1);
+  return derived(rows, "distances", () => inverse.map((value) => (value > 0 ? 1 / value : NaN)));
+}

@@ -1,0 +1,61 @@
+// The functions that settings need, made from texts of which some follow after a lab has been opened.
+
+import { Modules } from "./modules.js";
+
+/**
+ * Functions of a model.  A lab of its own says in methods of its own:
+ *   has(settings)      whether the texts that these settings need have come
+ *   needed(settings)   names and texts of the modules that they are made of
+ */
+export class PrintedKernels {
+  constructor(model, load) {
+    this.model = model;
+    this.modules = new Modules(load);
+    this.whole = new Set();
+    this.waiters = [];
+  }
+
+  /** Go on with what has waited for a part. */
+  came(part) {
+    this.whole.add(part);
+    for (const retry of this.waiters.splice(0)) retry();
+  }
+
+  /** The functions that settings need, those of observers by their names; undefined while one has to be waited for. */
+  of(settings) {
+    if (!this.has(settings)) return undefined;
+    const found = { observers: {} };
+    for (const { key, observer, aside } of this.needed(settings)) {
+      const functions = this.modules.get(key);
+      if (!functions) return undefined;
+      if (observer) found.observers[observer] = functions;
+      else if (!aside) Object.assign(found, functions);
+    }
+    return found;
+  }
+
+  /** Wait for what settings need, and load it. */
+  async prepare(settings) {
+    while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
+    await Promise.all(this.needed(settings).map(({ key, texts }) => this.modules.prepare(key, texts)));
+  }
+
+  /** The module of an observer's loop, without what it has no need of, and that of its gains. */
+  loop(key, observer, { run, start, estimate, variances, gap, fastest }) {
+    const texts = Object.entries({ run, start, estimate, variances, gap, fastest }).filter(([, text]) => text);
+    return [{ key, observer, texts: Object.fromEntries(texts) }, this.gains(observer)];
+  }
+
+  /** The module that says which gains of an observer are allowed, which no run needs. */
+  gains(observer) {
+    const { gains } = this.model.observers[observer];
+    const texts = Object.fromEntries(gains.map((gain) => [`allow_${gain.name}`, gain.allowed]));
+    return { key: `gains of ${observer}`, texts, aside: true };
+  }
+
+  /** Whether an observer's gain may have this value. */
+  allows(observer, gain, value) {
+    const functions = this.modules.get(`gains of ${observer}`);
+    return !functions || functions[`allow_${gain}`]([value], [0])[0] === 1;
+  }
+}

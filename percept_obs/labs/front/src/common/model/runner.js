@@ -1,0 +1,127 @@
+// Observers on a recording: the same numbers as track() in Python.
+
+import { columnOf } from "./derived.js";
+import { hiddenError, settlingTime } from "./errors.js";
+import { Memory } from "./memory.js";
+import { arriving, held, lastSamples } from "./tables.js";
+
+/** What the engines of labs share; each lays out the inputs of its observers by itself. */
+export class Runner {
+  constructor(model) {
+    this.model = model;
+    this.memory = new Memory();
+    this.order = Object.keys(model.observers);
+    this.room = (part, length) => this.memory.room(part, length);
+  }
+
+  /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
+  layOut({ time, outputs, measured, sampled }, lines, known, hold, exact) {
+    const { grid, index } = lines;
+    const columns = measured.map((c) => columnOf(outputs, sampled, c));
+    const room = (part) => (length) => this.room(part, length);
+    return {
+      ...lines,
+      columns,
+      last: columns.map((values, m) => lastSamples(values, room(`last ${m}`))),
+      held: held(columns, time, grid, index, hold, exact, room("held")),
+      arriving: arriving(columns, index, grid.length, room("arriving")),
+      known,
+    };
+  }
+
+  /** One observer's run: estimates, resets, gaps, errors. */
+  follow(name, chosen, result, inputs, kernel, functions, asked) {
+    const { width, time, truth } = result;
+    const { grid, known: table } = inputs;
+    const gains = Float64Array.from(kernel.gains, (gain) => chosen[gain]);
+    const states = this.room(`states of ${name}`, grid.length * kernel.states);
+    const resets = this.room("resets", grid.length).fill(0);
+    const start = startState(inputs, kernel, functions, gains, asked);
+    const { steps, held: outputs, arriving: samples } = inputs;
+    const diverged = functions.run(start, steps, outputs, table.rows, samples, gains, table.varying, states, resets);
+    if (diverged >= 0) states.fill(NaN, diverged * kernel.states);
+    const estimate = new Float64Array(time.length * width);
+    const lacking = this.room("lacking", time.length).fill(0);
+    readEstimates(functions, kernel, states, inputs, gains, result, estimate, lacking);
+    const error = truth && hiddenError(truth, estimate, width, result.hidden);
+    return {
+      name,
+      title: this.model.observers[name].title,
+      order: this.order.indexOf(name),
+      estimate,
+      deviation: functions.variances ? readDeviations(functions, kernel, states, inputs, width) : null,
+      resets: timesOf(resets, grid),
+      gaps: gapsOf(lacking, time),
+      gapReasons: kernel.gapReasons,
+      divergedAt: diverged < 0 ? null : grid[diverged],
+      error,
+      settling: error && settlingTime(time, error, result.tolerance),
+    };
+  }
+}
+
+/** The state at the first sample, from it, from what is known there, and from the estimates that are asked for. */
+function startState({ columns, known: table }, kernel, functions, gains, asked) {
+  const parameters = table.rows.subarray(0, table.width);
+  const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked];
+  return functions.start(inputs, new Float64Array(kernel.states));
+}
+
+/** Fill in the estimates at the samples; none of the hidden coordinates in a gap, which `lacking` numbers from 1 on. */
+function readEstimates(functions, kernel, states, inputs, gains, { width, time, measured, hidden }, estimate, lacking) {
+  const { index, last, columns, known: table } = inputs;
+  const before = last.length + table.width + gains.length;
+  const after = before + kernel.states;
+  const x = new Float64Array(after + 1 + last.length);
+  const out = new Float64Array(width);
+  const which = new Float64Array(1);
+  x.set(table.rows.subarray(0, table.width), last.length);
+  x.set(gains, last.length + table.width);
+  for (let k = 0; k < index.length; k++) {
+    const at = index[k] * kernel.states;
+    for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
+    for (let m = 0; m < last.length; m++) x[m] = last[m][k];
+    if (table.varying) {
+      const row = 2 * index[k] * table.width;
+      for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
+    }
+    functions.estimate(x, out);
+    for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
+    if (!functions.gap) continue;
+    // Of the first sample, the innovation counts for all that follow.
+    if (k === 0) measured.forEach((c, m) => (x[after + 1 + m] = columns[m][0] - out[c]));
+    x[after] = time[k] - time[0];
+    lacking[k] = functions.gap(x, which)[0];
+    if (lacking[k]) for (const c of hidden) estimate[k * width + c] = NaN;
+  }
+}
+
+/** The times of every gap's first and last sample, and its number, where a hidden coordinate has no estimate. */
+function gapsOf(lacking, time) {
+  const found = [];
+  for (let k = 0; k < time.length; k++) {
+    if (!lacking[k]) continue;
+    if (lacking[k] === lacking[k - 1]) found.at(-1)[1] = time[k];
+    else found.push([time[k], time[k], lacking[k]]);
+  }
+  return found;
+}
+
+/** The standard deviations that are claimed at the samples. */
+function readDeviations(functions, kernel, states, { index }, width) {
+  const deviation = new Float64Array(index.length * width);
+  const x = new Float64Array(kernel.states);
+  const out = new Float64Array(width);
+  for (let k = 0; k < index.length; k++) {
+    for (let s = 0; s < kernel.states; s++) x[s] = states[index[k] * kernel.states + s];
+    functions.variances(x, out);
+    for (let c = 0; c < width; c++) deviation[k * width + c] = Math.sqrt(Math.max(0, out[c]));
+  }
+  return deviation;
+}
+
+function timesOf(resets, grid) {
+  const found = [];
+  for (let k = 0; k < resets.length; k++) if (resets[k]) found.push(grid[k]);
+  return found;
+}

@@ -1,0 +1,37 @@
+// Settings: comparing them, reading and changing them by the place of a value such as "noise.size" or "b.0".
+
+/** Whether two settings are the same, whatever the order of their keys. */
+export function same(one, other) {
+  if (Object.is(one, other)) return true;
+  if (typeof one !== "object" || typeof other !== "object" || !one || !other) return false;
+  const keys = Object.keys(one);
+  return keys.length === Object.keys(other).length && keys.every((key) => same(one[key], other[key]));
+}
+
+/** The value at a place; undefined where there is none. */
+export function valueAt(settings, place) {
+  return place.split(".").reduce((part, key) => part?.[key], settings);
+}
+
+/** What of the settings changes when a value is put at a place. */
+export function changeAt(settings, place, value) {
+  const [key, ...rest] = place.split(".");
+  if (!rest.length) return { [key]: value };
+  const part = settings[key];
+  const change = changeAt(part, rest.join("."), value);
+  return { [key]: Array.isArray(part) ? Object.assign([...part], change) : { ...part, ...change } };
+}
+
+/** How an observer switches, or nothing; under this name its loop is filed. */
+export function switchOf(settings, name) {
+  return settings.switches?.[name] ?? "";
+}
+
+/** The settings of a preset's act: the standard ones, whatever the lab was opened with, and the act's changes. */
+export function settingsAfter(act, standard) {
+  const changed = { ...structuredClone(standard), ...structuredClone(act.changes), kept: null };
+  if (!standard.gains) return changed;
+  changed.gains = structuredClone(standard.gains);
+  for (const [name, gains] of Object.entries(act.changes.gains ?? {})) Object.assign(changed.gains[name], gains);
+  return changed;
+}

@@ -1,0 +1,162 @@
+// What an observer may know at the start, the middle and the end of every step, laid out once; see tracking.py.
+
+const PLANT_STEP = 0.005;
+
+/** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
+export function stepGrid(times, longest) {
+  const index = new Int32Array(times.length);
+  const counts = new Int32Array(times.length - 1);
+  for (let k = 0; k < counts.length; k++) {
+    const interval = times[k + 1] - times[k];
+    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - 1e-9)) : 0;
+    index[k + 1] = index[k] + counts[k];
+  }
+  const grid = new Float64Array(index[index.length - 1] + 1);
+  for (let k = 0; k < counts.length; k++) {
+    const interval = times[k + 1] - times[k];
+    for (let j = 1; j < counts[k]; j++) grid[index[k] + j] = times[k] + interval * (j / counts[k]);
+  }
+  for (let k = 0; k < index.length; k++) grid[index[k]] = times[k];
+  return { grid, index };
+}
+
+/** The lengths of the steps of a grid. */
+export function differences(grid) {
+  const steps = new Float64Array(grid.length - 1);
+  for (let k = 0; k < steps.length; k++) steps[k] = grid[k + 1] - grid[k];
+  return steps;
+}
+
+/** A grid of steps with their lengths. */
+export function withSteps({ grid, index }) {
+  return { grid, index, steps: differences(grid) };
+}
+
+/** The steps in which the truth moves: from time 0 on, with an end at each of the times; the first is time 0. */
+export function plantGrid(times) {
+  const from = new Float64Array(times.length + 1);
+  from.set(times, 1);
+  return withSteps(stepGrid(from, PLANT_STEP));
+}
+
+/** Times of samples, a period apart. */
+export function sampleTimes(period, duration) {
+  const time = new Float64Array(Math.floor(duration / period + 1e-9) + 1);
+  for (let k = 0; k < time.length; k++) time[k] = period * k;
+  return time;
+}
+
+/** The grid with the middles of its steps put between. */
+export function halves(grid) {
+  const both = new Float64Array(2 * grid.length - 1);
+  for (let k = 0; k < grid.length; k++) both[2 * k] = grid[k];
+  for (let k = 0; k + 1 < grid.length; k++) both[2 * k + 1] = (grid[k] + grid[k + 1]) / 2;
+  return both;
+}
+
+/** Linear interpolation at increasing places, constant outside. */
+export function interpolate(places, times, values) {
+  const result = new Float64Array(places.length);
+  const last = times.length - 1;
+  let k = 0;
+  for (let j = 0; j < places.length; j++) {
+    const t = places[j];
+    if (t <= times[0]) result[j] = values[0];
+    else if (t >= times[last]) result[j] = values[last];
+    else {
+      while (times[k + 1] <= t) k++;
+      result[j] = values[k] + ((values[k + 1] - values[k]) / (times[k + 1] - times[k])) * (t - times[k]);
+    }
+  }
+  return result;
+}
+
+const fresh = (length) => new Float64Array(length);
+
+/** One column of a table of rows; `room` gives an array to put it into. */
+export function column(rows, width, which, room = fresh) {
+  const result = room(rows.length / width);
+  for (let k = 0; k < result.length; k++) result[k] = rows[k * width + which];
+  return result;
+}
+
+/** Each sample, or where it was lost (NaN) the last one before it. */
+export function lastSamples(values, room = fresh) {
+  const result = room(values.length);
+  let last = NaN;
+  for (let k = 0; k < values.length; k++) {
+    if (values[k] === values[k]) last = values[k];
+    result[k] = last;
+  }
+  return result;
+}
+
+/** Measured outputs as held at the start, the middle and the end of each step: rows of 3 x outputs. */
+export function held(columns, times, grid, index, hold, exact, room = fresh) {
+  const outputs = columns.length;
+  const steps = grid.length - 1;
+  const table = room(steps * 3 * outputs);
+  const row = 3 * outputs;
+  columns.forEach((values, m) => {
+    if (hold === "zero") {
+      let last = NaN;
+      for (let k = 0; k + 1 < index.length; k++) {
+        if (values[k] === values[k]) last = values[k];
+        for (let at = index[k] * row + m; at < index[k + 1] * row; at += outputs) table[at] = last;
+      }
+      return;
+    }
+    const line = hold === "exact" ? exact[m] : lineThrough(values, times, halves(grid));
+    for (let j = 0; j < steps; j++) {
+      for (let stage = 0; stage < 3; stage++) table[(3 * j + stage) * outputs + m] = line[2 * j + stage];
+    }
+  });
+  return table;
+}
+
+function lineThrough(values, times, places) {
+  if (!values.some(Number.isNaN)) return interpolate(places, times, values);
+  const there = [...values.keys()].filter((k) => !Number.isNaN(values[k]));
+  return interpolate(places, Float64Array.from(there, (k) => times[k]), Float64Array.from(there, (k) => values[k]));
+}
+
+/** Samples at the steps' ends at which they arrive, NaN at the others. */
+export function arriving(columns, index, count, room = fresh) {
+  const outputs = columns.length;
+  const table = room(count * outputs).fill(NaN);
+  for (let k = 0; k < index.length; k++) {
+    for (let m = 0; m < outputs; m++) table[index[k] * outputs + m] = columns[m][k];
+  }
+  return table;
+}
+
+/** Numbers known at the starts, middles and ends of a grid's steps, or the one row that is constant. */
+export function known(motion, shape, grid) {
+  return knownAt(motion, shape, motion.times.length === 1 ? grid : halves(grid));
+}
+
+/** Rows of known numbers at some times. */
+export function knownAt(motion, shape, places) {
+  const width = motion.rows[0].length + shape.length;
+  if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
+  const rows = new Float64Array(places.length * width);
+  motion.rows[0].forEach((_, p) => {
+    const line = interpolate(places, motion.times, motion.columns[p]);
+    for (let k = 0; k < places.length; k++) rows[k * width + p] = line[k];
+  });
+  shape.forEach((value, p) => {
+    for (let k = 0; k < places.length; k++) rows[k * width + motion.rows[0].length + p] = value;
+  });
+  return { rows, width, varying: true };
+}
+
+/** The last sample that is not after a time. */
+export function sampleAt(time, when) {
+  let [low, high] = [0, time.length - 1];
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (time[middle] <= when + 1e-9) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}

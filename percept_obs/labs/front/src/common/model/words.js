@@ -1,0 +1,63 @@
+// What happened, in words. Those of verdicts come from Python, so that both say the same.
+
+import { readable, short } from "./scales.js";
+import { sampleAt } from "./tables.js";
+
+/** Put values into a text of Python's. */
+export function filled(text, values) {
+  return text.replace(/{(\w+)}/g, (_, name) => values[name]);
+}
+
+/** What happened to one observer, as Run.verdict() in Python. */
+export function verdict(run, shown, { verdicts, settledPart }) {
+  const say = (which, values) => filled(verdicts[which], values);
+  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
+  const count = run.resets.length;
+  let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
+  for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
+    const gaps = run.gaps.filter((gap) => gap[2] === which);
+    besides += say("gap", { begin: short(gaps[0][0]), end: short(gaps[0][1]), reason: run.gapReasons[which - 1] });
+    if (gaps.length > 1) besides += say("more gaps", { count: gaps.length - 1 });
+  }
+  const length = shown.time.at(-1) - shown.time[0];
+  if (!shown.truth) return say("followed", { time: short(length) }) + besides;
+  const inside = length - run.settling >= settledPart * length ? "converged" : "late";
+  const words = say(run.settling === Infinity ? "outside" : inside, {
+    hidden: shown.hiddenNames.join(", "),
+    error: short(run.error.at(-1), 2),
+    tolerance: short(shown.tolerance, 6),
+    time: short(run.settling),
+  });
+  return words + besides;
+}
+
+/** The values under the cursor. */
+export function readingAt(shown, cursor) {
+  const k = sampleAt(shown.time, cursor);
+  const row = (rows) =>
+    shown.names.map((name, c) => `${name} = ${readable(rows[k * shown.width + c])}`).join(", ");
+  const parts = [`At ${readable(shown.time[k])} s`];
+  if (shown.truth) parts.push(`true ${row(shown.truth)}`);
+  for (const run of shown.runs) parts.push(`${run.title} ${row(run.estimate)}`);
+  return parts.join(" · ");
+}
+
+/** Numbers that Python is told: verdicts, final estimates, resets, and estimates at some times. */
+export function summaryOf(shown, serial, model) {
+  if (shown.problem) return { serial, problem: shown.problem };
+  if (shown.refusal) return { serial, refusal: shown.refusal };
+  const number = (value) => (Number.isFinite(value) ? value : null);
+  const last = shown.time.length - 1;
+  const probes = Array.from({ length: 9 }, (_, k) => Math.round((k / 8) * last));
+  const row = (run, k) => Array.from(run.estimate.subarray(k * shown.width, (k + 1) * shown.width), number);
+  const by = (value) => Object.fromEntries(shown.runs.map((run) => [run.name, value(run)]));
+  return {
+    serial,
+    samples: shown.time.length,
+    verdicts: by((run) => verdict(run, shown, model)),
+    settling: by((run) => number(run.settling)),
+    resets: by((run) => run.resets.length),
+    final: by((run) => row(run, last)),
+    probes: { samples: probes, estimates: by((run) => probes.map((k) => row(run, k))) },
+  };
+}

@@ -1,0 +1,223 @@
+// Time charts: lines of width 1, least and greatest value of each pixel column, so that 8,000 points cost as 800.
+
+import { describe, fit, picture, underlay } from "./canvas.js";
+import { tickLabel } from "../model/scales.js";
+
+const LEFT = 46;
+const RIGHT = 12;
+const TOP = 20;
+const BOTTOM = 18;
+
+/** A chart of values over time. */
+export class TimeChart {
+  constructor(name, label) {
+    this.name = name;
+    Object.assign(this, picture("chart", label));
+    this.drawn = [];
+  }
+
+  /**
+   * Draw lines {time, values, colour, dash}, a band, shaded spans of time, marks on the time axis, bars
+   * {begin, end, colour} at the top, and the cursor.
+   */
+  draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
+    const { width, height } = fit(this);
+    const bottom = last ? BOTTOM : 6;
+    const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
+    this.place = place;
+    this.drawn = lines;
+    const pen = this.context;
+    underlay(this, [title, scale, span, last, theme], (below) => this.axes(below, place, theme, title, last));
+    pen.lineWidth = 1;
+    pen.save();
+    pen.beginPath();
+    pen.rect(place.left, place.top - 1, place.width, place.height + 2);
+    pen.clip();
+    for (const [begin, end] of spans) shade(pen, place, begin, end, theme.warning);
+    if (level !== undefined) horizontal(pen, place, level, theme.muted, [2, 4]);
+    if (band) fillBand(pen, place, band);
+    for (const line of lines) strokeLine(pen, place, line);
+    for (const { time, colour } of marks) mark(pen, place, time, colour);
+    drawBars(pen, place, bars);
+    if (cursor !== null) vertical(pen, place, cursor, theme.ink);
+    pen.restore();
+  }
+
+  axes(pen, place, theme, title, last) {
+    pen.font = theme.font;
+    pen.setLineDash([]);
+    pen.textBaseline = "middle";
+    pen.textAlign = "right";
+    pen.fillStyle = theme.muted;
+    for (const tick of place.scale.ticks) {
+      const y = Math.round(place.y(tick)) + 0.5;
+      horizontal(pen, place, tick, theme.grid, []);
+      pen.fillText(tickLabel(tick, place.scale.log), place.left - 6, y);
+    }
+    pen.textBaseline = "alphabetic";
+    pen.textAlign = "left";
+    pen.fillStyle = theme.ink;
+    pen.fillText(title, place.left, 12);
+    if (!last) return;
+    pen.fillStyle = theme.muted;
+    pen.textBaseline = "top";
+    pen.textAlign = "center";
+    for (const tick of place.span.ticks) {
+      if (tick < place.span.low || tick > place.span.high) continue;
+      const end = tick === place.span.ticks.at(-1);
+      pen.fillText(end ? `${tickLabel(tick, false)} s` : tickLabel(tick, false), place.x(tick), place.bottom + 5);
+    }
+  }
+
+  describe(text) {
+    describe(this, text);
+  }
+
+  /** The time under a pointer, or null beside the chart. */
+  timeAt(clientX) {
+    if (!this.place) return null;
+    const part = (clientX - this.canvas.getBoundingClientRect().left - this.place.left) / this.place.width;
+    return part < 0 || part > 1 ? null : this.place.span.low + part * (this.place.span.high - this.place.span.low);
+  }
+}
+
+/** Where times and values lie on a canvas. */
+class Place {
+  constructor(span, scale, left, top, width, height) {
+    Object.assign(this, { span, scale, left, top, width, height, bottom: top + height });
+    this.perSecond = width / (span.high - span.low);
+    const [low, high] = scale.log ? [Math.log10(scale.low), Math.log10(scale.high)] : [scale.low, scale.high];
+    this.perUnit = height / (high - low);
+    this.base = low;
+  }
+
+  x(time) {
+    return this.left + (time - this.span.low) * this.perSecond;
+  }
+
+  y(value) {
+    const height = this.scale.log ? Math.log10(Math.max(value, 1e-30)) : value;
+    // Far outside is far enough: a canvas rounds what is further.
+    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, -1e4), 1e4);
+  }
+}
+
+function strokeLine(pen, place, { time, values, colour, dash }) {
+  pen.beginPath();
+  tracePath(pen, place, time, values);
+  pen.strokeStyle = colour;
+  pen.setLineDash(dash ?? []);
+  pen.lineJoin = "bevel";
+  pen.stroke();
+}
+
+/** One path, with gaps where values are not numbers; of each pixel column the first, least, greatest and last. */
+function tracePath(pen, place, time, values) {
+  const { left, perSecond } = place;
+  const begin = place.span.low;
+  let column = -1;
+  let first = 0;
+  let least = 0;
+  let greatest = 0;
+  let last = 0;
+  let before = NaN;
+  const flush = () => {
+    if (column < 0) return;
+    const x = column + 0.5;
+    if (Number.isNaN(before)) pen.moveTo(x, place.y(first));
+    // A line that only rises, or only falls, from column to column needs no more than its ends.
+    else if (!((before <= first && first <= last) || (before >= first && first >= last))) pen.lineTo(x, place.y(first));
+    if (least < first && least < last) pen.lineTo(x, place.y(least));
+    if (greatest > first && greatest > last) pen.lineTo(x, place.y(greatest));
+    pen.lineTo(last === first ? x + 0.01 : x, place.y(last));
+    before = last;
+    column = -1;
+  };
+  for (let k = 0; k < values.length; k++) {
+    const value = values[k];
+    if (!(value - value === 0)) {
+      flush();
+      before = NaN;
+      continue;
+    }
+    // Heights grow with values, so that only those of a column's four need the scale.
+    const at = Math.floor(left + (time[k] - begin) * perSecond);
+    if (at !== column) {
+      flush();
+      column = at;
+      first = least = greatest = last = value;
+      continue;
+    }
+    if (value < least) least = value;
+    if (value > greatest) greatest = value;
+    last = value;
+  }
+  flush();
+}
+
+/** A band between functions of the sample. */
+function fillBand(pen, place, { time, low, high, colour }) {
+  const every = Math.max(1, Math.floor(time.length / (place.width * 2)));
+  pen.beginPath();
+  const along = (k, bound) => {
+    const value = bound(k);
+    if (Number.isFinite(value)) pen.lineTo(place.x(time[k]), place.y(value));
+  };
+  for (let k = 0; k < time.length; k += every) along(k, high);
+  for (let k = time.length - 1 - ((time.length - 1) % every); k >= 0; k -= every) along(k, low);
+  pen.globalAlpha = 0.16;
+  pen.fillStyle = colour;
+  pen.fill();
+  pen.globalAlpha = 1;
+}
+
+function horizontal(pen, place, value, colour, dash) {
+  const y = Math.round(place.y(value)) + 0.5;
+  pen.beginPath();
+  pen.setLineDash(dash);
+  pen.strokeStyle = colour;
+  pen.moveTo(place.left, y);
+  pen.lineTo(place.left + place.width, y);
+  pen.stroke();
+}
+
+function vertical(pen, place, time, colour) {
+  const x = Math.round(place.x(time)) + 0.5;
+  pen.beginPath();
+  pen.setLineDash([]);
+  pen.strokeStyle = colour;
+  pen.globalAlpha = 0.45;
+  pen.moveTo(x, place.top);
+  pen.lineTo(x, place.bottom);
+  pen.stroke();
+  pen.globalAlpha = 1;
+}
+
+/** A time in which something is missing; never thinner than a pixel. */
+function shade(pen, place, begin, end, colour) {
+  const left = place.x(begin);
+  pen.globalAlpha = 0.14;
+  pen.fillStyle = colour;
+  pen.fillRect(left, place.top, Math.max(1, place.x(end) - left), place.height);
+  pen.globalAlpha = 1;
+}
+
+/** A row of thin bars for each colour, from the top on. */
+function drawBars(pen, place, bars) {
+  const rows = [...new Set(bars.map(({ colour }) => colour))];
+  for (const { begin, end, colour } of bars) {
+    pen.fillStyle = colour;
+    pen.fillRect(place.x(begin), place.top + 1 + 5 * rows.indexOf(colour), Math.max(1, place.x(end) - place.x(begin)), 3);
+  }
+}
+
+/** A reset: a short tick that hangs from the top. */
+function mark(pen, place, time, colour) {
+  const x = Math.round(place.x(time)) + 0.5;
+  pen.beginPath();
+  pen.setLineDash([]);
+  pen.strokeStyle = colour;
+  pen.moveTo(x, place.top);
+  pen.lineTo(x, place.top + 5);
+  pen.stroke();
+}

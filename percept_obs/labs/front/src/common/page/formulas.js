@@ -1,0 +1,61 @@
+// Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
+
+import { element } from "./controls.js";
+import { readable } from "../model/scales.js";
+
+/** Sections of formulas, each with an owner whose letters it has. */
+export class FormulaSheet {
+  constructor() {
+    this.body = element("div", { class: "formulas" });
+    this.shownFor = "";
+    this.numbers = [];
+  }
+
+  clear() {
+    this.body.replaceChildren();
+    this.numbers = [];
+  }
+
+  /** Put the present numbers in, each by its owner and its letter. */
+  putIn(valueOf) {
+    for (const place of this.numbers) {
+      const value = valueOf(place.owner, place.letter);
+      const text = value === undefined ? "" : value < 0 ? `(${readable(value)})` : readable(value);
+      if (place.node.textContent !== text) place.node.textContent = text;
+    }
+  }
+
+  /** Light up a letter. */
+  highlight(owner, letter) {
+    for (const node of this.body.querySelectorAll("[data-letter]")) {
+      const mine = node.closest("[data-owner]").dataset.owner === owner;
+      node.classList.toggle("lit", mine && node.dataset.letter === letter);
+    }
+  }
+
+  section(title, owner, formulas) {
+    const lines = formulas.flatMap((text) => {
+      const [inLetters, withNumbers] = ["in-letters", "with-numbers"].map((kind) => element("div", { class: `line ${kind}` }));
+      inLetters.innerHTML = withNumbers.innerHTML = `<math displaystyle="true">${text}</math>`;
+      this.putNumbers(withNumbers, owner);
+      return withNumbers.querySelector("[data-letter]") ? [inLetters, withNumbers] : [inLetters];
+    });
+    // A wide line scrolls inside its section, which a keyboard must reach for that.
+    const attributes = { "data-owner": owner, role: "group", "aria-label": title, tabindex: 0 };
+    this.body.append(element("section", attributes, element("h4", {}, title), ...lines));
+  }
+
+  putNumbers(line, owner) {
+    const space = "http://www.w3.org/1998/Math/MathML";
+    for (const operator of line.querySelectorAll("mo")) {
+      // Between numbers an invisible sign of multiplication would join them.
+      if (operator.textContent === "\u2062") operator.textContent = "·";
+    }
+    for (const marked of line.querySelectorAll("[data-letter]")) {
+      const node = document.createElementNS(space, "mn");
+      const letter = marked.dataset.letter;
+      marked.replaceChildren(node);
+      this.numbers.push({ node, owner, letter });
+    }
+  }
+}

@@ -1,0 +1,88 @@
+// A handle on a picture: dragged with mouse, touch or arrow keys.
+
+import { element } from "./controls.js";
+import { readable } from "../model/scales.js";
+
+const NUDGE = 0.01;
+const LEAP = 10;
+const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
+export class Handle {
+  constructor({ name, label, className, text, onMove, onRest, onKey }) {
+    Object.assign(this, { onMove, onRest, onKey, at: null, grip: null, keyed: false, scale: 1 });
+    this.node = element("div", { class: `handle ${className}`, tabindex: 0, role: "slider", "aria-label": label });
+    this.node.dataset.control = name;
+    if (text) this.node.append(text);
+    this.listen();
+  }
+
+  listen() {
+    const { node } = this;
+    node.addEventListener("pointerdown", (event) => {
+      if (!this.at || event.button > 0) return;
+      event.preventDefault();
+      node.focus({ preventScroll: true });
+      try {
+        node.setPointerCapture(event.pointerId);
+      } catch {
+        // A pointer that a script made cannot be captured; its moves arrive all the same.
+      }
+      this.grip = { id: event.pointerId, x: event.clientX, y: event.clientY, from: [...this.at] };
+    });
+    const follow = (event) => {
+      if (!this.grip || event.pointerId !== this.grip.id) return;
+      const [y1, y2] = this.grip.from;
+      this.onMove([y1 + (event.clientX - this.grip.x) / this.scale, y2 - (event.clientY - this.grip.y) / this.scale]);
+    };
+    const release = (event) => {
+      if (!this.grip || event.pointerId !== this.grip.id) return;
+      // A quick drag loses its last move in half of the cases, so the place is read once more.
+      if (event.type === "pointerup") follow(event);
+      this.grip = null;
+      this.onRest();
+    };
+    node.addEventListener("pointermove", follow);
+    for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) node.addEventListener(type, release);
+    node.addEventListener("keydown", (event) => {
+      if (!this.at) return;
+      const step = STEPS[event.key];
+      if (step) {
+        const size = NUDGE * (event.shiftKey ? LEAP : 1);
+        // Keys may come faster than pictures, and each begins where the one before it has led.
+        this.at = [this.at[0] + step[0] * size, this.at[1] + step[1] * size];
+        this.onMove(this.at);
+      } else if (!this.onKey?.(event)) return;
+      this.keyed = true;
+      event.preventDefault();
+    });
+    for (const type of ["keyup", "blur"]) {
+      node.addEventListener(type, () => {
+        if (this.keyed) this.onRest();
+        this.keyed = false;
+      });
+    }
+  }
+
+  /** Stand at a place, or at the edge of the box nearest to it; without a place, nowhere. */
+  stand(at, frame) {
+    const { node } = this;
+    this.at = at;
+    node.hidden = !at;
+    if (!at) return;
+    const { box, scale, x, y } = frame;
+    this.scale = scale;
+    const inside = (value, low) => Math.min(Math.max(value, low), low + box.side);
+    const [left, top] = [inside(x(at[0]), box.left), inside(y(at[1]), box.top)];
+    const outside = Math.abs(left - x(at[0])) + Math.abs(top - y(at[1])) > 1;
+    if (outside !== node.classList.contains("outside")) node.classList.toggle("outside");
+    node.style.transform = `translate(${left}px, ${top}px)`;
+  }
+
+  /** Say where it stands. */
+  describe(more = "") {
+    if (!this.at) return;
+    this.node.setAttribute("aria-valuenow", this.at[0].toFixed(3));
+    this.node.setAttribute("aria-valuetext", `y1 ${readable(this.at[0])}, y2 ${readable(this.at[1])}${more}`);
+  }
+}

@@ -1,0 +1,222 @@
+// Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
+
+import { button, element } from "./controls.js";
+import { swatch } from "./lines.js";
+
+/** Build the lab's page inside an element. */
+export function build(lab, place, presets) {
+  const { planes, charts, panel, formulas } = lab;
+  const problem = element("p", { class: "problem", role: "alert", hidden: true });
+  const pythonError = element("p", { class: "problem percept-obs-error", role: "alert", hidden: true });
+  const silence = element("p", { class: "silence", role: "status", hidden: true });
+  const notice = element("p", { class: "notice", role: "status", hidden: true });
+  const progress = element("progress", { "aria-label": "Equations that have come from Python" });
+  const awaited = element("span");
+  const waiting = element("div", { class: "waiting", role: "status", hidden: true }, progress, awaited);
+  const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
+  const verdicts = element("ul", { class: "verdicts" });
+  const why = element("ul", { class: "why" });
+  const analysis = element("ul", { class: "analysis" });
+  const reading = element("p", { class: "reading" });
+  const legend = element("ul", { class: "legend", "aria-label": "Lines" });
+  const card = element("div", { class: "card", hidden: true });
+  const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
+  const keep = button("Keep this run", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false" });
+  const back = button("Back", () => lab.goBack(), { "data-control": "back", hidden: true });
+  const undo = button("Undo", () => lab.undo(), { "data-control": "undo", title: "Ctrl+Z" });
+  const redo = button("Redo", () => lab.redo(), { "data-control": "redo", title: "Ctrl+Shift+Z" });
+  const cursor = element("input", { type: "range", min: 0, max: 1, step: 0.001, value: 0, "data-control": "cursor" });
+  cursor.setAttribute("aria-label", "Time at which values are read");
+
+  /** Show the preset that is open, with its answer once it was asked for. */
+  function preset() {
+    const { name, act, before } = lab.state.preset ?? { act: -1, before: null };
+    const open = presets.find((p) => p.name === name);
+    const inside = card.contains(document.activeElement);
+    back.hidden = !before;
+    for (const chip of chips) chip.setAttribute("aria-expanded", String(chip.dataset.preset === name));
+    if (card.dataset.preset !== (name ?? "")) {
+      card.dataset.preset = name ?? "";
+      card.hidden = !open;
+      card.replaceChildren(...(open ? question(open) : []));
+      // The button that had the focus is gone; without this the keyboard would start from the top of the page.
+      if (inside && !open) chips[0].focus();
+    }
+    if (!open) return;
+    put(card.querySelector(".answer"), open.acts[act]?.answer ?? "");
+    card.querySelectorAll(".act").forEach((node, k) => (node.hidden = k > act + 1));
+  }
+
+  function question({ name, question: text, acts }) {
+    const buttons = acts.map((act, number) =>
+      button(act.button, () => lab.act(act, number), { class: "act", "data-control": `act ${name} ${number}` }),
+    );
+    const close = button("Back to my settings", () => lab.goBack(), { "data-control": "way back" });
+    const answer = element("p", { class: "answer", role: "status" });
+    return [element("p", { class: "question" }, text), answer, element("div", {}, ...buttons, close)];
+  }
+
+  const chips = presets.map(({ name, title }) =>
+    button(title, () => lab.ask(name), {
+      class: "chip",
+      "aria-expanded": "false",
+      "data-preset": name,
+      "data-control": `preset ${name}`,
+    }),
+  );
+
+  async function copy() {
+    code.textContent = lab.copy();
+    code.hidden = false;
+    try {
+      await navigator.clipboard.writeText(code.textContent);
+      view.say("Copied: paste it into a cell.");
+    } catch {
+      view.say("The browser does not let the lab copy; select the lines below.");
+    }
+  }
+
+  const said = element("span", { class: "said", role: "status" });
+  const actions = element(
+    "div",
+    { class: "actions" },
+    undo,
+    redo,
+    back,
+    keep,
+    button("Copy as code", copy, { "data-control": "copy" }),
+    button("Reset", () => lab.reset(), { "data-control": "reset" }),
+    said,
+  );
+  const chartBox = element("div", { class: "charts" }, ...Object.values(charts).map((chart) => chart.figure));
+  const details = element("details", { class: "equations" }, element("summary", { "data-control": "equations" }, "Equations, with the present numbers"));
+  details.append(formulas.body);
+  const root = element(
+    "div",
+    { class: "percept-lab", "data-lm-suppress-shortcuts": "true" },
+    element("div", { class: "bar" }, element("div", { class: "chips", role: "group", "aria-label": "Questions" }, ...chips), actions),
+    card,
+    code,
+    problem,
+    pythonError,
+    notice,
+    waiting,
+    lab.head ?? "",
+    element(
+      "div",
+      { class: "stage" },
+      element("div", { class: "left" }, ...planes.map((plane) => plane.figure)),
+      element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
+      element("div", { class: "words" }, verdicts, why),
+    ),
+    silence,
+    live,
+    panel.body,
+    element("details", { class: "deeper", open: true }, element("summary", { "data-control": "deeper" }, "What Python adds"), analysis),
+    details,
+  );
+  place.append(root);
+
+  root.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
+    event.preventDefault();
+    if (event.shiftKey) lab.redo();
+    else lab.undo();
+  });
+  // JupyterLab would take arrows, letters and Enter for commands of its own.
+  for (const type of ["keydown", "keyup", "keypress"]) root.addEventListener(type, (event) => event.stopPropagation());
+  cursor.addEventListener("input", () => {
+    const { time } = lab.shown;
+    if (time.length) lab.point(time[0] + Number(cursor.value) * (time.at(-1) - time[0]));
+  });
+  for (const chart of Object.values(charts)) {
+    chart.canvas.addEventListener("pointermove", (event) => lab.point(chart.timeAt(event.clientX)));
+    chart.canvas.addEventListener("pointerleave", () => lab.point(null));
+  }
+
+  let spoken = "";
+  const view = {
+    root,
+    preset,
+    steps({ past, future }) {
+      // Not disabled, which would take the focus away from the last step.
+      undo.setAttribute("aria-disabled", String(!past.length));
+      redo.setAttribute("aria-disabled", String(!future.length));
+    },
+    words(found) {
+      fillVerdicts(verdicts, found.verdicts);
+      fill(why, found.reasons);
+      put(reading, found.reading);
+      spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
+      const { settings } = lab;
+      put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
+      keep.setAttribute("aria-pressed", String(Boolean(settings.kept)));
+      code.hidden ||= code.textContent !== lab.copy();
+      const key = JSON.stringify(found.legend);
+      if (legend.dataset.key === key) return;
+      legend.dataset.key = key;
+      legend.replaceChildren(...found.legend.map(([which, text]) => element("li", {}, swatch(which), text)));
+    },
+    rested() {
+      put(live, spoken);
+    },
+    notice(text) {
+      put(notice, text);
+      notice.hidden = !text;
+    },
+    waiting(found) {
+      waiting.hidden = !found;
+      if (!found) return;
+      const { done, of, reason } = found;
+      progress.max = of;
+      progress.value = done;
+      put(awaited, reason || `Python is still printing these equations: ${done} of ${of} parts are here.`);
+    },
+    analysis(sentences) {
+      fill(analysis, sentences);
+    },
+    answered(answer) {
+      analysis.classList.toggle("of-others", !answer);
+    },
+    problem(text) {
+      put(problem, text);
+      problem.hidden = !text;
+    },
+    pythonError(text) {
+      put(pythonError, text && `Python says: ${text}`);
+      pythonError.hidden = !text;
+    },
+    silence(error) {
+      silence.hidden = error === undefined;
+      put(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it.");
+    },
+    say(text) {
+      put(said, text);
+      clearTimeout(said.timer);
+      said.timer = setTimeout(() => put(said, ""), 5000);
+    },
+  };
+  return view;
+}
+
+function put(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+/** What happened in each run, beside a piece of its line. */
+function fillVerdicts(list, found) {
+  const key = JSON.stringify(found);
+  if (list.dataset.key === key) return;
+  list.dataset.key = key;
+  list.replaceChildren(
+    ...found.map(({ which, title, text }) => element("li", {}, swatch(which), element("strong", {}, `${title}:`), ` ${text}`)),
+  );
+}
+
+function fill(list, texts) {
+  texts.forEach((text, k) => {
+    if (!list.children[k]) list.append(element("li"));
+    put(list.children[k], text);
+  });
+  while (list.children.length > texts.length) list.lastChild.remove();
+}

@@ -1,0 +1,67 @@
+// The page's line to Python: state goes out when the hand rests, at most one message at a time, the latest wins.
+
+const PATIENCE = 4000;
+
+/** Sends settings and summary, hears of parts and analyses, and tells when Python does not answer. */
+export class Link {
+  constructor(widget, { onSettings, onAnalysis, onError, onSilence, onPart, onUnprinted }) {
+    this.widget = widget;
+    this.sent = null;
+    this.waitingFor = null;
+    this.onSilence = onSilence;
+    this.listeners = {
+      "change:settings": () => onSettings(widget.get("settings")),
+      "change:error": () => onError(widget.get("error")),
+      "change:analysis": () => this.heard(widget.get("analysis"), onAnalysis),
+      "change:unprinted": onUnprinted,
+    };
+    const missing = [];
+    for (const part of widget.get("parts")) {
+      const there = () => Object.keys(widget.get(part) ?? {}).length > 0;
+      this.listeners[`change:${part}`] = () => there() && onPart(part, widget.get(part));
+      if (there()) onPart(part, widget.get(part));
+      else missing.push(part);
+    }
+    for (const [event, listener] of Object.entries(this.listeners)) widget.on(event, listener);
+    if (missing.length) this.ask();
+  }
+
+  /** Python begins to print the parts by itself in a notebook; elsewhere it waits to be asked. */
+  ask() {
+    this.widget.set("missed", true);
+    this.save();
+  }
+
+  /** Hand the latest state over. */
+  send(settings, summary) {
+    this.widget.set("settings", settings);
+    this.widget.set("summary", summary);
+    this.sent = { settings, serial: summary.serial };
+    this.save();
+    clearTimeout(this.timer);
+    this.waitingFor = summary.serial;
+    this.timer = setTimeout(() => this.waitingFor !== null && this.onSilence(null), PATIENCE);
+  }
+
+  save() {
+    try {
+      this.widget.save_changes();
+    } catch (error) {
+      this.onSilence(error);
+    }
+  }
+
+  /** An answer is about the settings that were sent with its serial; one to others is too late. */
+  heard(analysis, onAnalysis) {
+    if (analysis.of !== this.sent?.serial) return;
+    this.waitingFor = null;
+    clearTimeout(this.timer);
+    this.onSilence(undefined);
+    onAnalysis(analysis, this.sent.settings);
+  }
+
+  close() {
+    clearTimeout(this.timer);
+    for (const [event, listener] of Object.entries(this.listeners)) this.widget.off(event, listener);
+  }
+}

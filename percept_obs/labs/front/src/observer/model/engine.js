@@ -1,0 +1,118 @@
+// The whole of a run: point, camera, observers. The same numbers as record() and track() in Python.
+
+import { columnOf } from "../../common/model/derived.js";
+import { Runner } from "../../common/model/runner.js";
+import { switchOf } from "../../common/model/settings.js";
+import { halves, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { Camera, constantMotion, shapeOf } from "./camera.js";
+import { keyOf } from "./kernels.js";
+import { windowed } from "./measures.js";
+
+const LONGEST_STEP = 0.01;
+const TOLERANCE = 0.05;
+
+/** Runs settings. */
+export class Engine extends Runner {
+  constructor(model) {
+    super(model);
+    this.camera = new Camera(model, this.memory);
+  }
+
+  /** What is shown of settings, with the functions that Kernels.of() gave for them; whole, or as far as is drawn. */
+  run(settings, functions, whole = true) {
+    const { coordinates: names } = this.model.surfaces[settings.surface];
+    const structure = this.model.structures[keyOf(settings)];
+    const { measured, hidden } = structure;
+    const result = {
+      settings,
+      ...this.camera.record(settings, functions),
+      ...this.geometry(settings, functions, structure),
+      ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
+      tolerance: TOLERANCE,
+      runs: [],
+      excitation: null,
+      whole: false,
+    };
+    if (result.problem) return { ...result, whole: true };
+    const inputs = this.inputs(settings, result, functions);
+    const asked = estimatesAsked(settings, result, inputs);
+    result.runs = settings.observers.map((name) => {
+      const kernel = structure.observers[name][switchOf(settings, name)];
+      return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+    });
+    return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
+  }
+
+  /** A result with all that is read off it. */
+  completed(result, functions) {
+    return { ...result, excitation: this.excitation(result, functions), whole: true };
+  }
+
+  /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
+  inputs(settings, result, functions) {
+    const { memory } = this;
+    const { time, measured } = result;
+    const recorded = settings.scenario in this.model.recordings;
+    const clock = recorded ? settings.scenario : [settings.period, time.length];
+    const lines = memory.once("grid", clock, () => withSteps(stepGrid(time, LONGEST_STEP)));
+    const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
+    const { motion, shape } = this.camera.motion(settings);
+    const believed = settings.believed ? constantMotion(settings.believed) : motion;
+    const table = memory.once("known", [clock, settings.believed ?? (recorded ? "" : believed.rows), shape], () =>
+      known(believed, shape, lines.grid),
+    );
+    return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]));
+  }
+
+  exact(settings, grid, functions) {
+    const place = [this.camera.placeOf(settings), grid.length];
+    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, halves(grid)));
+  }
+
+  excitation({ settings, time, truth, outputs, measured, hidden }, functions) {
+    const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
+    const { motion, shape } = this.camera.motion(settings);
+    const parameters = motion.rows[0].length + shape.length;
+    const table = knownAt(motion, shape, time);
+    const size = hidden.length * measured.length;
+    const w = this.room("w", size * time.length);
+    const x = new Float64Array(measured.length + parameters);
+    const out = new Float64Array(size);
+    if (!table.varying) x.set(table.rows, measured.length);
+    for (let k = 0; k < time.length; k++) {
+      for (let m = 0; m < measured.length; m++) x[m] = columns[m][k];
+      if (table.varying) for (let p = 0; p < parameters; p++) x[measured.length + p] = table.rows[k * parameters + p];
+      functions.w(x, out);
+      for (let i = 0; i < size; i++) w[k * size + i] = out[i];
+    }
+    const window = Math.min(settings.window, time[time.length - 1] - time[0]);
+    return { window, ...windowed(time, w, hidden.length, measured.length, window) };
+  }
+
+  /** Where the translation points in the image, and where an instant tells too little. */
+  geometry(settings, functions, structure) {
+    const nowhere = { foe: null, circle: null };
+    if (settings.scenario in this.model.recordings) return nowhere;
+    const parameters = [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
+    const foe = Array.from(functions.foe(parameters, [0, 0]));
+    if (!foe.every((v) => Math.abs(v) < 1e6)) return nowhere;
+    if (!structure.circle) return { foe, circle: null };
+    return { foe, circle: Array.from(functions.circle([...parameters, settings.threshold], [0, 0, 0])) };
+  }
+}
+
+/** The b that puts the focus of expansion at an image point, with its distance from the camera kept. */
+export function translationTowards(place, settings, functions) {
+  const shape = shapeOf(settings);
+  const ray = functions.ray([...place, ...shape], [0, 0, 0]);
+  const [, , distance] = functions.project([...settings.b, ...shape], [0, 0, 0]);
+  return Array.from(ray, (entry) => entry * distance);
+}
+
+/** The estimates at the first sample: that sample and 0, or what is asked for. */
+function estimatesAsked({ start }, { width, measured }, { columns }) {
+  if (start.mode === "chosen") return start.values;
+  const asked = new Array(width).fill(0);
+  if (start.mode === "own") measured.forEach((c, m) => (asked[c] = columns[m][0]));
+  return asked;
+}

@@ -1,0 +1,72 @@
+// Why it happened, and the image plane in words.
+
+import { readable } from "../../common/model/scales.js";
+
+const UNEXCITED = 1e-4;
+
+/** Why: what the settings and the path of the point have to do with it. */
+export function reasons(shown) {
+  const { settings, measured, names, hiddenNames } = shown;
+  if (shown.problem) return [shown.problem];
+  const found = [];
+  if (shown.leavesAt !== null) {
+    found.push(`The point leaves the half-space in front of the camera at ${readable(shown.leavesAt)} s; shown until then.`);
+  }
+  const least = leastOf(shown.excitation);
+  if (least) {
+    const over = `any ${readable(shown.excitation.window)} s`;
+    found.push(
+      least.value < UNEXCITED
+        ? `Not excited: over the window that ends at ${readable(least.time)} s the outputs tell next to nothing about ` +
+            `one direction of ${hiddenNames.join(", ")} (${readable(least.value, 2)}).`
+        : `Excited: over ${over} the outputs tell ${hiddenNames.join(" and ")}, at least ${readable(least.value, 2)}.`,
+    );
+  }
+  if (measured.length < hiddenNames.length) {
+    found.push(`Only ${names[measured[0]]} is measured: an instant never tells both hidden coordinates, a window may.`);
+  }
+  const nearest = nearestToFoe(shown);
+  if (nearest && shown.circle && nearest.distance < Math.abs(shown.circle[2])) {
+    found.push(
+      `At ${readable(nearest.time)} s the path is only ${readable(nearest.distance, 2)} from the focus of expansion, ` +
+        "where an instant does not tell the distance.",
+    );
+  }
+  if (settings.believed) found.push("The observers believe another motion than the true one.");
+  const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
+  if (settings.noise.size > 0 && measured.length === 1 && biased) {
+    found.push("Noise enters w and the error together, so it does not only blur the estimate: it pushes it.");
+  }
+  return found;
+}
+
+function leastOf({ time, smallest }) {
+  let least = null;
+  smallest.forEach((value, k) => {
+    if (!least || value < least.value) least = { value: Math.max(value, 0), time: time[k] };
+  });
+  return least;
+}
+
+function nearestToFoe({ foe, truth, width, time }) {
+  if (!foe || !truth?.length) return null;
+  let [least, at] = [Infinity, 0];
+  for (let k = 0; k < time.length; k++) {
+    const squared = (truth[k * width] - foe[0]) ** 2 + (truth[k * width + 1] - foe[1]) ** 2;
+    if (squared < least) [least, at] = [squared, k];
+  }
+  return { distance: Math.sqrt(least), time: time[at] };
+}
+
+/** The text equivalent of the image plane. */
+export function imagePlaneInWords(shown) {
+  if (shown.problem) return shown.problem;
+  const point = (rows, k) => shown.names.slice(0, 2).map((n, c) => `${n} ${readable(rows[k * shown.width + c])}`).join(", ");
+  const end = shown.time.length - 1;
+  const parts = [];
+  if (shown.truth) parts.push(`the point goes from ${point(shown.truth, 0)} to ${point(shown.truth, end)}`);
+  for (const run of shown.runs) parts.push(`the ${run.title} estimate ends at ${point(run.estimate, end)}`);
+  if (shown.foe) parts.push(`focus of expansion at y1 ${readable(shown.foe[0])}, y2 ${readable(shown.foe[1])}`);
+  if (shown.circle) parts.push(`circle of radius ${readable(Math.abs(shown.circle[2]))} in which an instant tells little`);
+  return `${parts.join("; ")}.`;
+}

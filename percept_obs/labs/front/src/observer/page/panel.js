@@ -1,0 +1,97 @@
+// The controls of the observer lab: each reads from the settings and changes them.
+
+import { checkbox, element } from "../../common/page/controls.js";
+import { Fieldsets } from "../../common/page/fieldsets.js";
+import { ObserverList } from "../../common/page/observer_list.js";
+
+/** Fieldsets of controls; show() brings all of them to the present settings. */
+export class Panel extends Fieldsets {
+  constructor(lab) {
+    super(lab);
+    this.list = new ObserverList(this);
+    this.body = element(
+      "div",
+      { class: "panel" },
+      element("div", { class: "observe" }, this.measuring(), this.fieldset("Observe with", {}, ...this.list.rows)),
+      this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
+      this.point(),
+      this.camera(),
+      this.belief(),
+      this.showing(),
+    );
+  }
+
+  /** The recording that is shown, if one is. */
+  track() {
+    return this.model.recordings[this.lab.settings.scenario];
+  }
+
+  /** Controls of what a recording brings with it. */
+  simulated(...rows) {
+    return this.onlyIf(() => !this.track(), element("div", {}, ...rows));
+  }
+
+  measuring() {
+    const { lab } = this;
+    const seen = (name) => this.track()?.names.includes(name) ?? true;
+    const outputs = this.inSight("outputs", {
+      get: () => lab.settings.outputs.join("+"),
+      set: (value) => lab.change({ outputs: value.split("+") }, true),
+      possible: (value) => value.split("+").every(seen),
+    });
+    return this.fieldset("Measure", {}, outputs);
+  }
+
+  point() {
+    const { lab, model } = this;
+    const titles = Object.entries(model.scenarios).map(([name, { title }]) => [name, title]);
+    const named = (names) => Object.keys(names).map((name) => [name, name]);
+    return this.fieldset(
+      "The point and its motion",
+      { class: "point" },
+      this.choice("scenario", {
+        choices: Object.fromEntries([...titles, ...named(model.recordings)]),
+        set: (name) => lab.chooseScenario(name),
+      }),
+      this.simulated(
+        this.choice("surface", { choices: Object.fromEntries(named(model.surfaces)) }),
+        this.onlyIf(({ surface }) => surface === "plane", element("div", {}, ...this.each("normal"))),
+        this.number("duration"),
+        ...this.litList("b", ["b1", "b2", "b3"]),
+        this.matrix("A"),
+        ...this.each("X0"),
+      ),
+    );
+  }
+
+  camera() {
+    return this.fieldset(
+      "Camera",
+      { class: "camera" },
+      this.simulated(this.choice("noise.kind"), ...this.numbers("noise.size", "seed", "period", "dropout")),
+      this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
+    );
+  }
+
+  belief() {
+    const { lab } = this;
+    const wrong = checkbox({
+      name: "believed",
+      label: "believe another motion than the true one",
+      get: () => lab.settings.believed !== null,
+      set: (on) => lab.change({ believed: on ? { A: lab.settings.A, b: lab.settings.b } : null }, true),
+    });
+    return this.fieldset(
+      "Start and belief",
+      { class: "start" },
+      this.choice("start.mode"),
+      ...[0, 1, 2].map((k) => this.numberIf(`start.values.${k}`, ({ start }) => start.mode === "chosen")),
+      this.simulated(this.add(wrong), ...this.each("believed.b"), this.matrix("believed.A")),
+    );
+  }
+
+  showing() {
+    const pictures = this.names("pictures", "At least one chart stays.");
+    return this.fieldset("Pictures", { class: "pictures" }, pictures, ...this.numbers("window", "threshold"));
+  }
+}

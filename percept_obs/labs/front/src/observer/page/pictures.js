@@ -1,0 +1,75 @@
+// What each time chart shows of a run: lines, scale, marks, and the same in words.
+
+import { columnOf, distancesOf } from "../../common/model/derived.js";
+import { readable } from "../../common/model/scales.js";
+import { decades, line } from "../../common/page/chart_parts.js";
+import { KEPT, SOLID } from "../../common/page/lines.js";
+import { around, linesOf, marksOf, runLines } from "../../common/page/plots.js";
+
+const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
+
+export const LABELS = {
+  outputs: "Image coordinates over time",
+  inverse: "Inverse distance over time",
+  distance: "Distance over time",
+  error: "Error of the hidden coordinates over time",
+  excitation: "Excitation over time",
+};
+
+/** The parts of one chart. */
+export function chartOf(name, shown, ghost, theme) {
+  return BUILD[name](shown, ghost, theme);
+}
+
+const BUILD = {
+  outputs(shown, ghost, theme) {
+    const lines = [];
+    for (const c of [0, 1]) {
+      const label = shown.names[c];
+      if (shown.measured.includes(c)) {
+        lines.push(line(`${label} sampled`, shown.time, columnOf(shown.outputs, 2, c), theme.sample, SOLID));
+      }
+      lines.push(...linesOf(shown, ghost, theme, label, ({ width }, rows) => columnOf(rows, width, c)));
+    }
+    return { title: "Image coordinates y1, y2", lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
+  },
+  inverse(shown, ghost, theme) {
+    const c = shown.width - 1;
+    const lines = linesOf(shown, ghost, theme, shown.names[c], ({ width }, rows) => columnOf(rows, width, c));
+    const claiming = shown.runs.find((run) => run.deviation);
+    const band = claiming && bandOf(shown, claiming, c, theme);
+    const title = `Inverse distance ${shown.names[c]} in 1/m${band ? ", with ±2σ that the filter claims" : ""}`;
+    return { title, lines, band, scale: around(lines, shown), marks: marksOf(shown, theme) };
+  },
+  distance(shown, ghost, theme) {
+    const lines = linesOf(shown, ghost, theme, "distance", ({ width }, rows) => distancesOf(rows, width));
+    const title = `${NAMES[shown.settings.surface]} in m`;
+    return { title, lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
+  },
+  error(shown, ghost, theme) {
+    const [own, kept] = [shown, ghost].map((result) => (result?.truth ? result : null));
+    const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
+    const title = `Largest |error| of ${shown.hiddenNames.join(", ")}, with the tolerance ${shown.tolerance}`;
+    return { title, lines, scale: decades(lines, 1e-6, 1e2), level: shown.tolerance, marks: marksOf(shown, theme) };
+  },
+  excitation(shown, ghost, theme) {
+    const { excitation } = shown;
+    const lines = [line("excitation", excitation.time, excitation.smallest, theme.ink, SOLID)];
+    if (ghost?.excitation) {
+      lines.unshift(line("kept excitation", ghost.excitation.time, ghost.excitation.smallest, theme.kept, KEPT));
+    }
+    const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(excitation.window)} s`;
+    return { title, lines, scale: decades(lines, 1e-12, 1e4) };
+  },
+};
+
+function bandOf(shown, run, c, theme) {
+  const middle = columnOf(run.estimate, shown.width, c);
+  const deviation = (k) => run.deviation[k * shown.width + c];
+  return {
+    time: shown.time,
+    low: (k) => middle[k] - 2 * deviation(k),
+    high: (k) => middle[k] + 2 * deviation(k),
+    colour: theme.lines[run.order],
+  };
+}

@@ -1,0 +1,59 @@
+// The few lines of Python that make the same run.
+
+import { imports, list, NOISES } from "../../common/model/code.js";
+
+const WEIGHTS = {
+  constant: ({ size }) => [size, []],
+  scheduled: ({ size, final, duration }) => [`lambda t: ${size} * (${final} / ${size}) ** (t / ${duration})`, []],
+  lyapunov: ({ size, decrease }) => [`lyapunov(${size}, ${decrease})`, ["lyapunov"]],
+  riccati: ({ size, forgetting }) => [`riccati(${size}, ${forgetting})`, ["riccati"]],
+};
+
+/** Python text for settings that are shown. */
+export function pythonOf({ settings, truth, n, points, names: states }, { error }) {
+  const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record_points", "track_points"]);
+  const [P, weights] = WEIGHTS[settings.weight](settings);
+  const helpers = new Set(weights);
+  const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
+  const start = rounded(truth.subarray(0, n));
+  const lines = [
+    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`,
+    ...formOf(settings, points, names, helpers),
+    `# the state is ${states.join(", ")}`,
+    `scenario = PointsScenario("from the lab", form, ${list(start)}, ${duration})`,
+    `camera = Camera(period=${period}, noise=${NOISES[noise.kind]}(${noise.size}), dropout=${dropout})`,
+    `recording = record_points(scenario, camera=camera, seed=${seed}, view=${view})`,
+  ];
+  settings.hidden.forEach((times, k) => times && lines.push(`recording = recording.hidden(${k}, ${times.join(", ")})`));
+  const options = [`hold="${settings.hold}"`, `step=${settings.step}`];
+  if (settings.start === "rays") options.unshift(`depth=${settings.depth}`);
+  if (settings.start === "error") {
+    lines.push(`start = recording.truth[0] - ${settings.error} * np.resize(${list(error)}, form.states)`);
+    options.unshift("start");
+  }
+  lines.push(`run = track_points(recording, luenberger(form, ${P}), ${options.join(", ")})`, "print(run.verdict())");
+  const wanted = {
+    percept_obs: names,
+    "percept_obs.points": helpers,
+    "percept_obs.points.manoeuvre": ["Manoeuvre"],
+  };
+  return `${settings.start === "error" ? "import numpy as np\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+}
+
+function formOf({ state }, points, names, helpers) {
+  if (state === "independent") {
+    names.add("rigid");
+    helpers.add("independent_points");
+    return [
+      "turning, velocity, _ = moves.velocities",
+      `form = independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), ${points})`,
+    ];
+  }
+  const helper = { body: "rigid_body", origin: "body_with_origin" }[state];
+  helpers.add(helper);
+  return [`form = ${helper}(${points}, *moves.velocities)`];
+}
+
+function rounded(values) {
+  return Array.from(values, (value) => Number(value.toPrecision(12)));
+}

@@ -1,0 +1,63 @@
+// The whole of a run: points in motion, camera, observer, and what is read off them.
+
+import { Memory } from "../../common/model/memory.js";
+import { differences } from "../../common/model/tables.js";
+import { Camera } from "./camera.js";
+import { inversesOf } from "./flow.js";
+import { windowsOf } from "./gramian.js";
+import { decayRate, norms, pointErrors, spansOf } from "./measures.js";
+import { Observer } from "./observer.js";
+
+/** Runs settings. */
+export class PointsEngine {
+  constructor(model) {
+    this.model = model;
+    this.memory = new Memory();
+    this.camera = new Camera(model, this.memory);
+    this.observer = new Observer(model, this.memory, this.camera);
+  }
+
+  /** What is shown of settings, with the functions that PointsKernels.of() gave; whole, or as far as is drawn. */
+  run(settings, functions, whole = true) {
+    const scene = this.scene(settings, functions);
+    const { points, n, layout } = scene;
+    const recording = this.camera.record(scene);
+    const { estimate, divergedAt } = this.observer.track(scene, recording);
+    const { time, truth, outputs } = recording;
+    const size = norms(truth, estimate, n);
+    const result = {
+      ...{ settings, points, n, names: layout.names, ...recording, estimate, divergedAt, size },
+      estimated: this.camera.project(scene, estimate),
+      errors: pointErrors(layout, truth, estimate, n),
+      fit: decayRate(time, size),
+      absences: Array.from({ length: points }, (_, k) => spansOf(time, outputs, points, k)),
+      gramian: null,
+      whole: false,
+    };
+    return whole || settings.pictures.includes("gramian") ? this.completed(result, functions) : result;
+  }
+
+  /** A result with all that is read off it: what the images of each window tell. */
+  completed(result, functions) {
+    const { settings, time, seenImages: images } = result;
+    const scene = this.scene(settings, functions);
+    const clock = this.memory.once("samples' steps", [settings.period, settings.duration], () => ({
+      grid: time,
+      steps: differences(time),
+      wanted: Int32Array.from(time, (_, k) => k),
+    }));
+    const { kindOf, flows, made } = this.camera.flows(scene, "gramian", [], clock, clock.wanted);
+    made.back ??= flows.map(inversesOf);
+    const window = Math.min(settings.window, time.at(-1));
+    const { model, memory } = this;
+    const gramian = windowsOf({ ...scene, model, time, images, kindOf, flows, back: made.back, window, memory });
+    return { ...result, gramian, whole: true };
+  }
+
+  scene(settings, functions) {
+    const points = settings.points.length;
+    const { layouts, width } = this.model.states[settings.state];
+    const layout = layouts[points - 1];
+    return { settings, functions, layout, points, n: layout.names.length, width };
+  }
+}

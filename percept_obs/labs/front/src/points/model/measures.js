@@ -1,0 +1,71 @@
+// What is read off a run of many points: the error's size, its decay, when points were not seen.
+
+export const TOLERANCE = 0.05;
+
+/** Norm of truth minus estimate at each sample. */
+export function norms(truth, estimate, n) {
+  const found = new Float64Array(truth.length / n);
+  for (let k = 0; k < found.length; k++) {
+    let squared = 0;
+    for (let i = k * n; i < k * n + n; i++) squared += (truth[i] - estimate[i]) ** 2;
+    found[k] = Math.sqrt(squared);
+  }
+  return found;
+}
+
+/** How far each point's estimate is from it, a column each. */
+export function pointErrors({ begins, axes, states, entries }, truth, estimate, n) {
+  const count = truth.length / n;
+  const off = new Float64Array(3);
+  return Array.from({ length: begins.length - 1 }, (_, p) => {
+    const found = new Float64Array(count);
+    for (let k = 0; k < count; k++) {
+      off.fill(0);
+      for (let e = begins[p]; e < begins[p + 1]; e++) {
+        off[axes[e]] += entries[e] * (truth[k * n + states[e]] - estimate[k * n + states[e]]);
+      }
+      found[k] = Math.hypot(off[0], off[1], off[2]);
+    }
+    return found;
+  });
+}
+
+/** The exponential fitted to the last two thirds of an error: its rate and its logarithm at time 0, or null. */
+export function decayRate(time, size) {
+  const begin = time.at(-1) / 3;
+  let [count, t, l, tt, tl] = [0, 0, 0, 0, 0];
+  for (let k = 0; k < time.length; k++) {
+    if (time[k] < begin) continue;
+    const value = Math.log(size[k]);
+    if (!Number.isFinite(value)) return null;
+    count += 1;
+    t += time[k];
+    l += value;
+    tt += time[k] * time[k];
+    tl += time[k] * value;
+  }
+  const spread = count * tt - t * t;
+  if (count < 2 || !(spread > 0)) return null;
+  const slope = (count * tl - t * l) / spread;
+  return { rate: -slope, begin, level: (l - slope * t) / count };
+}
+
+/** Spans of samples from begin to end in which a point is not seen. */
+export function spansOf(time, outputs, points, point) {
+  const spans = [];
+  let open = null;
+  for (let k = 0; k < time.length; k++) {
+    const missing = Number.isNaN(outputs[2 * (k * points + point)]);
+    if (missing && !open) spans.push((open = { first: k, last: k }));
+    if (missing) open.last = k;
+    else open = null;
+  }
+  return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: time[Math.min(last + 1, time.length - 1)] }));
+}
+
+/** When the error came within the tolerance for good, or null. */
+export function settledAt(time, size) {
+  let k = size.length;
+  while (k > 0 && size[k - 1] < TOLERANCE) k -= 1;
+  return k === size.length ? null : time[k] - time[0];
+}

@@ -1,0 +1,179 @@
+// The observer of many points: the same numbers as track_points() in Python.
+
+import { halves, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
+import { rowsOf } from "./camera.js";
+import { advance } from "./kernel.js";
+import { product, pseudoInverse } from "./symmetric.js";
+
+/** Follows what a camera has recorded. */
+export class Observer {
+  constructor(model, memory, camera) {
+    Object.assign(this, { model, memory, camera });
+  }
+
+  /** Let the observer follow. */
+  track(scene, recording) {
+    const { memory, model } = this;
+    const { settings, layout, n } = scene;
+    const { time, truth } = recording;
+    const { period, duration, step } = settings;
+    const steps = memory.once("steps", [period, duration, step], () => {
+      const made = withSteps(stepGrid(time, step));
+      return { ...made, places: halves(made.grid) };
+    });
+    const inputs = {
+      ...steps,
+      held: this.held(scene, recording, steps),
+      coefficients: this.camera.known(scene, "observer", [step], steps.places),
+      inverses: inversesOf(settings, steps.places),
+    };
+    const start = new Float64Array(n);
+    if (settings.start === "error") {
+      const { error } = model;
+      for (let i = 0; i < n; i++) start[i] = truth[i] - settings.error * error[i % error.length];
+    }
+    const estimate = new Float64Array(time.length * n);
+    // Points that share nothing unknown are followed one by one, which is the same and takes less.
+    const [one] = model.states.independent.layouts;
+    const parts =
+      settings.state === "independent"
+        ? settings.points.map((_, k) => ({ layout: one, first: k, states: 3 * k }))
+        : [{ layout, first: 0, states: 0 }];
+    const ends = parts.map((part) => this.follow(scene, recording, inputs, part, start, estimate));
+    const divergedAt = Math.min(...ends);
+    for (let k = 0; k < time.length; k++) if (time[k] >= divergedAt) estimate.fill(NaN, k * n, k * n + n);
+    return { estimate, divergedAt: divergedAt < Infinity ? divergedAt : null };
+  }
+
+  /** What the observer takes for the images between samples: three rows a step. */
+  held(scene, { time, outputs }, { index, steps, places }) {
+    const { memory, camera } = this;
+    const { settings, points } = scene;
+    const { hold, period, duration, step } = settings;
+    const wide = 2 * points;
+    const table = memory.room("held", 3 * wide * steps.length);
+    let exact = null;
+    if (hold === "exact") {
+      const plant = memory.once("exact plant", [period, duration, step], () => plantGrid(places));
+      exact = camera.project(scene, camera.move(scene, "signal", [step], plant)).images;
+    }
+    for (let k = 0; k + 1 < time.length; k++) {
+      for (let j = index[k]; j < index[k + 1]; j++) {
+        for (let stage = 0; stage < 3; stage++) {
+          const share = (places[2 * j + stage] - time[k]) / (time[k + 1] - time[k]);
+          for (let c = 0; c < wide; c++) {
+            const before = outputs[k * wide + c];
+            let value = before;
+            if (hold === "first") value = (1 - share) * before + share * outputs[(k + 1) * wide + c];
+            if (exact) value = Number.isNaN(before) ? NaN : exact[(2 * j + stage) * wide + c];
+            table[(3 * j + stage) * wide + c] = value;
+          }
+        }
+      }
+    }
+    return table;
+  }
+
+  /** Follow a part of the points; returns when the estimate diverged, or Infinity. */
+  follow(scene, { time, outputs }, inputs, { layout, first, states }, start, estimate) {
+    const { settings, points, n, width } = scene;
+    const { grid, index, steps, held, coefficients, inverses } = inputs;
+    const own = layout.names.length;
+    const count = layout.begins.length - 1;
+    const law = lawOf(settings, own);
+    let x = start.slice(states, states + own);
+    const P = law.computed ? unit(own, settings.size) : null;
+    const began = settings.start === "rays" ? firstSights(outputs, time.length, points, first, count) : new Map();
+    const stops = [...new Set([0, ...began.keys(), time.length - 1])].sort((a, b) => a - b);
+    const seen = new Set();
+    for (let s = 0; s < stops.length; s++) {
+      const sample = stops[s];
+      if (began.has(sample)) {
+        this.onRays(scene, { layout, own, first }, outputs.subarray(2 * sample * points), began.get(sample), seen, x, P);
+        began.get(sample).forEach((k) => seen.add(k));
+      }
+      for (let i = 0; i < own; i++) estimate[sample * n + states + i] = x[i];
+      if (s === stops.length - 1) break;
+      const next = stops[s + 1];
+      const [from, to] = [index[sample], index[next]];
+      const path = this.memory.room("observer's path", (to - from + 1) * own);
+      const tables = {
+        steps: steps.subarray(from, to),
+        coefficients: coefficients.subarray(2 * from * width),
+        width,
+        inverses: inverses.length > 1 ? inverses.subarray(2 * from) : inverses,
+        images: held.subarray(6 * points * from),
+        points,
+        first,
+      };
+      const diverged = advance(layout, this.model.block, law, x, P, tables, path);
+      for (let k = sample; k <= next; k++) {
+        const at = (index[k] - from) * own;
+        for (let i = 0; i < own; i++) estimate[k * n + states + i] = path[at + i];
+      }
+      if (diverged >= 0) return grid[from + diverged];
+      x = path.slice((to - from) * own, (to - from + 1) * own);
+    }
+    return Infinity;
+  }
+
+  /** Put points on their rays by the states that no point seen before uses; P starts anew for these. */
+  onRays({ settings, functions }, { layout, own, first }, images, fresh, seen, x, P) {
+    const { begins, states } = layout;
+    const used = (points) => new Set(points.flatMap((k) => states.slice(begins[k], begins[k + 1])));
+    const taken = used([...seen].filter((k) => !fresh.includes(k)));
+    const free = [...used(fresh)].filter((i) => !taken.has(i)).sort((a, b) => a - b);
+    if (!free.length) return;
+    const place = new Float64Array(3);
+    const all = rowsOf(layout, own);
+    const rows = fresh.flatMap((k) => [0, 1, 2].map((axis) => 3 * k + axis));
+    const goal = fresh.flatMap((k) => {
+      const at = 2 * (first + k);
+      return Array.from(functions.locate([images[at], images[at + 1], settings.depth], place));
+    });
+    rows.forEach((row, r) => {
+      for (let i = 0; i < own; i++) if (!free.includes(i)) goal[r] -= all[row * own + i] * x[i];
+    });
+    const part = Float64Array.from(rows.flatMap((row) => free.map((i) => all[row * own + i])));
+    const key = [settings.state, own, rows, free];
+    const inverse = this.memory.once(`rays ${first}`, key, () => pseudoInverse(part, rows.length, free.length));
+    product(inverse, goal, free.length).forEach((value, k) => (x[free[k]] = value));
+    if (!P) return;
+    for (const i of free) {
+      for (let j = 0; j < own; j++) P[i * own + j] = P[j * own + i] = 0;
+    }
+    for (const i of free) P[i * own + i] = settings.size;
+  }
+}
+
+/** How P moves, where it is computed. */
+function lawOf({ weight, size, forgetting, decrease }, n) {
+  if (weight === "riccati") return { computed: true, information: 1, forgetting, pull: unit(n, forgetting * size) };
+  if (weight === "lyapunov") return { computed: true, information: 0, forgetting: 0, pull: unit(n, -decrease) };
+  return { computed: false, information: 0, forgetting: 0, pull: null };
+}
+
+/** The inverse of a P that is given, as a multiple of the identity. */
+function inversesOf({ weight, size, final, duration }, places) {
+  if (weight !== "scheduled") return Float64Array.of(1 / size);
+  return Float64Array.from(places, (t) => 1 / (size * (final / size) ** (t / duration)));
+}
+
+/** The samples at which points are first seen, with these points. */
+function firstSights(outputs, samples, points, first, count) {
+  const found = new Map();
+  for (let k = 0; k < count; k++) {
+    for (let sample = 0; sample < samples; sample++) {
+      if (Number.isNaN(outputs[2 * (sample * points + first + k)])) continue;
+      found.set(sample, [...(found.get(sample) ?? []), k]);
+      break;
+    }
+  }
+  return found;
+}
+
+function unit(n, size) {
+  const matrix = new Float64Array(n * n);
+  for (let i = 0; i < n; i++) matrix[i * n + i] = size;
+  return matrix;
+}

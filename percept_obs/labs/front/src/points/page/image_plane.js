@@ -1,0 +1,124 @@
+// The image plane of many points: their paths, those of their estimates, and each point at time 0 as a handle.
+
+import { readable, spread } from "../../common/model/scales.js";
+import { sampleAt } from "../../common/model/tables.js";
+import { describe, picture, underlay } from "../../common/page/canvas.js";
+import { Handle } from "../../common/page/handle.js";
+import { clipTo, drawAxes, drawPath, placed, squareAround, widen } from "../../common/page/image_frame.js";
+import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
+import { imagePlaneInWords } from "../model/text.js";
+
+const NEARER = ["-", "PageDown"];
+const FARTHER = ["+", "=", "PageUp"];
+const DEPTH_STEP = 0.05;
+const TRAIL = 5;
+const FAINT = 0.35;
+const HIDDEN = [1, 4];
+
+/** The picture, with a handle for each point that there may be. */
+export class ImagePlane {
+  constructor(lab, most) {
+    Object.assign(this, picture("image-plane", "Image plane"));
+    this.handles = Array.from({ length: most }, (_, k) => this.handle(lab, k));
+    this.figure.append(...this.handles.map(({ node }) => node));
+  }
+
+  handle(lab, k) {
+    return new Handle({
+      name: `point ${k + 1}`,
+      className: `numbered point-${k}`,
+      text: String(k + 1),
+      label: `Point ${k + 1} at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it`,
+      onMove: (place) => lab.movePoint(k, place),
+      onRest: () => lab.rest(),
+      onKey: ({ key }) => {
+        const step = FARTHER.includes(key) ? DEPTH_STEP : NEARER.includes(key) ? -DEPTH_STEP : 0;
+        if (key === "Delete") lab.removePoint(k);
+        else if (step) lab.moveDepth(k, Number((lab.depthOf(k) + step).toFixed(6)));
+        return step || key === "Delete";
+      },
+    });
+  }
+
+  /** Draw what is shown; while the hand holds a point the frame stays where it is. */
+  draw(shown, ghost, cursor, theme) {
+    if (!this.handles.some(({ grip }) => grip) || !this.square) this.square = squareOf(shown);
+    const frame = placed(this, this.square);
+    const pen = this.context;
+    underlay(this, [this.square, theme], (below) => drawAxes(below, frame, this.square.ticks, theme));
+    pen.lineWidth = 1;
+    pen.save();
+    clipTo(pen, frame.box);
+    const [first, last] = trail(shown.time, cursor);
+    for (let k = 0; k < shown.points; k++) {
+      pen.globalAlpha = FAINT;
+      if (shown.absences[k].length) drawPath(pen, shown.images, pathOf(shown, k), frame, theme.muted, HIDDEN);
+      drawPath(pen, shown.seenImages, pathOf(shown, k), frame, theme.lines[k], SOLID);
+      pen.globalAlpha = 1;
+    }
+    const recent = (run, rows) => rows.subarray(2 * run.points * first, 2 * run.points * (last + 1));
+    for (let k = 0; ghost && k < ghost.points; k++) {
+      drawPath(pen, recent(ghost, ghost.estimated.images), pathOf(ghost, k), frame, theme.kept, KEPT);
+    }
+    for (let k = 0; k < shown.points; k++) {
+      drawPath(pen, recent(shown, shown.seenImages), pathOf(shown, k), frame, theme.lines[k], SOLID);
+      drawPath(pen, recent(shown, shown.estimated.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
+    }
+    drawAt(pen, shown, last, frame, theme);
+    pen.restore();
+    this.handles.forEach((handle, k) => handle.stand(startOf(shown, k), frame));
+  }
+
+  /** Say what the picture shows, and where the points are at time 0. */
+  describe(shown) {
+    describe(this, imagePlaneInWords(shown));
+    this.handles.forEach((handle, k) => {
+      if (k < shown.points) handle.describe(`, depth ${readable(shown.depths[k])} m`);
+    });
+  }
+}
+
+function startOf({ points, images }, k) {
+  const at = [images[2 * k], images[2 * k + 1]];
+  return k < points && at.every(Number.isFinite) ? at : null;
+}
+
+function pathOf({ points }, k) {
+  return { width: 2 * points, first: 2 * k };
+}
+
+/** The samples that are drawn in full: the seconds before the cursor, and the first ones without it. */
+function trail(time, cursor) {
+  const last = sampleAt(time, cursor ?? TRAIL);
+  return [sampleAt(time, Math.max(0, time[last] - TRAIL)), last];
+}
+
+/** A square that holds the paths of all points. */
+function squareOf({ points, images }) {
+  const bounds = [0, 1].map((c) => {
+    const found = Array.from({ length: points }, (_, k) =>
+      spread(images, { lowPart: 0, highPart: 1, first: 2 * k + c, width: 2 * points }),
+    ).filter(Boolean);
+    const range = found.length ? [...found[0]] : [-1, 1];
+    for (const other of found) widen(range, other);
+    return [Math.max(range[0], -3), Math.min(range[1], 3)];
+  });
+  return squareAround(bounds);
+}
+
+/** Where points are at a time, full, and where they are estimated to be, open. */
+function drawAt(pen, { points, images, estimated }, k, { x, y }, theme) {
+  pen.setLineDash([]);
+  for (let p = 0; p < points; p++) {
+    const at = 2 * (k * points + p);
+    pen.fillStyle = pen.strokeStyle = theme.lines[p];
+    for (const rows of [images, estimated.images]) {
+      const [a, b] = [x(rows[at]), y(rows[at + 1])];
+      if (Number.isNaN(a + b)) continue;
+      pen.beginPath();
+      pen.arc(a, b, rows === images ? 3.5 : 5.5, 0, 2 * Math.PI);
+      if (rows === images) pen.fill();
+      else pen.stroke();
+    }
+  }
+}

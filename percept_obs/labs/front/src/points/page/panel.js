@@ -1,0 +1,82 @@
+// The controls of the lab of many points: each reads from the settings and changes them.
+
+import { button, element } from "../../common/page/controls.js";
+import { Fieldsets } from "../../common/page/fieldsets.js";
+import { PointList } from "./point_list.js";
+
+/** What P begins with when a kind is chosen. */
+const OWN_SIZE = { constant: 1, scheduled: 0.3, lyapunov: 1, riccati: 0.01 };
+
+/** Fieldsets of controls; show() brings all of them to the present settings. */
+export class Panel extends Fieldsets {
+  constructor(lab) {
+    super(lab);
+    this.list = new PointList(this, this.model.mostPoints);
+    this.body = element(
+      "div",
+      { class: "columns" },
+      this.fieldset("Points", {}, this.list.body),
+      this.fieldset("The state holds", { class: "state" }, this.inSight("state")),
+      this.weight(),
+      this.motion(),
+      this.start(),
+      this.camera(),
+      this.showing(),
+    );
+    this.controls.push(this.list);
+  }
+
+  weight() {
+    const kind = this.choice("weight", { besides: (value) => ({ size: OWN_SIZE[value] }) });
+    const size = this.number("size");
+    const words = size.querySelector("label span");
+    const name = () => (words.textContent = this.lab.settings.weight === "constant" ? "P, times the identity" : "P at the beginning");
+    this.controls.push({ row: size, show: name });
+    return this.fieldset(
+      "The observer's P",
+      {},
+      kind,
+      size,
+      this.numberIf("final", ({ weight }) => weight === "scheduled"),
+      this.numberIf("decrease", ({ weight }) => weight === "lyapunov"),
+      this.numberIf("forgetting", ({ weight }) => weight === "riccati"),
+      this.number("step"),
+    );
+  }
+
+  motion() {
+    const { letters } = this.model;
+    const share = (place, holds = () => true) => this.lit(this.numberIf(place, holds, { letter: letters[place] }), place, "");
+    const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
+    const still = button("v = 0", () => this.lab.change({ input: 0, velocity: [0, 0, 0] }, true), { "data-control": "no input" });
+    return this.fieldset(
+      "The motion, A(t) and v(t)",
+      {},
+      share("turning"),
+      share("spin", ({ state }) => state !== "independent"),
+      share("input"),
+      ...this.litList("velocity", ["v1", "v2", "v3"], (k) => ({ letter: letters[`v${k + 1}`] }), ""),
+      element("div", { class: "buttons" }, still, aim),
+    );
+  }
+
+  start() {
+    return this.fieldset(
+      "The estimate",
+      {},
+      this.choice("start"),
+      this.numberIf("depth", ({ start }) => start === "rays"),
+      this.numberIf("error", ({ start }) => start === "error"),
+    );
+  }
+
+  camera() {
+    const numbers = this.numbers("noise.size", "seed", "period", "dropout", "view");
+    return this.fieldset("Camera", {}, this.choice("noise.kind"), ...numbers, this.choice("hold"));
+  }
+
+  showing() {
+    const pictures = this.names("pictures", "At least one chart stays.");
+    return this.fieldset("Pictures", {}, pictures, ...this.numbers("duration", "window"));
+  }
+}

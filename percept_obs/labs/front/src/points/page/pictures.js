@@ -1,0 +1,73 @@
+// What each time chart shows of a run: lines, scale, bars where a point is not seen.
+
+import { columnOf } from "../../common/model/derived.js";
+import { readable } from "../../common/model/scales.js";
+import { decades, line, rangeAround } from "../../common/page/chart_parts.js";
+import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/lines.js";
+
+export const LABELS = {
+  error: "Norm of the error over time",
+  depth: "Depth of each point over time",
+  points: "Error of each point over time",
+  gramian: "Smallest eigenvalue of the Gramian over time",
+};
+
+const FLOOR = 1e-9;
+
+/** The parts of one chart. */
+export function chartOf(name, shown, ghost, theme, more) {
+  return { ...BUILD[name](shown, ghost, theme, more), bars: name === "gramian" ? [] : barsOf(shown, theme) };
+}
+
+const BUILD = {
+  error({ time, size, fit }, ghost, theme, { bound }) {
+    const lines = [line("error", time, size, theme.ink, SOLID)];
+    if (ghost) lines.unshift(line("kept error", ghost.time, ghost.size, theme.kept, KEPT));
+    const end = time.at(-1);
+    if (fit) {
+      const ends = [fit.begin, end];
+      const values = ends.map((t) => Math.exp(fit.level - fit.rate * t));
+      lines.push(line("fitted decay", ends, values, theme.lines[1], FIT));
+    }
+    if (bound !== null) {
+      lines.push(line("guaranteed decay", [0, end], [size[0], size[0] * Math.exp(-bound * end)], theme.lines[2], BOUND));
+    }
+    return { title: "Error |ρ|, all of the state", lines, scale: decades(lines, 1e-8, 1e6) };
+  },
+  depth(shown, ghost, theme) {
+    const { time, points } = shown;
+    const lines = [];
+    const each = (make) => Array.from({ length: points }, (_, k) => lines.push(make(k)));
+    for (let k = 0; ghost && k < ghost.points; k++) {
+      lines.push(line(`kept depth of point ${k + 1}`, ghost.time, columnOf(ghost.estimated.depths, ghost.points, k), theme.kept, KEPT));
+    }
+    each((k) => line(`true depth of point ${k + 1}`, time, columnOf(shown.depths, points, k), theme.lines[k], SOLID));
+    each((k) => line(`depth of point ${k + 1}`, time, columnOf(shown.estimated.depths, points, k), theme.lines[k], DASHES[k]));
+    const certain = lines.filter(({ name }) => name.startsWith("true"));
+    return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
+  },
+  points({ time, errors }, ghost, theme) {
+    const lines = errors.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
+    ghost?.errors.forEach((values, k) => {
+      lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
+    });
+    return { title: "Error of each point in m", lines, scale: decades(lines, 1e-8, 1e6) };
+  },
+  gramian({ gramian }, ghost, theme, { unseen }) {
+    const { time, smallest, largest, window } = gramian;
+    const floored = (values) => values.map((value) => Math.max(value, FLOOR));
+    const limit = line("limit of what is seen", time, largest.map((value) => unseen * value), theme.warning, BOUND);
+    const lines = [line("smallest eigenvalue", time, floored(smallest), theme.ink, SOLID)];
+    if (ghost) {
+      lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, floored(ghost.gramian.smallest), theme.kept, KEPT));
+    }
+    const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
+    const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
+    const title = `Gramian (14) over ${readable(window)} s: smallest eigenvalue${low ? "; dotted: too little" : ""}`;
+    return { title, lines: [...lines, limit], scale };
+  },
+};
+
+function barsOf({ absences }, theme) {
+  return absences.flatMap((spans, k) => spans.map(({ begin, end }) => ({ begin, end, colour: theme.lines[k] })));
+}

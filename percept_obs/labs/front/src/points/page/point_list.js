@@ -1,0 +1,77 @@
+// The points to drag: depth, when they are hidden, adding and removing.
+
+import { button, element, slider } from "../../common/page/controls.js";
+import { swatch } from "../../common/page/lines.js";
+
+/** A row for each point that there may be. */
+export class PointList {
+  constructor(panel, most) {
+    this.panel = panel;
+    this.lab = panel.lab;
+    this.most = most;
+    this.rows = Array.from({ length: most }, (_, k) => this.row(k));
+    this.add = button("Add a point", () => this.lab.addPoint(), { "data-control": "add point" });
+    this.body = element("div", { class: "points" }, ...this.rows.map(({ node }) => node), this.add);
+  }
+
+  row(k) {
+    const { lab, panel } = this;
+    const there = () => k < lab.settings.points.length;
+    const depth = slider({
+      name: `depth ${k + 1}`,
+      ...panel.schema.points.depth,
+      get: () => (there() ? lab.depthOf(k) : undefined),
+      set: (value) => lab.moveDepth(k, value),
+      rest: () => lab.rest(),
+    });
+    const hide = element("input", { type: "checkbox", "data-control": `hide ${k + 1}` });
+    hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
+    const times = ["from", "to"].map((word, end) => this.time(k, word, end));
+    const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s");
+    const remove = button("×", () => lab.removePoint(k), {
+      class: "remove",
+      "data-control": `remove ${k + 1}`,
+      "aria-label": `remove point ${k + 1}`,
+    });
+    const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide"));
+    const head = element("div", { class: "head" }, swatch(k), element("strong", {}, `point ${k + 1}`), hiding, remove);
+    const row = element("div", { class: "one", role: "group", "aria-label": `Point ${k + 1}` }, head, span, depth.row);
+    panel.add(depth);
+    const show = () => {
+      row.hidden = !there();
+      if (row.hidden) return;
+      const hidden = lab.settings.hidden[k];
+      hide.checked = hidden !== null;
+      span.hidden = hidden === null;
+      remove.disabled = lab.settings.points.length === 1;
+      if (hidden) times.forEach((time, end) => time.show(hidden[end]));
+    };
+    return { node: row, show };
+  }
+
+  time(k, word, end) {
+    const { lab } = this;
+    const { step, most } = this.panel.schema.hidden;
+    const field = element("input", { type: "number", step, min: 0, "aria-label": `point ${k + 1} is hidden ${word}, in s` });
+    field.dataset.control = `hidden ${word} ${k + 1}`;
+    field.addEventListener("input", () => {
+      const times = [...lab.settings.hidden[k]];
+      times[end] = Number(field.value);
+      const good = field.value !== "" && times[0] >= 0 && times[1] > times[0] && times[1] <= most;
+      field.setAttribute("aria-invalid", String(!good));
+      if (good) lab.hide(k, times, false);
+    });
+    field.addEventListener("change", () => lab.rest());
+    const show = (value) => {
+      if (document.activeElement === field && field.getAttribute("aria-invalid") === "true") return;
+      if (Number(field.value) !== value || field.value === "") field.value = String(value);
+      field.setAttribute("aria-invalid", "false");
+    };
+    return { node: element("label", {}, `${word} `, field), show };
+  }
+
+  show() {
+    this.rows.forEach(({ show }) => show());
+    this.add.disabled = this.lab.settings.points.length === this.most;
+  }
+}

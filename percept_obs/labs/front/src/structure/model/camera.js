@@ -1,0 +1,76 @@
+// What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record_structure().
+
+import { errorOf, PointCamera } from "../../common/model/camera.js";
+import { halves } from "../../common/model/tables.js";
+
+const NAMES = ["v_c", "v_p"];
+
+/** The parts of settings that the true path depends on. */
+export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w }) {
+  return { v_c, v_p, v_c_swing, v_p_swing, rate, w };
+}
+
+/** Records settings. */
+export class StructureCamera extends PointCamera {
+  constructor(model, memory) {
+    super(model, memory, 3);
+  }
+
+  placeOf(settings) {
+    const { ybar, scale, period, duration } = settings;
+    return [motionOf(settings), ybar, scale, period, duration];
+  }
+
+  /** Whether a velocity swings, so that it is not the same at all times. */
+  varies({ rate, v_c_swing, v_p_swing }) {
+    return rate !== 0 && [...v_c_swing, ...v_p_swing].some((value) => value !== 0);
+  }
+
+  /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
+  velocities(settings, swinging, times) {
+    const varying = this.varies(settings);
+    const count = varying ? times.length : 1;
+    const rows = new Float64Array(9 * count);
+    const x = new Float64Array(5);
+    const out = new Float64Array(1);
+    for (let k = 0; k < count; k++) {
+      rows.set(settings.w, 9 * k);
+      for (let i = 0; i < 6; i++) {
+        const name = NAMES[Math.floor(i / 3)];
+        x[0] = settings[name][i % 3];
+        x[1] = settings[`${name}_swing`][i % 3];
+        x[2] = settings.rate;
+        x[3] = this.model.phases[name][i % 3];
+        x[4] = varying ? times[k] : 0;
+        rows[9 * k + 3 + i] = swinging(x, out)[0];
+      }
+    }
+    return { rows, varying };
+  }
+
+  path(settings, { swinging }, lines) {
+    const { ybar, scale } = settings;
+    const depth = 1 / (scale * ybar[2]);
+    const place = [motionOf(settings), lines.grid.length, lines.grid.at(-1)];
+    const known = this.memory.once("velocities", place, () => this.velocities(settings, swinging, halves(lines.grid)));
+    return { start: [ybar[0] * depth, ybar[1] * depth, depth], known, shape: [] };
+  }
+
+  /** As of any point, but with an inverse depth that is scaled. */
+  look(settings, functions, lines, found) {
+    const inFront = super.look(settings, functions, lines, found);
+    for (let k = 2; k < found.length; k += 3) found[k] /= settings.scale;
+    return inFront;
+  }
+
+  sampled({ time, truth }, { noise, bias, drift }, { shape }) {
+    const count = time.length;
+    const outputs = new Float64Array(3 * count);
+    for (let k = 0; k < count; k++) {
+      outputs[3 * k] = truth[3 * k] + errorOf(noise.kind, noise.size, shape[2 * k]);
+      outputs[3 * k + 1] = truth[3 * k + 1] + errorOf(noise.kind, noise.size, shape[2 * k + 1]);
+      outputs[3 * k + 2] = truth[3 * k + 2] + bias + drift * time[k] + errorOf(noise.kind, noise.depth, shape[2 * count + k]);
+    }
+    return outputs;
+  }
+}

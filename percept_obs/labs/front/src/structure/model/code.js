@@ -1,0 +1,64 @@
+// The few lines of Python that make the same run.
+
+import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { isZero } from "./kernels.js";
+
+const MAKERS = {
+  ideal: ["integral_sliding_mode", ""],
+  layer: ["integral_sliding_mode", ', switch="hyperbolic tangent"'],
+  sign: ["integral_sliding_mode", ', switch="sign"'],
+};
+const VELOCITIES = ["v_c", "v_p"].flatMap((which) => [1, 2, 3].map((axis) => `${which}${axis}`));
+
+/** Python text for settings that are shown. */
+export function pythonOf(shown, model) {
+  const { settings, refusal } = shown;
+  const { unknown, earlier, ybar, scale, noise, period } = settings;
+  const zero = VELOCITIES.filter((name) => isZero(settings, name) && !unknown.includes(name));
+  const options = [
+    `(${unknown.map((name) => `"${name}"`).join(", ")}${unknown.length === 1 ? "," : ""})`,
+    ...(zero.length ? [`zero=(${zero.map((name) => `"${name}",`).join(" ")})`] : []),
+    ...(earlier && !unknown.includes("d_s") ? ['earlier=("d_s",)'] : []),
+  ];
+  if (refusal) return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
+  const swings = settings.rate !== 0 && [...settings.v_c_swing, ...settings.v_p_swing].some(Boolean);
+  const make = NOISES[noise.kind];
+  const lines = [
+    ...(swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant(settings, "v_c", model)}, ${constant(settings, "v_p", model)})`]),
+    `depth = 1 / (${scale} * ${ybar[2]})`,
+    `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
+    `choice = StructureAndMotion(${options.join(", ")})`,
+    `setup = StructureScenario(Scenario("from the lab", motion, position, ${durationOf(shown)}, pinhole()), ${scale}, choice)`,
+    `camera = Camera(${period}, ${make}(${noise.size}))`,
+    `depths = GivenDepth(${make}(${noise.depth}), bias=${settings.bias}, drift=${settings.drift})`,
+    `recording = record_structure(setup, camera=camera, depth=depths, seed=${settings.seed})`,
+  ];
+  const start = settings.start === "zero" ? ['{"y1": 0.0, "y2": 0.0, "ybar3": 0.0}'] : [];
+  const makerOf = (name) => MAKERS[name] ?? [name, ""];
+  const how = [...start, `hold="${settings.hold}"`, `step=${settings.step}`];
+  lines.push(...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }));
+  const wanted = {
+    percept_obs: ["Camera", make, "Scenario", "StructureAndMotion", "pinhole", "record_structure", "rigid", "track"],
+    "percept_obs.observers": new Set(settings.observers.map((name) => makerOf(name)[0])),
+    "percept_obs.structure": ["GivenDepth", "StructureScenario"],
+  };
+  return `${swings ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+}
+
+/** Velocities at time 0, which are those at all times. */
+function constant(settings, which, { phases }) {
+  return list(settings[which].map((value, k) => value + settings[`${which}_swing`][k] * Math.sin(phases[which][k])));
+}
+
+function motionThatSwings(settings, phases) {
+  const component = (which) => (value, k) => {
+    const swing = settings[`${which}_swing`][k];
+    return `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})`;
+  };
+  const velocity = (which) => `lambda t: [${settings[which].map(component(which)).join(", ")}]`;
+  return [
+    `v_c = ${velocity("v_c")}`,
+    `v_p = ${velocity("v_p")}`,
+    `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`,
+  ];
+}

@@ -1,0 +1,157 @@
+// The whole of a run: object, camera, observers. The same numbers as record_structure() and track() in Python.
+
+import { columnOf } from "../../common/model/derived.js";
+import { Runner } from "../../common/model/runner.js";
+import { halves, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { motionOf, StructureCamera } from "./camera.js";
+import { keyOf } from "./kernels.js";
+
+const OUTPUTS = ["y1", "y2", "ybar3"];
+
+/** Runs settings. */
+export class StructureEngine extends Runner {
+  constructor(model) {
+    super(model);
+    this.camera = new StructureCamera(model, this.memory);
+  }
+
+  /** What is shown of settings, with the functions that StructureKernels.of() gave; whole, or as far as is drawn. */
+  run(settings, functions, whole = true) {
+    const { refusal } = functions;
+    const { scale, tolerance } = settings;
+    const recording = this.camera.record(settings, functions);
+    const image = recording.truth;
+    const seen = { settings, ...recording, image, sampled: 3, scale, tolerance, refusal, measured: [0, 1, 2] };
+    if (recording.problem || refusal) {
+      const nothing = { hidden: [], hiddenNames: [], runs: [], choice: null, guard: null, limits: [], whole: true };
+      return { ...seen, ...nothing, width: 3, names: OUTPUTS };
+    }
+    const { unknown, scaled, square } = this.model.choices[keyOf(settings)];
+    const hidden = unknown.map((_, i) => 3 + i);
+    const hiddenNames = unknown.map((_, i) => `theta${i + 1}`);
+    const width = 3 + hidden.length;
+    const truth = this.truth(seen, hidden.length, functions);
+    const names = [...OUTPUTS, ...hiddenNames];
+    const result = { ...seen, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
+    const lines = this.lines(result);
+    const known = this.known(result, lines, functions);
+    const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
+    const inputs = this.layOut(result, lines, known, settings.hold, exact);
+    const asked = OUTPUTS.map((_, c) => (settings.start === "own" ? inputs.columns[c][0] : 0));
+    asked.push(...hidden.map(() => 0));
+    result.runs = settings.observers.map((name) => {
+      const kernel = this.model.kernels[hidden.length].observers[name];
+      return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+    });
+    if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
+    return { ...result, guard: null, limits: [], whole: false };
+  }
+
+  /** A result with all that is read off it. */
+  completed(result, functions) {
+    const lines = this.lines(result);
+    const guard = this.guard(result, lines, this.known(result, lines, functions), functions);
+    return { ...result, guard, limits: this.limits(result, lines, functions), whole: true };
+  }
+
+  /** Rows of what the choice makes of the velocities at some times: M, m, theta; one row if they do not change. */
+  signals(settings, count, { swinging, signals }, times) {
+    const { rows, varying } = this.camera.velocities(settings, swinging, times);
+    const size = 4 * count + 3;
+    const found = new Float64Array((rows.length / 9) * size);
+    const x = new Float64Array(10);
+    const out = new Float64Array(size);
+    x[0] = settings.scale;
+    for (let k = 0; 9 * k < rows.length; k++) {
+      for (let i = 0; i < 9; i++) x[1 + i] = rows[9 * k + i];
+      found.set(signals(x, out), k * size);
+    }
+    return { found, size, varying };
+  }
+
+  /** True ybar and theta at the samples. */
+  truth({ settings, time, image }, count, functions) {
+    const width = 3 + count;
+    const place = [keyOf(settings), motionOf(settings), settings.scale, settings.period, time.length];
+    const { found, size, varying } = this.memory.once("theta", place, () => this.signals(settings, count, functions, time));
+    const truth = new Float64Array(width * time.length);
+    for (let k = 0; k < time.length; k++) {
+      const from = (varying ? k : 0) * size + 3 * count + 3;
+      for (let c = 0; c < 3; c++) truth[k * width + c] = image[3 * k + c];
+      for (let i = 0; i < count; i++) truth[k * width + 3 + i] = found[from + i];
+    }
+    return truth;
+  }
+
+  /** The observers' steps. */
+  lines({ settings: { period, step }, time }) {
+    return this.memory.once("grid", [period, step, time.length], () => withSteps(stepGrid(time, step)));
+  }
+
+  exact(settings, grid, functions) {
+    const place = [this.camera.placeOf(settings), settings.step];
+    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, halves(grid)));
+  }
+
+  /** What the observers know of the motion: rows of w, M, m. */
+  known({ settings, hidden, time }, { grid }, functions) {
+    const { period, step, scale, w } = settings;
+    const count = hidden.length;
+    const place = [period, step, time.length, keyOf(settings), motionOf(settings), scale];
+    return this.memory.once("known", place, () => {
+      const { found, size, varying } = this.signals(settings, count, functions, halves(grid));
+      const width = 3 * count + 6;
+      const rows = new Float64Array((found.length / size) * width);
+      for (let k = 0; k * size < found.length; k++) {
+        rows.set(w, k * width);
+        rows.set(found.subarray(k * size, k * size + 3 * count + 3), k * width + 3);
+      }
+      return { rows, width, varying };
+    });
+  }
+
+  /** How much recovering theta amplifies errors along the run, and the determinant that it divides by. */
+  guard({ time, outputs }, { index }, known, { guard }) {
+    const last = [0, 1, 2].map((c) => lastSamples(columnOf(outputs, 3, c)));
+    const sizes = new Float64Array(time.length);
+    const determinants = new Float64Array(time.length);
+    const x = new Float64Array(3 + known.width);
+    const out = new Float64Array(2);
+    x.set(known.rows.subarray(0, known.width), 3);
+    for (let k = 0; k < time.length; k++) {
+      for (let m = 0; m < 3; m++) x[m] = last[m][k];
+      const row = 2 * index[k] * known.width;
+      if (known.varying) for (let p = 0; p < known.width; p++) x[3 + p] = known.rows[row + p];
+      guard(x, out);
+      sizes[k] = out[0];
+      determinants[k] = out[1];
+    }
+    return { sizes, determinants };
+  }
+
+  /** Where an observer's steps become too long for its fastest part: by its name, from when on. */
+  limits({ settings }, { grid, steps }, functions) {
+    const { largestStepRate } = this.model;
+    return settings.observers.flatMap((name) => {
+      const { fastest } = functions.observers[name];
+      if (!fastest) return [];
+      const kernel = this.model.kernels[settings.unknown.length].observers[name];
+      const x = Float64Array.from([0, ...kernel.gains.map((gain) => settings.gains[name][gain])]);
+      const out = new Float64Array(1);
+      const rateAt = (k) => {
+        x[0] = grid[k + 1] - grid[0];
+        return fastest(x, out)[0];
+      };
+      let first = -1;
+      let most = 0;
+      for (let k = 0; k < steps.length; k++) {
+        const rate = rateAt(k);
+        most = Math.max(most, rate);
+        if (first < 0 && rate * steps[k] >= largestStepRate) first = k;
+      }
+      if (first < 0) return [];
+      const found = { name, time: grid[first] - grid[0], rate: rateAt(first), step: steps[first] };
+      return [{ ...found, shorter: largestStepRate / most, remedy: kernel.remedy }];
+    });
+  }
+}

@@ -1,0 +1,45 @@
+// What rows of ybar and theta say of the unknown quantities and of the range, as StructureAndMotion.quantities().
+
+import { columnOf, derived } from "../../common/model/derived.js";
+import { lastSamples } from "../../common/model/tables.js";
+
+/** An unknown quantity at the samples: NaN where no positive d_s follows. */
+export function quantityOf(result, rows, name) {
+  const { unknown, scaled } = result.choice;
+  return derived(rows, name, () => {
+    if (name === "d_s") return scales(result, rows);
+    const i = unknown.indexOf(name);
+    const values = columnOf(rows, result.width, 3 + i);
+    if (!scaled[i]) return values;
+    const scale = scales(result, rows);
+    return values.map((value, k) => value / scale[k]);
+  });
+}
+
+/** The range at the samples: NaN where there is no estimate, or none that is positive. */
+export function rangeOf(result, rows) {
+  return derived(rows, "range", () => {
+    const [ybar3, theta] = [2, 3].map((c) => columnOf(rows, result.width, c));
+    return scales(result, rows).map((scale, k) => {
+      const inverse = scale * ybar3[k];
+      return inverse > 0 && !Number.isNaN(theta[k]) ? 1 / inverse : NaN;
+    });
+  });
+}
+
+/** d_s at the samples, estimated or known. */
+function scales({ choice, scale, width, time }, rows) {
+  const at = choice.unknown.indexOf("d_s");
+  return derived(rows, "d_s", () => {
+    if (at < 0) return new Float64Array(time.length).fill(scale);
+    return columnOf(rows, width, 3 + at).map((value) => (value > 0 ? value : NaN));
+  });
+}
+
+/** The largest difference of a sample and its estimate. */
+export function innovationOf({ outputs, width }, { estimate }) {
+  return derived(estimate, "innovation", () => {
+    const pairs = [0, 1, 2].map((c) => [lastSamples(columnOf(outputs, 3, c)), columnOf(estimate, width, c)]);
+    return pairs[0][0].map((_, k) => pairs.reduce((most, [last, found]) => Math.max(most, Math.abs(last[k] - found[k])), 0));
+  });
+}

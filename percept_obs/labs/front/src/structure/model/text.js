@@ -1,0 +1,88 @@
+// Why it happened, and the pictures in words.
+
+import { readable, short } from "../../common/model/scales.js";
+import { sampleAt } from "../../common/model/tables.js";
+import { filled } from "../../common/model/words.js";
+import { quantityOf } from "./quantities.js";
+
+const ONE_GAIN = ["identifier_based", "de_luca"];
+
+/** Why: what the settings have to do with it. */
+export function reasons(shown, model) {
+  if (shown.problem) return [shown.problem];
+  if (shown.refusal) return ["This is what is measured. It does not tell the unknowns apart, so nothing is estimated."];
+  const { settings, choice } = shown;
+  const found = shown.limits.map(({ name, time, rate, step, remedy, shorter }) => {
+    const values = {
+      time: short(time), rate: short(rate, 4), step: short(step), limit: short(model.largestStepRate, 6), remedy,
+      shorter: short(shorter, 2), name: "integral sliding mode",
+    };
+    return `${model.observers[name].title}: ${filled(model.tooLong, values)}.`;
+  });
+  if (shown.leavesAt !== null) {
+    found.push(`The point leaves the half-space in front of the camera at ${readable(shown.leavesAt)} s; shown until then.`);
+  }
+  for (const run of shown.runs) if (run.divergedAt === null) found.push(endOf(run, shown));
+  if (choice.unknown.includes("d_s") && settings.noise.size + settings.noise.depth > 0) {
+    found.push(`An error of the rate is amplified up to ${readable(mostOf(shown), 2)} times, about 1/ȳ3², and noise with it.`);
+  }
+  if (choice.unknown.includes("d_s") && shown.runs.some(({ name }) => ONE_GAIN.includes(name))) {
+    found.push(
+      "The identifier-based observer and De Luca's have one gain for all unknowns, but the columns of Ωg differ in size " +
+        "by a factor of ȳ3, so that d_s hardly moves.",
+    );
+  }
+  if (settings.bias !== 0 || settings.drift !== 0) {
+    found.push("ȳ3 is measured with a bias or a drift. No observer can know it: it becomes an error of θ.");
+  }
+  if (settings.hold === "zero" && settings.period >= 1e-3) {
+    found.push("Samples are held: between them the innovation grows like a saw tooth, which shifts what ISMO finds.");
+  }
+  return found;
+}
+
+/** What an observer has found at the end. */
+function endOf(run, shown) {
+  const parts = shown.choice.unknown.map((name) => {
+    const [found, right] = [run.estimate, shown.truth].map((rows) => plain(quantityOf(shown, rows, name).at(-1)));
+    return `${name} = ${found} (true ${right})`;
+  });
+  return `${run.title} ends with ${parts.join(", ")}.`;
+}
+
+/** A quantity to a micrometre a second, so that what is nothing reads as nothing. */
+function plain(value) {
+  return readable(Number(value.toFixed(6)), 4);
+}
+
+function mostOf({ guard }) {
+  let most = 0;
+  for (let k = 0; k < guard.sizes.length; k++) most = Math.max(most, guard.sizes[k] / Math.abs(guard.determinants[k]));
+  return most;
+}
+
+/** The text equivalent of the image plane. */
+export function imagePlaneInWords(shown) {
+  if (shown.problem) return shown.problem;
+  const end = shown.time.length - 1;
+  const point = (rows, k) => `y1 ${readable(rows[k * shown.width])}, y2 ${readable(rows[k * shown.width + 1])}`;
+  const parts = [`the point goes from ${point(shown.truth, 0)} to ${point(shown.truth, end)}`];
+  for (const run of shown.runs) parts.push(`the estimate of ${run.title} ends at ${point(run.estimate, end)}`);
+  return `${parts.join("; ")}.`;
+}
+
+/** The text equivalent of the view from above. */
+export function sceneInWords(shown) {
+  if (shown.problem) return shown.problem;
+  const { image, scale, time } = shown;
+  const place = (k) => `${readable(image[3 * k] / (scale * image[3 * k + 2]))} m aside and ${readable(1 / (scale * image[3 * k + 2]))} m ahead`;
+  return `the point goes from ${place(0)} to ${place(time.length - 1)} of the camera.`;
+}
+
+/** The values under the cursor. */
+export function readingAt(shown, cursor) {
+  const k = sampleAt(shown.time, cursor);
+  const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");
+  const runs = shown.runs.map((run) => `${run.title} ${row(run.estimate)}`);
+  return [`At ${readable(shown.time[k])} s`, `true ${row(shown.truth)}`, ...runs].join(" · ");
+}

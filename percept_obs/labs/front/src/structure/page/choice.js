@@ -1,0 +1,168 @@
+// What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
+
+import { readable } from "../../common/model/scales.js";
+import { checkbox, element } from "../../common/page/controls.js";
+import { FormulaSheet } from "../../common/page/formulas.js";
+import { isZero, keyOf } from "../model/kernels.js";
+
+const GROUPS = [
+  ["Scale", ["d_s"]],
+  ["Velocity of the camera", ["v_c1", "v_c2", "v_c3"]],
+  ["Velocity of the object", ["v_p1", "v_p2", "v_p3"]],
+];
+const KINDS = [
+  ["dynamic", "Camera partly unknown"],
+  ["general", "Range known"],
+];
+const OBJECTS = [
+  ["semigeneral", "Object still, then moving"],
+  ["general", "Object moving"],
+];
+
+/** The part of the lab above its pictures. */
+export class ChoiceOfUnknowns {
+  constructor(model, lab) {
+    Object.assign(this, { model, lab });
+    this.shownFor = null;
+    this.determinant = new FormulaSheet();
+    this.boxes = GROUPS.map(([title, names]) => [title, names.map((name) => this.box(name))]);
+    this.earlier = checkbox({
+      name: "earlier",
+      label: "d_s comes from an earlier stage, so that θ holds d_s v",
+      get: () => lab.settings.earlier,
+      set: (on) => lab.change({ earlier: on }, true),
+    });
+    this.told = element("div", { class: "told" });
+    this.body = element(
+      "section",
+      { class: "unknowns", role: "group", "aria-label": "What is known" },
+      element("div", { class: "ticks" }, element("h4", {}, "Tick what you know"), ...this.groups(), this.earlier.row),
+      this.table(),
+      this.told,
+    );
+  }
+
+  groups() {
+    return this.boxes.map(([title, boxes]) =>
+      element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...boxes.map((box) => box.row)),
+    );
+  }
+
+  box(name) {
+    const { lab, model } = this;
+    const box = checkbox({
+      name: `known ${name}`,
+      label: "",
+      get: () => !lab.settings.unknown.includes(name),
+      set: (known) => {
+        const { unknown } = lab.settings;
+        lab.change({ unknown: model.quantities.filter((q) => (q === name ? !known : unknown.includes(q))) }, true);
+      },
+    });
+    const [letter, index] = name.split("_");
+    box.row.lastChild.innerHTML = `<math><msub><mi>${letter}</mi><mi>${index}</mi></msub></math>`;
+    box.parts[0].setAttribute("aria-label", `${name} is known`);
+    return box;
+  }
+
+  /** Table 1: how the camera and the object move, with the corollaries of each cell. */
+  table() {
+    const { corollaries } = this.model;
+    this.cases = [];
+    const cell = (camera, object) =>
+      corollaries
+        .filter((c) => c.camera === camera && c.object === object)
+        .map((corollary) => {
+          const press = element("button", {
+            type: "button",
+            class: "case",
+            "data-control": `corollary ${corollary.number}`,
+            "aria-label": `Corollary ${corollary.number}`,
+            title: corollary.words,
+            onclick: () => this.lab.change(structuredClone(corollary.settings), true),
+          });
+          press.append(String(corollary.number));
+          this.cases.push([corollary.number, press]);
+          return press;
+        });
+    return element(
+      "table",
+      { class: "cases" },
+      element("caption", {}, "The paper's cases, corollaries 1 to 7"),
+      element("tr", {}, element("td"), ...OBJECTS.map(([, words]) => element("th", { scope: "col" }, words))),
+      ...KINDS.map(([camera, words]) =>
+        element("tr", {}, element("th", { scope: "row" }, words), ...OBJECTS.map(([object]) => element("td", {}, ...cell(camera, object)))),
+      ),
+    );
+  }
+
+  /** Bring boxes, table and words to what is shown. */
+  show(shown) {
+    const { settings, refusal } = shown;
+    const corollary = refusal ? null : this.lab.kernels.corollary(settings);
+    const key = JSON.stringify([keyOf(settings), refusal, corollary]);
+    if (key !== this.shownFor) {
+      this.shownFor = key;
+      for (const [, boxes] of this.boxes) for (const box of boxes) box.show();
+      this.earlier.show();
+      this.earlier.row.hidden = settings.unknown.includes("d_s");
+      for (const [number, press] of this.cases) press.setAttribute("aria-pressed", String(number === corollary));
+      this.tell(settings, refusal, corollary);
+    }
+    if (!refusal && !shown.problem) this.fill(shown);
+  }
+
+  tell(settings, refusal, corollary) {
+    this.determinant.clear();
+    if (refusal) {
+      const head = element("p", {}, element("strong", {}, "Impossible."));
+      this.told.replaceChildren(head, element("p", { class: "refused" }, `${refusal[0].toUpperCase()}${refusal.slice(1)}.`));
+      return;
+    }
+    const choice = this.model.choices[keyOf(settings)];
+    const theta = element("div", { class: "line" });
+    const column = choice.theta.map((entry) => `<mtr><mtd>${entry}</mtd></mtr>`).join("");
+    theta.innerHTML = `<math><mi>θ</mi><mo>=</mo><mtable class="matrix">${column}</mtable></math>`;
+    const letters = element("div", { class: "line" });
+    letters.innerHTML = `<math displaystyle="true">${choice.determinant}</math>`;
+    const numbers = element("div", { class: "line with-numbers" });
+    if (choice.square) {
+      numbers.innerHTML = `<math displaystyle="true">${choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>")}</math>`;
+      this.determinant.putNumbers(numbers, "");
+    }
+    this.value = element("span", { class: "value" });
+    numbers.append(this.value);
+    this.told.replaceChildren(
+      element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice, settings)}`),
+      element("div", { class: "determinant" }, theta, element("div", {}, letters, numbers)),
+      element("p", { class: "where" }, `Not observable ${choice.zeroSet}.`),
+    );
+  }
+
+  nameOf(number) {
+    const found = this.model.corollaries.find((c) => c.number === number);
+    return found ? `Corollary ${number}, section ${found.section}.` : "Possible, though not a case of the paper.";
+  }
+
+  kindOf({ unknown, square, alone }) {
+    const few = square ? "" : `Three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: least squares.`;
+    const metres = alone.filter((name) => !isZero(this.lab.settings, name));
+    const carried = metres.length ? `The metres come from ${metres.join(", ")}.` : "";
+    return [few, carried].filter(Boolean).join(" ");
+  }
+
+  /** The determinant's number at the start of the run. */
+  fill({ settings, guard, truth }) {
+    const { ybar, scale, w } = settings;
+    const at = { d_s: scale, ybar3: truth[2], y1: ybar[0], y2: ybar[1], w1: w[0], w2: w[1], w3: w[2] };
+    this.determinant.putIn((_, letter) => at[letter] ?? this.velocity(settings, letter));
+    const text = ` = ${readable(guard.determinants[0])} at the start`;
+    if (this.value.textContent !== text) this.value.textContent = text;
+  }
+
+  /** A velocity at the start, as its letter says. */
+  velocity(settings, name) {
+    const [which, axis] = [name.slice(0, 3), Number(name.slice(3)) - 1];
+    return settings[which][axis] + settings[`${which}_swing`][axis] * Math.sin(this.model.phases[which][axis]);
+  }
+}

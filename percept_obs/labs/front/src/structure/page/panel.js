@@ -1,0 +1,88 @@
+// The controls of the structure lab: each reads from the settings and changes them.
+
+import { changeAt } from "../../common/model/settings.js";
+import { checkbox, element } from "../../common/page/controls.js";
+import { Fieldsets } from "../../common/page/fieldsets.js";
+import { ObserverList } from "../../common/page/observer_list.js";
+
+/** Fieldsets of controls; show() brings all of them to the present settings. */
+export class StructurePanel extends Fieldsets {
+  constructor(lab) {
+    super(lab);
+    this.list = new ObserverList(this);
+    this.body = element(
+      "div",
+      { class: "panel" },
+      element("div", { class: "observe" }, this.fieldset("Observe with", {}, ...this.list.rows)),
+      this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
+      this.motion(),
+      this.measuring(),
+      this.running(),
+      this.fieldset("Pictures", { class: "pictures" }, this.names("pictures", "At least one chart stays.")),
+    );
+  }
+
+  /** Sliders for a vector whose letters stand in the formulas. */
+  vector(place) {
+    return this.litList(place, [1, 2, 3].map((axis) => `${place}${axis}`));
+  }
+
+  motion() {
+    const { lab } = this;
+    const varying = checkbox({
+      name: "swings",
+      label: "velocities that vary",
+      get: () => swings(lab.settings),
+      set: (on) => {
+        const size = on ? 0.1 : 0;
+        lab.change({ v_c_swing: [size, size, -size], v_p_swing: [0, 0, 0] }, true);
+      },
+    });
+    return this.fieldset(
+      "What is true",
+      { class: "point" },
+      this.number("scale"),
+      ...this.vector("v_c"),
+      ...this.vector("v_p"),
+      this.add(varying),
+      this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
+      ...this.each("ybar"),
+      ...this.vector("w"),
+    );
+  }
+
+  measuring() {
+    return this.fieldset(
+      "What is measured",
+      { class: "camera" },
+      this.choice("noise.kind"),
+      ...this.numbers("noise.size", "noise.depth", "bias", "drift", "seed"),
+      this.timing("period"),
+      this.timing("duration"),
+    );
+  }
+
+  /** A time that must not ask the page for more steps than it can take. */
+  timing(place) {
+    const allowed = (value) => {
+      const { duration, period, step } = { ...this.lab.settings, ...changeAt(this.lab.settings, place, value) };
+      return duration / Math.min(period, step) <= this.model.mostSteps;
+    };
+    return this.number(place, { allowed });
+  }
+
+  running() {
+    return this.fieldset(
+      "How the observers run",
+      { class: "start" },
+      this.choice("start"),
+      this.choice("hold"),
+      this.timing("step"),
+      this.number("tolerance"),
+    );
+  }
+}
+
+function swings({ v_c_swing, v_p_swing }) {
+  return [...v_c_swing, ...v_p_swing].some((value) => value !== 0);
+}

@@ -1,0 +1,105 @@
+// What each time chart shows of a run: lines, scale, gaps, and the same in words.
+
+import { columnOf, derived } from "../../common/model/derived.js";
+import { readable } from "../../common/model/scales.js";
+import { decades, line } from "../../common/page/chart_parts.js";
+import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
+import { around, linesOf, marksOf, runLines } from "../../common/page/plots.js";
+import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
+
+export const LABELS = {
+  unknown1: "First unknown over time",
+  unknown2: "Second unknown over time",
+  unknown3: "Third unknown over time",
+  error: "Error of theta over time",
+  image: "Image coordinates over time",
+  depth: "Scaled inverse depth over time",
+  innovation: "Innovation over time",
+  determinant: "Determinant over time",
+  range: "Range over time",
+};
+
+/** Names of the charts that are shown; of an impossible choice those of what is measured. */
+export function chartsOf({ settings, choice, problem, refusal }) {
+  if (problem) return [];
+  if (refusal) return MEASURED;
+  return Object.keys(LABELS).filter((name) => {
+    if (!name.startsWith("unknown")) return settings.pictures.includes(name);
+    return settings.pictures.includes("unknowns") && Number(name.slice(7)) <= choice.unknown.length;
+  });
+}
+
+const MEASURED = ["image", "depth"];
+
+/** The parts of one chart. */
+export function chartOf(name, shown, ghost, theme) {
+  const spans = united(shown.runs.flatMap((run) => run.gaps));
+  const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];
+  return { spans, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
+}
+
+/** Spans of time without overlaps, so that none is shaded twice. */
+function united(spans) {
+  const found = [];
+  for (const [begin, end] of spans.toSorted((one, other) => one[0] - other[0])) {
+    if (found.length && begin <= found.at(-1)[1]) found.at(-1)[1] = Math.max(end, found.at(-1)[1]);
+    else found.push([begin, end]);
+  }
+  return found;
+}
+
+/** How far around a quantity its chart reaches at least, in m/s or 1/m. */
+const ROOM = 0.05;
+
+function UNKNOWN(shown, ghost, theme, which) {
+  const name = shown.choice.unknown[which];
+  const there = ghost?.choice.unknown.includes(name) ? ghost : null;
+  const lines = linesOf(shown, there, theme, name, (result, rows) => quantityOf(result, rows, name));
+  return { title: `${name} in ${name === "d_s" ? "1/m" : "m/s"}`, lines, scale: around(lines, shown, ROOM) };
+}
+
+const BUILD = {
+  error(shown, ghost, theme) {
+    const title = `Largest |error| of θ, with the tolerance ${readable(shown.tolerance)}`;
+    const lines = runLines(shown, ghost, theme, "error", (_, run) => run.error);
+    return { title, lines, scale: decades(lines, 1e-8, 1e3), level: shown.tolerance };
+  },
+  image(shown, ghost, theme) {
+    const lines = [0, 1].flatMap((c) => outputs(shown, ghost, theme, c));
+    return { title: "Image coordinates y1, y2", lines, scale: around(lines, shown) };
+  },
+  depth(shown, ghost, theme) {
+    const lines = outputs(shown, ghost, theme, 2);
+    return { title: "Scaled inverse depth ȳ3", lines, scale: around(lines, shown) };
+  },
+  innovation(shown, ghost, theme) {
+    const lines = runLines(shown, ghost, theme, "innovation", innovationOf);
+    return { title: "Innovation: largest |ȳ − ŷ|", lines, scale: decades(lines, 1e-12, 10) };
+  },
+  determinant(shown, ghost, theme) {
+    const size = (values) => derived(values, "size", () => values.map(Math.abs));
+    const lines = [line("determinant", shown.time, size(shown.guard.determinants), theme.ink, SOLID)];
+    if (ghost) lines.unshift(line("kept determinant", ghost.time, size(ghost.guard.determinants), theme.kept, KEPT));
+    const guarded = shown.runs.find((run) => run.name in GUARDED);
+    if (guarded) {
+      const largest = shown.settings.gains[guarded.name].largest_amplification;
+      const least = shown.guard.sizes.map((value) => value / largest);
+      lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, DASHES[1]));
+    }
+    const title = `|det ${shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)"}|${guarded ? ", and dotted the least for an estimate" : ""}`;
+    return { title, lines, scale: decades(lines, 1e-16, 1e6) };
+  },
+  range(shown, ghost, theme) {
+    const lines = linesOf(shown, ghost, theme, "range", rangeOf);
+    return { title: "Range Z in m", lines, scale: around(lines, shown) };
+  },
+};
+
+/** Observers that recover theta by a division, and so have gaps. */
+const GUARDED = { ideal: true, layer: true, sign: true };
+
+function outputs(shown, ghost, theme, c) {
+  const name = shown.names[c];
+  const sampled = line(`${name} sampled`, shown.time, columnOf(shown.outputs, 3, c), theme.sample, SOLID);
+  return [sampled, ...linesOf(shown, ghost, theme, name, ({ width }, rows) => columnOf(rows, width, c))];
+}
