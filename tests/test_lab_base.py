@@ -13,7 +13,7 @@ from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.shared import lab as base
 from percept_obs.labs.shared import markup
 
-BUILT_FROM = ("package.json", "package-lock.json", "eslint.config.js")
+BUILT_FROM = ("package.json", "package-lock.json", "eslint.config.js", "tsconfig.json")
 
 
 @pytest.fixture(scope="session")
@@ -43,8 +43,8 @@ def test_the_bundle_is_the_build_of_the_sources(modules):
 
 @pytest.mark.node
 @pytest.mark.slow
-@pytest.mark.parametrize("task", ["lint", "test"])
-def test_the_sources_pass_their_linter_and_their_own_tests(modules, task):
+@pytest.mark.parametrize("task", ["lint", "types", "test"])
+def test_the_sources_pass_their_linter_their_types_and_their_own_tests(modules, task):
     answer = subprocess.run([shutil.which("npm"), "run", task], cwd=modules, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stdout + answer.stderr
 

@@ -1,12 +1,26 @@
 import js from "@eslint/js";
 import globals from "globals";
 
+const MODEL = "src/**/model/**/*.js";
+const message = "what computes knows nothing of the page: import from a folder `model` only";
+
 export default [
   js.configs.recommended,
   {
     files: ["src/**/*.js"],
+    ignores: [MODEL],
     languageOptions: { globals: globals.browser },
-    rules: { "no-unused-vars": ["error", { varsIgnorePattern: "^_" }], eqeqeq: "error", "prefer-const": "error" },
+  },
+  {
+    files: [MODEL],
+    languageOptions: { globals: globals["shared-node-browser"] },
+    rules: {
+      "no-restricted-imports": ["error", { patterns: [{ regex: "^(?!\\./[^/]+$|\\.\\./\\.\\./common/model/)", message }] }],
+    },
+  },
+  {
+    files: ["src/**/*.js"],
+    rules: { "no-unused-vars": ["error", { varsIgnorePattern: "^_", argsIgnorePattern: "^_" }], eqeqeq: "error", "prefer-const": "error" },
   },
   { files: ["tests/**/*.js"], languageOptions: { globals: globals.node } },
 ];

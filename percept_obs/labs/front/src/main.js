@@ -1,3 +1,4 @@
+// @ts-check
 // The bundle's entrance: anywidget calls render() for each view of a lab.
 //
 // To add a lab: a folder beside observer/ with an engine that makes results of settings (types.js says of what) and a
@@ -23,7 +24,7 @@ export default {
       place.textContent = `The lab could not be opened: ${error.message}`;
       throw error;
     }
-    const known = (window.perceptObsLabs ??= new Set());
+    const known = (/** @type {any} */ (window).perceptObsLabs ??= new Set());
     known.add(lab);
     return () => {
       known.delete(lab);

@@ -1,26 +1,30 @@
+// @ts-check
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
-import { Results } from "../common/model/results.js";
+import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
-import { open } from "../common/page/opening.js";
+import { ObserverFormulas } from "../common/page/observer_formulas.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, translationTowards } from "./model/engine.js";
 import { Kernels } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
 import { imagePlaneInWords, reasons } from "./model/text.js";
-import { Formulas } from "./page/formula.js";
+import { numbersOf, systemOf } from "./page/formula.js";
 import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { SCHEMA } from "./schema.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
+const PARTS = {
+  ...{ schema: SCHEMA, Kernels, Engine, presets: PRESETS, settingsOf },
+  ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
+};
+
 export class ObserverLab extends Live {
   constructor(widget, place) {
-    super(widget, SCHEMA);
-    this.kernels = new Kernels(this.model);
-    this.results = new Results(this.kernels, () => new Engine(this.model));
+    super(widget, PARTS);
     const plane = new ImagePlane({
       name: "foe",
       label: "Focus of expansion",
@@ -31,9 +35,9 @@ export class ObserverLab extends Live {
       onRest: () => this.rest(),
     });
     this.planes = [plane];
-    this.formulas = new Formulas(this.model);
+    this.formulas = new ObserverFormulas(this.model, systemOf, numbersOf);
     this.panel = new Panel(this);
-    open(this, place, LABELS, PRESETS);
+    this.open(place);
   }
 
   moveFoe(place) {
@@ -52,10 +56,6 @@ export class ObserverLab extends Live {
     return this.change({ scenario: name, surface, outputs, duration, window, hold, believed: null }, true);
   }
 
-  afterAct(act) {
-    return settingsOf(act, this.model.standard);
-  }
-
   fitted(settings) {
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
@@ -64,18 +64,6 @@ export class ObserverLab extends Live {
     const why = lost.map((name) => `The ${this.model.observers[name].title} observer was dropped: ${refused[name]}.`);
     this.view.notice(why.join(" "));
     return { ...settings, observers: left.length ? left : [ALWAYS_POSSIBLE] };
-  }
-
-  chartOf(name) {
-    return chartOf(name, this.shown, this.ghost, this.theme);
-  }
-
-  reasons() {
-    return reasons(this.shown);
-  }
-
-  copy() {
-    return pythonOf(this.shown, this.model);
   }
 }
 

@@ -1,6 +1,7 @@
+// @ts-check
 // The settings of the observer lab: their kinds, ranges, choices, units and labels.
 
-import { HOLDS, listOf, NOISES } from "../common/model/schema.js";
+import { amount, DROPOUT, HOLDS, listOf, noise, SEED } from "../common/model/schema.js";
 
 const FARTHEST = { least: -1000, most: 1000 };
 const SPEED = { unit: "m/s", low: -1, high: 1, step: 0.01, ...FARTHEST };
@@ -23,16 +24,10 @@ export const SCHEMA = {
     })),
   },
   duration: { kind: "number", label: "duration", unit: "s", low: 2, high: 120, step: 1, least: 0.1, most: 200 },
-  noise: {
-    kind: "group",
-    entries: {
-      kind: { kind: "choice", label: "Noise", choices: NOISES },
-      size: { kind: "number", label: "bound or σ", low: 0, high: 0.05, step: 0.0005, least: 0, most: 1 },
-    },
-  },
-  seed: { kind: "number", label: "seed", low: 0, high: 100, step: 1, whole: true, least: 0, most: 2 ** 32 - 1 },
+  noise: noise("Noise", { size: amount("bound or σ", 0.05, 0.0005) }),
+  seed: SEED,
   period: { kind: "number", label: "period", unit: "s", low: 0.002, high: 0.2, log: true, least: 0.001, most: 1 },
-  dropout: { kind: "number", label: "lost samples", low: 0, high: 0.9, step: 0.01, least: 0, most: 0.95 },
+  dropout: DROPOUT,
   hold: { kind: "choice", label: "Hold", choices: HOLDS },
   start: {
     kind: "group",

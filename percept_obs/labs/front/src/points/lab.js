@@ -1,8 +1,7 @@
+// @ts-check
 // The lab of many points: points of one state before a moving camera, and an observer that follows them.
 
-import { Results } from "../common/model/results.js";
 import { Live } from "../common/page/live.js";
-import { open } from "../common/page/opening.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
@@ -14,15 +13,18 @@ import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { SCHEMA } from "./schema.js";
 
+const PARTS = {
+  ...{ schema: SCHEMA, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf },
+  ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
+};
+
 export class PointsLab extends Live {
   constructor(widget, place) {
-    super(widget, SCHEMA);
-    this.kernels = new PointsKernels(this.model);
-    this.results = new Results(this.kernels, () => new PointsEngine(this.model));
+    super(widget, PARTS);
     this.planes = [new ImagePlane(this, this.model.mostPoints)];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
-    open(this, place, LABELS, PRESETS);
+    this.open(place);
   }
 
   // What the hand does.
@@ -85,10 +87,6 @@ export class PointsLab extends Live {
     this.change({ turning: 0, input: 0, velocity }, true);
   }
 
-  afterAct(act) {
-    return settingsOf(act, this.model.standard);
-  }
-
   progress() {
     return { done: 0, of: 1, reason: "The page prepares these equations." };
   }
@@ -100,9 +98,8 @@ export class PointsLab extends Live {
     return this.answered()?.bound ?? null;
   }
 
-  chartOf(name) {
-    const more = { bound: this.guaranteed(), unseen: this.model.unseen };
-    return chartOf(name, this.shown, this.ghost, this.theme, more);
+  besides() {
+    return { bound: this.guaranteed(), unseen: this.model.unseen };
   }
 
   verdicts() {
@@ -112,24 +109,8 @@ export class PointsLab extends Live {
     ];
   }
 
-  reasons() {
-    return reasons(this.shown, this.model);
-  }
-
-  readingAt(cursor) {
-    return readingAt(this.shown, cursor);
-  }
-
   legend() {
     const points = Array.from({ length: this.shown.points }, (_, k) => [k, `point ${k + 1}`]);
     return [...points, ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]])];
-  }
-
-  copy() {
-    return pythonOf(this.shown, this.model);
-  }
-
-  summary(serial) {
-    return summaryOf(this.shown, serial, this.model);
   }
 }

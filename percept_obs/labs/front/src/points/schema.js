@@ -1,6 +1,7 @@
+// @ts-check
 // The settings of the lab of many points: their kinds, ranges, choices, units and labels.
 
-import { HOLDS, listOf, NOISES } from "../common/model/schema.js";
+import { amount, DROPOUT, HOLDS, listOf, noise, SEED } from "../common/model/schema.js";
 
 const share = (label) => ({ kind: "number", label, low: -2, high: 2, step: 0.05, least: -10, most: 10 });
 const P = { kind: "number", log: true, low: 0.001, high: 100, least: 1e-4, most: 1e4 };
@@ -45,16 +46,10 @@ export const SCHEMA = {
   },
   depth: { kind: "number", label: "at the depth", unit: "m", low: 0.5, high: 6, step: 0.05, least: 0.01, most: 100 },
   error: { kind: "number", label: "error, times the given", low: -3, high: 3, step: 0.05, least: -100, most: 100 },
-  noise: {
-    kind: "group",
-    entries: {
-      kind: { kind: "choice", label: "noise", choices: NOISES },
-      size: { kind: "number", label: "bound or σ", low: 0, high: 0.05, step: 0.0005, least: 0, most: 1 },
-    },
-  },
-  seed: { kind: "number", label: "seed", low: 0, high: 100, step: 1, whole: true, least: 0, most: 2 ** 32 - 1 },
+  noise: noise("noise", { size: amount("bound or σ", 0.05, 0.0005) }),
+  seed: SEED,
   period: { kind: "number", label: "period", unit: "s", low: 0.01, high: 0.2, log: true, least: 0.005, most: 1 },
-  dropout: { kind: "number", label: "lost samples", low: 0, high: 0.9, step: 0.01, least: 0, most: 0.95 },
+  dropout: DROPOUT,
   view: { kind: "number", label: "sees |y| up to", low: 0.2, high: 4, step: 0.05, least: 0.1, most: 100 },
   hold: { kind: "choice", label: "Hold", choices: HOLDS },
   pictures: {

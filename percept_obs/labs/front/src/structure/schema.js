@@ -1,6 +1,7 @@
+// @ts-check
 // The settings of the structure lab: their kinds, ranges, choices, units and labels.
 
-import { HOLDS, listOf, NOISES } from "../common/model/schema.js";
+import { amount, HOLDS, listOf, noise, SEED } from "../common/model/schema.js";
 
 const FARTHEST = { least: -1000, most: 1000 };
 const SPEED = { unit: "m/s", low: -1, high: 1, step: 0.01, ...FARTHEST };
@@ -8,7 +9,6 @@ const SWING = { ...SPEED, low: -0.5, high: 0.5 };
 const IMAGE = { low: -1, high: 1, step: 0.01, ...FARTHEST };
 const named = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
 const swing = (name) => name.replace("swing", "swing of");
-const noise = (label, high) => ({ kind: "number", label, low: 0, high, step: high / 200, least: 0, most: 1 });
 
 export const SCHEMA = {
   scale: { kind: "number", label: "true d_s", unit: "1/m", low: 0.5, high: 50, log: true, least: 1e-3, most: 1e3 },
@@ -26,17 +26,10 @@ export const SCHEMA = {
     ],
   },
   w: listOf(named("w"), (name) => `turning ${name}`, { unit: "rad/s", low: -0.5, high: 0.5, step: 0.01, ...FARTHEST }),
-  noise: {
-    kind: "group",
-    entries: {
-      kind: { kind: "choice", label: "Noise", choices: NOISES },
-      size: noise("in y1, y2", 1e-3),
-      depth: noise("in ȳ3", 1e-4),
-    },
-  },
+  noise: noise("Noise", { size: amount("in y1, y2", 1e-3, 5e-6), depth: amount("in ȳ3", 1e-4, 5e-7) }),
   bias: { kind: "number", label: "bias of ȳ3", low: -0.01, high: 0.01, step: 1e-4, least: -1, most: 1 },
   drift: { kind: "number", label: "drift of ȳ3", unit: "1/s", low: -0.001, high: 0.001, step: 1e-5, least: -1, most: 1 },
-  seed: { kind: "number", label: "seed", low: 0, high: 100, step: 1, whole: true, least: 0, most: 2 ** 32 - 1 },
+  seed: SEED,
   period: { kind: "number", label: "period", unit: "s", low: 1e-4, high: 0.1, log: true, least: 1e-4, most: 1 },
   duration: { kind: "number", label: "duration", unit: "s", low: 1, high: 60, step: 0.5, least: 0.1, most: 100 },
   start: { kind: "choice", label: "ŷ starts at", choices: { own: "the first sample", zero: "zero" } },

@@ -1,3 +1,4 @@
+// @ts-check
 // What cameras of single points share: when they sample, what noise adds, how far the point stays in front.
 
 import { move, project } from "./plant.js";
@@ -37,14 +38,15 @@ export class PointCamera {
   record(settings, functions) {
     const { memory } = this;
     const { noise, dropout, bias, drift, seed } = settings;
-    const place = this.placeOf(settings);
+    const own = /** @type {any} */ (this);
+    const place = own.placeOf(settings);
     const seen = memory.once("seen", place, () => this.see(settings, functions));
     if (seen.problem) return seen;
     return memory.once("samples", [place, noise, dropout, bias, drift, seed], () => {
       const drawn = memory.once("draws", [noise.kind, seed, seen.time.length], () =>
         draws(noise.kind, seed, seen.time.length, this.drawsOf),
       );
-      return { ...seen, outputs: this.sampled(seen, settings, drawn) };
+      return { ...seen, outputs: own.sampled(seen, settings, drawn) };
     });
   }
 
@@ -72,7 +74,7 @@ export class PointCamera {
 
   /** Fill in coordinates at the ends of steps; how many of them are in front of the camera from the first on. */
   look(settings, functions, lines, found) {
-    const { start, known, shape } = this.path(settings, functions, lines);
+    const { start, known, shape } = /** @type {any} */ (this).path(settings, functions, lines);
     const points = move(start, functions.plant, known, lines, (part, length) => this.memory.room(part, length));
     return project(points, functions.project, shape, found);
   }

@@ -1,3 +1,4 @@
+// @ts-check
 // What the Python texts of all labs have in common.
 
 import { switchOf } from "./settings.js";

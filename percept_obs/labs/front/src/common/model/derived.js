@@ -1,3 +1,4 @@
+// @ts-check
 // What follows from a result's rows of numbers: made when it is first asked for, and kept as long as they are.
 
 import { column } from "./tables.js";

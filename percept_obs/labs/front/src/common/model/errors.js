@@ -1,3 +1,4 @@
+// @ts-check
 // How far an estimate is from the truth, and since when it has settled.
 
 /** Largest absolute error of the hidden coordinates at each sample. */

@@ -1,18 +1,25 @@
+// @ts-check
 // The functions that settings need, made from texts of which some follow after a lab has been opened.
 
 import { Modules } from "./modules.js";
 
-/**
- * Functions of a model.  A lab of its own says in methods of its own:
- *   has(settings)      whether the texts that these settings need have come
- *   needed(settings)   names and texts of the modules that they are made of
- */
+/** Functions of a model; those of a lab say which modules settings need, and whether their texts have come. */
 export class PrintedKernels {
   constructor(model, load) {
     this.model = model;
     this.modules = new Modules(load);
     this.whole = new Set();
     this.waiters = [];
+  }
+
+  /** Whether the texts that settings need have come. */
+  has(_settings) {
+    return true;
+  }
+
+  /** Names and texts of the modules that settings need, with the observer whose loop one is. */
+  needed(_settings) {
+    return /** @type {{key: string, texts: any, observer?: string, aside?: boolean}[]} */ ([]);
   }
 
   /** Go on with what has waited for a part. */

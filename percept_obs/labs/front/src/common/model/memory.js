@@ -1,3 +1,4 @@
+// @ts-check
 // What a computation keeps from one run to the next. Nothing of a room is ever handed out.
 
 /** Values that are made once for the same inputs, and arrays that are used again. */

@@ -1,3 +1,4 @@
+// @ts-check
 // A point in motion, and where a camera sees it.
 
 const NOTHING = new Float64Array(0);

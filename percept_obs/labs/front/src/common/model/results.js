@@ -1,3 +1,4 @@
+// @ts-check
 // The result of the latest settings, and of the run that is kept beside it; each is computed once.
 
 /** Runs an engine, and a second one for the kept run, which seldom changes. */
@@ -5,6 +6,7 @@ export class Results {
   constructor(kernels, makeEngine) {
     this.kernels = kernels;
     this.engines = [makeEngine(), makeEngine()];
+    /** @type {any[]} */
     this.found = [null, null];
   }
 

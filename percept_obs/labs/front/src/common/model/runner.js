@@ -1,3 +1,4 @@
+// @ts-check
 // Observers on a recording: the same numbers as track() in Python.
 
 import { columnOf } from "./derived.js";
@@ -29,7 +30,11 @@ export class Runner {
     };
   }
 
-  /** One observer's run: estimates, resets, gaps, errors. */
+  /**
+   * One observer's run: estimates, resets, gaps, errors.
+   *
+   * @returns {import("../../types.js").ObserverRun}
+   */
   follow(name, chosen, result, inputs, kernel, functions, asked) {
     const { width, time, truth } = result;
     const { grid, known: table } = inputs;

@@ -1,3 +1,4 @@
+// @ts-check
 // Ranges, ticks and number words of axes.
 
 /** A number as Python's format(value, ".3g") writes it. */
@@ -36,7 +37,7 @@ export function readable(value, digits = 3) {
 export function roundStep(span, parts) {
   const rough = span / Math.max(1, parts);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const factor = [1, 2, 5, 10].find((f) => f * power >= rough * 0.999);
+  const factor = [1, 2, 5].find((f) => f * power >= rough * 0.999) ?? 10;
   return factor * power;
 }
 

@@ -1,3 +1,4 @@
+// @ts-check
 // Settings: comparing them, reading and changing them by the place of a value such as "noise.size" or "b.0".
 
 /** Whether two settings are the same, whatever the order of their keys. */

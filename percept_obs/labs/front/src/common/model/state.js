@@ -1,16 +1,28 @@
+// @ts-check
 // What a lab is asked to show: settings, the preset that is open, the time at which values are read; and the way back.
 
 import { same } from "./settings.js";
+
+/**
+ * @typedef {import("../../types.js").Settings} Settings
+ * @typedef {{name: string, act: number, before: Settings | null}} Preset  an act is shown from 0 on
+ * @typedef {{settings: Settings, preset: Preset | null}} Moment
+ */
 
 const MOST_STEPS = 200;
 
 /** Settings with their history: one step is what a hand does from taking hold to letting go. */
 export class State {
   constructor(settings) {
+    /** @type {Moment} */
     this.now = { settings, preset: null };
+    /** @type {number | null} */
     this.cursor = null;
+    /** @type {Moment[]} */
     this.past = [];
+    /** @type {Moment[]} */
     this.future = [];
+    /** @type {string | null} */
     this.held = null;
   }
 
@@ -76,13 +88,13 @@ export class State {
 
   /** Show an act of the open preset. */
   act(act, settings) {
-    const { name, before } = this.preset;
-    this.step({ settings, preset: { name, act, before: before ?? this.settings } });
+    const before = this.preset?.before ?? this.settings;
+    this.step({ settings, preset: { name: this.preset?.name, act, before } });
   }
 
   /** Close the preset, and go back to the settings before its acts. */
   leave() {
-    const { before } = this.preset ?? {};
+    const before = this.preset?.before;
     if (before) this.step({ settings: before, preset: null });
     else this.now = { ...this.now, preset: null };
   }

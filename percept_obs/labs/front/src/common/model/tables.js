@@ -1,3 +1,4 @@
+// @ts-check
 // What an observer may know at the start, the middle and the end of every step, laid out once; see tracking.py.
 
 const PLANT_STEP = 0.005;

@@ -1,34 +1,37 @@
+// @ts-check
 // Time charts: lines of width 1, least and greatest value of each pixel column, so that 8,000 points cost as 800.
 
-import { describe, fit, picture, underlay } from "./canvas.js";
+import { Picture } from "./canvas.js";
+import { stroke } from "./image_frame.js";
 import { tickLabel } from "../model/scales.js";
 
 const LEFT = 46;
 const RIGHT = 12;
 const TOP = 20;
 const BOTTOM = 18;
+/** Length of a reset's mark, which hangs from the top. */
+const MARK = 5;
 
 /** A chart of values over time. */
-export class TimeChart {
-  constructor(name, label) {
-    this.name = name;
-    Object.assign(this, picture("chart", label));
-    this.drawn = [];
+export class TimeChart extends Picture {
+  constructor(label) {
+    super("chart", label);
+    /** @type {Place | null} */
+    this.place = null;
   }
 
   /**
-   * Draw lines {time, values, colour, dash}, a band, shaded spans of time, marks on the time axis, bars
-   * {begin, end, colour} at the top, and the cursor.
+   * Draw the parts of a chart over a span of time, with the cursor.
+   *
+   * @param {import("../../types.js").ChartParts & Record<string, any>} parts
    */
   draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
-    const { width, height } = fit(this);
+    const { width, height } = this.fit();
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
     this.place = place;
-    this.drawn = lines;
     const pen = this.context;
-    underlay(this, [title, scale, span, last, theme], (below) => this.axes(below, place, theme, title, last));
-    pen.lineWidth = 1;
+    this.underlay([title, scale, span, last, theme], (below) => this.axes(below, place, theme, title, last));
     pen.save();
     pen.beginPath();
     pen.rect(place.left, place.top - 1, place.width, place.height + 2);
@@ -37,9 +40,11 @@ export class TimeChart {
     if (level !== undefined) horizontal(pen, place, level, theme.muted, [2, 4]);
     if (band) fillBand(pen, place, band);
     for (const line of lines) strokeLine(pen, place, line);
-    for (const { time, colour } of marks) mark(pen, place, time, colour);
+    for (const { time, colour } of marks) vertical(pen, place, time, colour, MARK);
     drawBars(pen, place, bars);
+    pen.globalAlpha = 0.45;
     if (cursor !== null) vertical(pen, place, cursor, theme.ink);
+    pen.globalAlpha = 1;
     pen.restore();
   }
 
@@ -69,10 +74,6 @@ export class TimeChart {
     }
   }
 
-  describe(text) {
-    describe(this, text);
-  }
-
   /** The time under a pointer, or null beside the chart. */
   timeAt(clientX) {
     if (!this.place) return null;
@@ -84,7 +85,13 @@ export class TimeChart {
 /** Where times and values lie on a canvas. */
 class Place {
   constructor(span, scale, left, top, width, height) {
-    Object.assign(this, { span, scale, left, top, width, height, bottom: top + height });
+    this.span = span;
+    this.scale = scale;
+    this.left = left;
+    this.top = top;
+    this.width = width;
+    this.height = height;
+    this.bottom = top + height;
     this.perSecond = width / (span.high - span.low);
     const [low, high] = scale.log ? [Math.log10(scale.low), Math.log10(scale.high)] : [scale.low, scale.high];
     this.perUnit = height / (high - low);
@@ -171,26 +178,21 @@ function fillBand(pen, place, { time, low, high, colour }) {
   pen.globalAlpha = 1;
 }
 
-function horizontal(pen, place, value, colour, dash) {
-  const y = Math.round(place.y(value)) + 0.5;
-  pen.beginPath();
+function straight(pen, from, to, colour, dash = []) {
   pen.setLineDash(dash);
   pen.strokeStyle = colour;
-  pen.moveTo(place.left, y);
-  pen.lineTo(place.left + place.width, y);
-  pen.stroke();
+  stroke(pen, from, to);
 }
 
-function vertical(pen, place, time, colour) {
+function horizontal(pen, place, value, colour, dash) {
+  const y = Math.round(place.y(value)) + 0.5;
+  straight(pen, [place.left, y], [place.left + place.width, y], colour, dash);
+}
+
+/** A line at a time from the top down, or a tick of so many pixels. */
+function vertical(pen, place, time, colour, length = place.height) {
   const x = Math.round(place.x(time)) + 0.5;
-  pen.beginPath();
-  pen.setLineDash([]);
-  pen.strokeStyle = colour;
-  pen.globalAlpha = 0.45;
-  pen.moveTo(x, place.top);
-  pen.lineTo(x, place.bottom);
-  pen.stroke();
-  pen.globalAlpha = 1;
+  straight(pen, [x, place.top], [x, place.top + length], colour);
 }
 
 /** A time in which something is missing; never thinner than a pixel. */
@@ -209,15 +211,4 @@ function drawBars(pen, place, bars) {
     pen.fillStyle = colour;
     pen.fillRect(place.x(begin), place.top + 1 + 5 * rows.indexOf(colour), Math.max(1, place.x(end) - place.x(begin)), 3);
   }
-}
-
-/** A reset: a short tick that hangs from the top. */
-function mark(pen, place, time, colour) {
-  const x = Math.round(place.x(time)) + 0.5;
-  pen.beginPath();
-  pen.setLineDash([]);
-  pen.strokeStyle = colour;
-  pen.moveTo(x, place.top);
-  pen.lineTo(x, place.top + 5);
-  pen.stroke();
 }

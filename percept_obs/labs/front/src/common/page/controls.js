@@ -1,3 +1,4 @@
+// @ts-check
 // Controls that a keyboard, a screen reader and a hand can use; each knows how to show new settings.
 
 let count = 0;
@@ -24,7 +25,12 @@ function same(one, other) {
   return Math.abs(one - other) <= 1e-9 * Math.abs(other);
 }
 
-/** Whether a number lies within the limits that a schema sets, and is allowed besides. */
+/**
+ * Whether a number lies within the limits that a schema sets, and is allowed besides.
+ *
+ * @param {number} value
+ * @param {Partial<import("../../types.js").SettingSchema> & {allowed?: (value: number) => boolean}} limits
+ */
 function fits(value, { least = -Infinity, most = Infinity, above = -Infinity, whole, nonzero, allowed }) {
   if (!Number.isFinite(value) || value < least || value > most || value <= above) return false;
   return !(whole && !Number.isInteger(value)) && !(nonzero && value === 0) && (!allowed || allowed(value));
@@ -81,7 +87,7 @@ export function slider({ name, label, hint, letter, low, high, step, log, unit, 
 }
 
 /** A choice of one among named ones, of which some may be impossible. */
-export function select({ name, label, choices, possible = () => true, get, set }) {
+export function select({ name, label, choices, possible = (_value) => true, get, set }) {
   const id = `percept-${++count}`;
   const options = Object.entries(choices).map(([value, text]) => element("option", { value }, text));
   const box = element("select", { id, "data-control": name }, ...options);
@@ -95,7 +101,7 @@ export function select({ name, label, choices, possible = () => true, get, set }
 }
 
 /** A choice of one among a few, all in sight. */
-export function radios({ name, label, choices, possible = () => true, get, set }) {
+export function radios({ name, label, choices, possible = (_value) => true, get, set }) {
   const group = `percept-${++count}`;
   const parts = Object.keys(choices).map((value) => {
     const input = element("input", { type: "radio", name: group, value, "data-control": `${name} ${value}` });
@@ -114,10 +120,10 @@ export function radios({ name, label, choices, possible = () => true, get, set }
 }
 
 /** A box to tick. */
-export function checkbox({ name, label, swatch, get, set }) {
+export function checkbox({ name, label, swatch = /** @type {Node | string} */ (""), get, set }) {
   const input = element("input", { type: "checkbox", "data-control": name });
   input.addEventListener("change", () => set(input.checked));
-  const row = element("label", { class: "choice" }, input, ...(swatch ? [swatch] : []), element("span", {}, label));
+  const row = element("label", { class: "choice" }, input, swatch, element("span", {}, label));
   return { row, show: () => (input.checked = get()), parts: [input], name };
 }
 

@@ -1,3 +1,4 @@
+// @ts-check
 // What the panels of all labs are made of: groups of controls that read from a lab's settings and change them.
 
 import { schemaAt } from "../model/schema.js";
@@ -134,7 +135,7 @@ export class Fieldsets {
   }
 
   /** Sliders for each number of the list at a place, with letters in the formulas. */
-  litList(place, letters, moreOf = () => ({}), owner) {
+  litList(place, letters, moreOf = (_k) => ({}), owner = "motion") {
     return letters.map((letter, k) => this.lit(this.number(`${place}.${k}`, moreOf(k)), letter, owner));
   }
 }

@@ -1,3 +1,4 @@
+// @ts-check
 // Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
 
 import { element } from "./controls.js";
@@ -8,6 +9,7 @@ export class FormulaSheet {
   constructor() {
     this.body = element("div", { class: "formulas" });
     this.shownFor = "";
+    /** @type {{node: Element, owner: string, letter: string}[]} */
     this.numbers = [];
   }
 

@@ -1,3 +1,4 @@
+// @ts-check
 // A handle on a picture: dragged with mouse, touch or arrow keys.
 
 import { element } from "./controls.js";
@@ -9,11 +10,19 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 
 /** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
 export class Handle {
-  constructor({ name, label, className, text, onMove, onRest, onKey }) {
-    Object.assign(this, { onMove, onRest, onKey, at: null, grip: null, keyed: false, scale: 1 });
+  constructor({ name, label, className, text = "", onMove, onRest, onKey = (_event) => false }) {
+    this.onMove = onMove;
+    this.onRest = onRest;
+    this.onKey = onKey;
+    /** @type {number[] | null} */
+    this.at = null;
+    /** @type {{id: number, x: number, y: number, from: number[]} | null} */
+    this.grip = null;
+    this.keyed = false;
+    this.scale = 1;
     this.node = element("div", { class: `handle ${className}`, tabindex: 0, role: "slider", "aria-label": label });
     this.node.dataset.control = name;
-    if (text) this.node.append(text);
+    this.node.append(text);
     this.listen();
   }
 
@@ -52,7 +61,7 @@ export class Handle {
         // Keys may come faster than pictures, and each begins where the one before it has led.
         this.at = [this.at[0] + step[0] * size, this.at[1] + step[1] * size];
         this.onMove(this.at);
-      } else if (!this.onKey?.(event)) return;
+      } else if (!this.onKey(event)) return;
       this.keyed = true;
       event.preventDefault();
     });

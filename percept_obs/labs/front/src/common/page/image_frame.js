@@ -1,6 +1,6 @@
+// @ts-check
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
-import { fit } from "./canvas.js";
 import { linearScale, tickLabel } from "../model/scales.js";
 
 const EDGE = 34;
@@ -21,64 +21,88 @@ export function widen(range, other) {
 
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
 export function placed(target, { centre, half }) {
-  const { width, height } = fit(target);
+  const { width, height } = target.fit();
   const side = Math.min(width, height) - 2 * EDGE;
-  const scale = side / (2 * half);
-  const far = 4 * Math.max(width, height);
+  const box = { left: width / 2 - side / 2, top: height / 2 - side / 2, side };
+  return frameOf(box, side / (2 * half), centre, [width / 2, height / 2], 4 * Math.max(width, height));
+}
+
+/** A frame that puts `centre` at a place on the canvas, so many pixels a unit, and nothing further off than `far`. */
+export function frameOf(box, scale, centre, [left, top], far) {
   return {
-    scale,
-    far,
-    centre,
-    left: width / 2,
-    top: height / 2,
-    box: { left: width / 2 - side / 2, top: height / 2 - side / 2, side },
-    x: (y1) => width / 2 + clamp((y1 - centre[0]) * scale, far),
-    y: (y2) => height / 2 - clamp((y2 - centre[1]) * scale, far),
+    ...{ box, scale, centre, left, top, far },
+    x: (y1) => left + clamp((y1 - centre[0]) * scale, far),
+    y: (y2) => top - clamp((y2 - centre[1]) * scale, far),
   };
 }
 
-/** Draw only inside the square. */
-export function clipTo(pen, { left, top, side }) {
+/** Draw only inside the box. */
+export function clipTo(pen, { left, top, side, width = side, height = side }) {
   pen.beginPath();
-  pen.rect(left, top, side, side);
+  pen.rect(left, top, width, height);
   pen.clip();
 }
 
-export function drawAxes(pen, { box, x, y }, ticks, theme) {
-  const { left, top, side } = box;
+/** A box with round numbers at its left and below it, and the names of both axes. */
+export function drawAxes(pen, { box, x, y }, ticks, theme, names = ["y1", "y2"]) {
+  const { left, top, side, width = side, height = side } = box;
+  const [right, bottom] = [left + width, top + height];
   pen.font = theme.font;
   pen.setLineDash([]);
   pen.strokeStyle = theme.grid;
   pen.fillStyle = theme.muted;
   pen.textAlign = "center";
   pen.textBaseline = "top";
-  for (const tick of ticks[0]) {
-    const at = Math.round(x(tick)) + 0.5;
-    stroke(pen, [at, top], [at, top + side]);
-    pen.fillText(tickLabel(tick, false), at, top + side + 6);
+  for (const [tick, at] of within(ticks[0], x, left, right)) {
+    stroke(pen, [at, top], [at, bottom]);
+    pen.fillText(tickLabel(tick, false), at, bottom + 6);
   }
   pen.textAlign = "right";
   pen.textBaseline = "middle";
-  for (const tick of ticks[1]) {
-    const at = Math.round(y(tick)) + 0.5;
-    stroke(pen, [left, at], [left + side, at]);
+  for (const [tick, at] of within(ticks[1], y, top, bottom)) {
+    stroke(pen, [left, at], [right, at]);
     pen.fillText(tickLabel(tick, false), left - 6, at);
   }
   pen.strokeStyle = theme.line;
-  pen.strokeRect(left + 0.5, top + 0.5, side, side);
+  pen.strokeRect(left + 0.5, top + 0.5, width, height);
   pen.fillStyle = theme.ink;
   pen.textBaseline = "alphabetic";
   pen.textAlign = "left";
-  pen.fillText("y2", left - 2, top - 8);
+  pen.fillText(names[1], left - 2, top - 8);
   pen.textAlign = "right";
-  pen.fillText("y1", left + side, top + side + 30);
+  pen.fillText(names[0], right, bottom + 30);
 }
 
-function stroke(pen, from, to) {
+/** Ticks with their places, as far as these lie inside. */
+function within(ticks, place, low, high) {
+  const placed = ticks.map((tick) => [tick, Math.round(place(tick)) + 0.5]);
+  return placed.filter(([, at]) => at >= low && at <= high + 1);
+}
+
+/** Draw a line between two places on a canvas. */
+export function stroke(pen, from, to) {
   pen.beginPath();
   pen.moveTo(...from);
   pen.lineTo(...to);
   pen.stroke();
+}
+
+/** A circle, full or open, where there is a place for it. */
+export function dot(pen, x, y, radius, colour, full = true) {
+  if (Number.isNaN(x + y)) return;
+  pen.setLineDash([]);
+  pen.fillStyle = pen.strokeStyle = colour;
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  if (full) pen.fill();
+  else pen.stroke();
+}
+
+/** The start of a path is an open circle, the end a full square. */
+export function drawEnds(pen, rows, width, { x, y }, theme) {
+  const end = rows.length - width;
+  dot(pen, x(rows[0]), y(rows[1]), 4, theme.ink, false);
+  pen.fillRect(x(rows[end]) - 3.5, y(rows[end + 1]) - 3.5, 7, 7);
 }
 
 /** One path of rows of numbers, whose coordinates y1, y2 stand at `first`, with gaps where they are none. */

@@ -1,16 +1,21 @@
+// @ts-check
 // The image plane: the point's path, the estimates, and a handle.
 
 import { spread } from "../model/scales.js";
 import { sampleAt } from "../model/tables.js";
-import { describe, picture, underlay } from "./canvas.js";
+import { Picture } from "./canvas.js";
 import { Handle } from "./handle.js";
-import { clipTo, drawAxes, drawPath, placed, squareAround, widen } from "./image_frame.js";
+import { clipTo, dot, drawAxes, drawEnds, drawPath, placed, squareAround, widen } from "./image_frame.js";
 import { DASHES, KEPT, SOLID } from "./lines.js";
 
 /** The picture, and the handle that is dragged with mouse, touch or arrow keys. */
-export class ImagePlane {
+export class ImagePlane extends Picture {
   constructor({ name, label, tag, placeOf, inWords, onMove, onRest }) {
-    Object.assign(this, picture("image-plane", "Image plane"), { placeOf, inWords });
+    super("image-plane", "Image plane");
+    this.placeOf = placeOf;
+    this.inWords = inWords;
+    /** @type {ReturnType<typeof squareAround> | null} */
+    this.square = null;
     const whole = `${label}: drag it, or use the arrow keys`;
     this.handle = new Handle({ name, className: "diamond", label: whole, onMove, onRest });
     this.handle.node.dataset.tag = tag;
@@ -20,11 +25,11 @@ export class ImagePlane {
   /** Draw what is shown; while the hand holds the handle the frame stays where it is. */
   draw(shown, ghost, cursor, theme) {
     const place = this.placeOf(shown);
-    if (!this.handle.grip || !this.square) this.square = squareOf(shown, ghost, place);
-    const frame = placed(this, this.square);
+    const square = (this.handle.grip && this.square) || squareOf(shown, ghost, place);
+    this.square = square;
+    const frame = placed(this, square);
     const pen = this.context;
-    underlay(this, [this.square, theme], (below) => drawAxes(below, frame, this.square.ticks, theme));
-    pen.lineWidth = 1;
+    this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();
     clipTo(pen, frame.box);
     if (shown.circle) drawCircle(pen, shown.circle, frame, theme);
@@ -32,7 +37,7 @@ export class ImagePlane {
     ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
     if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
-    drawEnds(pen, shown, frame, theme);
+    if (shown.truth?.length) drawEnds(pen, shown.truth, shown.width, frame, theme);
     if (cursor !== null) drawAt(pen, shown, cursor, frame, theme);
     pen.restore();
     this.handle.stand(place, frame);
@@ -40,18 +45,18 @@ export class ImagePlane {
 
   /** Say what the picture shows, and where the handle is. */
   describe(shown) {
-    describe(this, this.inWords(shown));
+    this.tell(this.inWords(shown));
     this.handle.describe();
   }
 }
 
 /** A square with round numbers that holds the path and the handle, unless that is far away. */
 function squareOf(shown, ghost, place) {
-  const source = shown.truth?.length ? [shown.truth, shown.width] : [shown.outputs, 2];
-  const bounds = [0, 1].map((c) => bound(source, c) ?? [-1, 1]);
+  const seen = (c) => (shown.truth?.length ? bound(shown.truth, shown.width, c) : bound(shown.outputs, shown.sampled, c));
+  const bounds = [0, 1].map((c) => seen(c) ?? [-1, 1]);
   for (const run of ghost?.runs ?? []) {
     bounds.forEach((b, c) => {
-      const other = bound([run.estimate, shown.width], c);
+      const other = bound(run.estimate, shown.width, c);
       if (other && other[1] - other[0] < 3 * (b[1] - b[0])) widen(b, other);
     });
   }
@@ -61,7 +66,7 @@ function squareOf(shown, ghost, place) {
   return squareAround(bounds);
 }
 
-function bound([rows, width], c) {
+function bound(rows, width, c) {
   return spread(rows, { lowPart: 0.005, highPart: 0.995, first: c, width });
 }
 
@@ -80,28 +85,8 @@ function drawCircle(pen, [y1, y2, radius], { x, y, scale }, theme) {
   pen.stroke();
 }
 
-/** The start is an open circle, the end a full square. */
-function drawEnds(pen, { truth, width }, { x, y }, theme) {
-  if (!truth?.length) return;
-  const end = truth.length - width;
-  pen.setLineDash([]);
-  pen.strokeStyle = pen.fillStyle = theme.ink;
-  pen.beginPath();
-  pen.arc(x(truth[0]), y(truth[1]), 4, 0, 2 * Math.PI);
-  pen.stroke();
-  pen.fillRect(x(truth[end]) - 3.5, y(truth[end + 1]) - 3.5, 7, 7);
-}
-
 function drawAt(pen, shown, cursor, { x, y }, theme) {
-  const k = sampleAt(shown.time, cursor);
-  const dot = (rows, colour) => {
-    const [a, b] = [x(rows[k * shown.width]), y(rows[k * shown.width + 1])];
-    if (Number.isNaN(a) || Number.isNaN(b)) return;
-    pen.beginPath();
-    pen.arc(a, b, 3.5, 0, 2 * Math.PI);
-    pen.fillStyle = colour;
-    pen.fill();
-  };
-  shown.runs.forEach((run) => dot(run.estimate, theme.lines[run.order]));
-  if (shown.truth) dot(shown.truth, theme.ink);
+  const at = shown.width * sampleAt(shown.time, cursor);
+  for (const { estimate, order } of shown.runs) dot(pen, x(estimate[at]), y(estimate[at + 1]), 3.5, theme.lines[order]);
+  if (shown.truth) dot(pen, x(shown.truth[at]), y(shown.truth[at + 1]), 3.5, theme.ink);
 }

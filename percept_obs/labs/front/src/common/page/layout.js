@@ -1,3 +1,4 @@
+// @ts-check
 // Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
 
 import { button, element } from "./controls.js";

@@ -1,3 +1,4 @@
+// @ts-check
 // The page's line to Python: state goes out when the hand rests, at most one message at a time, the latest wins.
 
 const PATIENCE = 4000;
@@ -6,6 +7,7 @@ const PATIENCE = 4000;
 export class Link {
   constructor(widget, { onSettings, onAnalysis, onError, onSilence, onPart, onUnprinted }) {
     this.widget = widget;
+    /** @type {{settings: any, serial: number} | null} */
     this.sent = null;
     this.waitingFor = null;
     this.onSilence = onSilence;
@@ -53,7 +55,7 @@ export class Link {
 
   /** An answer is about the settings that were sent with its serial; one to others is too late. */
   heard(analysis, onAnalysis) {
-    if (analysis.of !== this.sent?.serial) return;
+    if (!this.sent || analysis.of !== this.sent.serial) return;
     this.waitingFor = null;
     clearTimeout(this.timer);
     this.onSilence(undefined);

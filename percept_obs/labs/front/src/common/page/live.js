@@ -1,35 +1,68 @@
+// @ts-check
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
-import { same, settingsAfter } from "../model/settings.js";
-import { State } from "../model/state.js";
+import { Results } from "../model/results.js";
 import { linearScale } from "../model/scales.js";
-import { readingAt, summaryOf, verdict } from "../model/words.js";
+import { same } from "../model/settings.js";
+import { State } from "../model/state.js";
+import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { chartInWords } from "./chart_parts.js";
+import { TimeChart } from "./charts.js";
+import { build } from "./layout.js";
 import { Link } from "./link.js";
+
+/** @typedef {import("../../types.js").Plane} Plane */
+/** @typedef {import("../../types.js").ChartParts} ChartParts */
 
 const REST = 150;
 const BETWEEN_WORDS = 250;
 
 /**
- * A lab that follows the hand and tells Python when the hand rests.  A lab of its own gives it `kernels`, `results`,
- * `planes`, `charts`, `formulas` and `panel` before follow(), and says in methods of its own:
- *   chartOf(name)   the parts of a time chart
- *   reasons()       why it happened, in sentences
- *   copy()          the Python text of what is shown
+ * A lab that follows the hand and tells Python when the hand rests.  A lab of its own gives it `planes`, `formulas` and
+ * `panel` before open(), and says what is its own in these parts:
+ *   schema                      what settings may be
+ *   Kernels, Engine             functions of settings, and what makes results of them
+ *   presets, settingsOf         points worth seeing, and the settings of an act
+ *   labels, chartOf             labels of the time charts by their names, and the parts of one
+ *   reasons, readingAt          why it happened, and values at a time, in words
+ *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
 export class Live {
-  constructor(widget, schema) {
+  constructor(widget, { Kernels, Engine, ...parts }) {
     this.widget = widget;
     this.model = widget.get("model");
-    this.schema = schema;
+    this.parts = parts;
+    this.schema = parts.schema;
+    this.kernels = new Kernels(this.model);
+    this.results = new Results(this.kernels, () => new Engine(this.model));
     this.state = new State(structuredClone(widget.get("settings")));
+    /** @type {Plane[]} */
+    this.planes = [];
+    /** @type {Record<string, TimeChart>} */
+    this.charts = {};
+    /** @type {any} */
+    this.panel = this.formulas = this.view = null;
+    /** @type {any} the result that is shown, and that of the kept run */
+    this.shown = this.ghost = null;
+    /** @type {Record<string, ChartParts>} */
+    this.drawn = {};
+    /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
+    this.answer = null;
+    /** @type {Link | null} */
+    this.link = null;
+    /** @type {ReturnType<typeof themeOf> | null} */
+    this.theme = null;
     this.width = 800;
     this.serial = 0;
     this.pictures = 0;
     this.spoken = 0;
-    this.answer = null;
-    this.drawn = {};
+    this.frame = 0;
+    this.pending = this.closed = false;
+    /** @type {any} the timer that runs while the hand may go on */
+    this.resting = null;
+    /** @type {(() => void)[]} */
+    this.endings = [];
   }
 
   get settings() {
@@ -38,6 +71,13 @@ export class Live {
 
   get figures() {
     return [...this.planes, ...Object.values(this.charts)];
+  }
+
+  /** Put the lab's page inside an element. */
+  open(place) {
+    const { labels, presets } = this.parts;
+    this.charts = Object.fromEntries(Object.entries(labels).map(([name, label]) => [name, new TimeChart(label)]));
+    this.follow(build(this, place, presets));
   }
 
   /** Begin to follow, once the page is built: the hand, the page's size and theme, Python. */
@@ -58,7 +98,7 @@ export class Live {
   }
 
   observeSurroundings() {
-    this.sized = new ResizeObserver((entries) => {
+    const sized = new ResizeObserver((entries) => {
       for (const { target, contentRect } of entries) {
         const picture = this.figures.find(({ figure }) => figure === target);
         if (picture) picture.size = { width: contentRect.width, height: contentRect.height };
@@ -66,13 +106,19 @@ export class Live {
       }
       this.schedule();
     });
-    for (const { figure } of this.figures) this.sized.observe(figure);
-    this.sized.observe(this.view.root);
-    this.themed = new MutationObserver(() => this.retheme());
-    this.themed.observe(document.body, { attributes: true, attributeFilter: ["data-jp-theme-light", "class"] });
-    this.scheme = window.matchMedia("(prefers-color-scheme: dark)");
-    this.onScheme = () => this.retheme();
-    this.scheme.addEventListener("change", this.onScheme);
+    for (const { figure } of this.figures) sized.observe(figure);
+    sized.observe(this.view.root);
+    const scheme = window.matchMedia("(prefers-color-scheme: dark)");
+    const retheme = () => {
+      const light = document.body.dataset.jpThemeLight;
+      this.view.root.classList.toggle("dark", light ? light === "false" : scheme.matches);
+      this.retheme();
+    };
+    retheme();
+    const themed = new MutationObserver(retheme);
+    themed.observe(document.body, { attributes: true, attributeFilter: ["data-jp-theme-light", "class"] });
+    scheme.addEventListener("change", retheme);
+    this.endings = [() => sized.disconnect(), () => themed.disconnect(), () => scheme.removeEventListener("change", retheme)];
   }
 
   retheme() {
@@ -84,10 +130,8 @@ export class Live {
     this.closed = true;
     cancelAnimationFrame(this.frame);
     clearTimeout(this.resting);
-    this.link.close();
-    this.sized.disconnect();
-    this.themed.disconnect();
-    this.scheme.removeEventListener("change", this.onScheme);
+    this.link?.close();
+    for (const end of this.endings) end();
   }
 
   // What the hand does.
@@ -126,7 +170,7 @@ export class Live {
   }
 
   act(act, number) {
-    this.state.act(number, this.afterAct(act));
+    this.state.act(number, this.parts.settingsOf(act, this.model.standard));
     this.touched(true);
   }
 
@@ -160,11 +204,6 @@ export class Live {
   }
 
   // What is there to show it with.
-
-  /** The settings that a preset's act shows. */
-  afterAct(act) {
-    return settingsAfter(act, this.model.standard);
-  }
 
   /** What is shown, and what is kept to compare with. */
   wanted(settings) {
@@ -222,7 +261,7 @@ export class Live {
     if (this.pending || this.shown?.settings !== settings) this.paint();
     if (this.shown?.settings !== settings) return;
     this.speakNow();
-    this.link.send(settings, this.summary(++this.serial));
+    this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
     this.describe();
     this.view.rested();
   }
@@ -276,13 +315,15 @@ export class Live {
 
   draw() {
     const { shown, ghost, theme } = this;
+    const { chartOf } = this.parts;
     if (shown.problem || shown.refusal) this.state.cursor = null;
     const { cursor } = this.state;
     for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
     this.view.answered(this.answered());
     const chosen = this.chosen();
     for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
-    this.drawn = Object.fromEntries(chosen.map((name) => [name, this.chartOf(name)]));
+    const more = this.besides();
+    this.drawn = Object.fromEntries(chosen.map((name) => [name, chartOf(name, shown, ghost, theme, more)]));
     if (!chosen.length) return;
     // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
     const recorded = shown.settings.scenario in (this.model.recordings ?? {});
@@ -304,12 +345,13 @@ export class Live {
   }
 
   speak() {
-    const { shown } = this;
+    const { shown, model, parts } = this;
     const { cursor } = this.state;
+    const unread = cursor === null || shown.problem || shown.refusal;
     this.view.words({
       verdicts: this.verdicts(),
-      reasons: this.reasons(),
-      reading: cursor === null || shown.problem ? "" : this.readingAt(cursor),
+      reasons: parts.reasons(shown, model),
+      reading: unread ? "" : parts.readingAt(shown, cursor),
       problem: shown.problem ?? (shown.refusal || undefined),
       legend: [...this.legend(), ...(shown.settings.kept ? [["kept", "kept run"]] : [])],
     });
@@ -321,8 +363,13 @@ export class Live {
     return shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) }));
   }
 
-  readingAt(cursor) {
-    return readingAt(this.shown, cursor);
+  /** What else the time charts show. */
+  besides() {
+    return {};
+  }
+
+  copy() {
+    return this.parts.pythonOf(this.shown, this.model);
   }
 
   /** Lines with their names. */
@@ -333,12 +380,8 @@ export class Live {
 
   describe() {
     for (const plane of this.planes) plane.describe(this.shown);
-    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].describe(chartInWords(chart));
+    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].tell(chartInWords(chart));
     this.formulas.show(this.shown.settings);
-  }
-
-  summary(serial) {
-    return summaryOf(this.shown, serial, this.model);
   }
 
   // What Python adds.

@@ -1,23 +1,27 @@
+// @ts-check
 // The equations of a system and of the observers that are chosen for it.
 
 import { switchOf } from "../model/settings.js";
 import { FormulaSheet } from "./formulas.js";
 
 /**
- * The panel of equations. A lab of its own says in methods of its own:
- *   systemOf(settings)   {title, lines} of the system's equations, as MathML
- *   numbersOf(settings)  the present numbers of its letters
+ * The panel of equations.  A lab of its own gives two functions:
+ *   systemOf(settings, model)  {title, lines} of the system's equations, as MathML
+ *   numbersOf(settings)        the present numbers of its letters
  */
 export class ObserverFormulas extends FormulaSheet {
-  constructor(model) {
+  constructor(model, systemOf, numbersOf) {
     super();
+    this.shownFor = "";
     this.model = model;
+    this.systemOf = systemOf;
+    this.numbersOf = numbersOf;
   }
 
   /** Show the equations of these settings, with their numbers. */
   show(settings) {
     const chosen = settings.observers.map((name) => [name, this.linesOf(settings, name)]);
-    const system = this.systemOf(settings);
+    const system = this.systemOf(settings, this.model);
     const key = JSON.stringify([system, chosen]);
     if (key !== this.shownFor) {
       this.shownFor = key;

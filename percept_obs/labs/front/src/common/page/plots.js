@@ -1,3 +1,4 @@
+// @ts-check
 // What the charts of observers show: truth and estimates, resets, and a range around them.
 
 import { line, rangeAround } from "./chart_parts.js";

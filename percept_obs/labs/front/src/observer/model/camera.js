@@ -1,3 +1,4 @@
+// @ts-check
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";

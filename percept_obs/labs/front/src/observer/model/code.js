@@ -1,3 +1,4 @@
+// @ts-check
 // The few lines of Python that make the same run.
 
 import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";

@@ -1,3 +1,4 @@
+// @ts-check
 // The whole of a run: point, camera, observers. The same numbers as record() and track() in Python.
 
 import { columnOf } from "../../common/model/derived.js";
@@ -18,7 +19,11 @@ export class Engine extends Runner {
     this.camera = new Camera(model, this.memory);
   }
 
-  /** What is shown of settings, with the functions that Kernels.of() gave for them; whole, or as far as is drawn. */
+  /**
+   * What is shown of settings, with the functions that Kernels.of() gave for them; whole, or as far as is drawn.
+   *
+   * @returns {import("../../types.js").ObserverResult}
+   */
   run(settings, functions, whole = true) {
     const { coordinates: names } = this.model.surfaces[settings.surface];
     const structure = this.model.structures[keyOf(settings)];

@@ -1,3 +1,4 @@
+// @ts-check
 // Why it happened, and the image plane in words.
 
 import { readable } from "../../common/model/scales.js";
@@ -41,11 +42,9 @@ export function reasons(shown) {
 }
 
 function leastOf({ time, smallest }) {
-  let least = null;
-  smallest.forEach((value, k) => {
-    if (!least || value < least.value) least = { value: Math.max(value, 0), time: time[k] };
-  });
-  return least;
+  if (!smallest.length) return null;
+  const at = smallest.reduce((best, value, k) => (value < smallest[best] ? k : best), 0);
+  return { value: Math.max(smallest[at], 0), time: time[at] };
 }
 
 function nearestToFoe({ foe, truth, width, time }) {

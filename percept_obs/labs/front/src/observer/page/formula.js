@@ -1,19 +1,13 @@
-// The observer lab's equations.
+// @ts-check
+// The observer lab's equations: of the canonical form, with the numbers of their letters.
 
-import { ObserverFormulas } from "../../common/page/observer_formulas.js";
 import { keyOf } from "../model/kernels.js";
 
-/** Equations of the canonical form and of the observers. */
-export class Formulas extends ObserverFormulas {
-  systemOf(settings) {
-    return { title: "What is measured and what is hidden", lines: this.model.structures[keyOf(settings)].formulas };
-  }
+export function systemOf(settings, model) {
+  return { title: "What is measured and what is hidden", lines: model.structures[keyOf(settings)].formulas };
+}
 
-  numbersOf({ A, b, normal }) {
-    return Object.fromEntries([
-      ...A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])),
-      ...b.map((value, i) => [`b${i + 1}`, value]),
-      ...normal.map((value, i) => [`n${i + 1}`, value]),
-    ]);
-  }
+export function numbersOf({ A, b, normal }) {
+  const named = Object.entries({ a1: A[0], a2: A[1], a3: A[2], b, n: normal });
+  return Object.fromEntries(named.flatMap(([letter, values]) => values.map((value, i) => [`${letter}${i + 1}`, value])));
 }

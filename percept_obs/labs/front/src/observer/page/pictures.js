@@ -1,3 +1,4 @@
+// @ts-check
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
 import { columnOf, distancesOf } from "../../common/model/derived.js";

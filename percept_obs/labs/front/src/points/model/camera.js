@@ -1,3 +1,4 @@
+// @ts-check
 // Points in motion and the camera that sees them: the same numbers as record_points() in Python.
 
 import { clockOf, errorOf } from "../../common/model/camera.js";

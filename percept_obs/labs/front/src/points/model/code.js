@@ -1,3 +1,4 @@
+// @ts-check
 // The few lines of Python that make the same run.
 
 import { imports, list, NOISES } from "../../common/model/code.js";

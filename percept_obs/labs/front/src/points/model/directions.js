@@ -1,3 +1,4 @@
+// @ts-check
 // Directions of a state in words, as points/directions.py has them.
 
 import { short } from "../../common/model/scales.js";

@@ -1,3 +1,4 @@
+// @ts-check
 // The whole of a run: points in motion, camera, observer, and what is read off them.
 
 import { Memory } from "../../common/model/memory.js";
@@ -17,7 +18,11 @@ export class PointsEngine {
     this.observer = new Observer(model, this.memory, this.camera);
   }
 
-  /** What is shown of settings, with the functions that PointsKernels.of() gave; whole, or as far as is drawn. */
+  /**
+   * What is shown of settings, with the functions that PointsKernels.of() gave; whole, or as far as is drawn.
+   *
+   * @returns {import("../../types.js").PointsResult}
+   */
   run(settings, functions, whole = true) {
     const scene = this.scene(settings, functions);
     const { points, n, layout } = scene;

@@ -1,3 +1,4 @@
+// @ts-check
 // How a state moves: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
 
 /** Numbers of a flow at a time: Phi and beside it q, row by row. */
@@ -5,7 +6,7 @@ export const ENTRIES = 12;
 
 /** Vectors of a state that move alike: where the coefficients of each kind stand in [A v], and each vector's kind. */
 export function kindsOf({ rows, columns, which }, n) {
-  const entries = Array.from({ length: n / 3 }, () => []);
+  const entries = Array.from({ length: n / 3 }, () => /** @type {number[][]} */ ([]));
   rows.forEach((row, e) => {
     const column = columns[e] === n ? 3 : columns[e] % 3;
     entries[(row / 3) | 0].push([4 * (row % 3) + column, which[e]]);

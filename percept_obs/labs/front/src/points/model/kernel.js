@@ -1,3 +1,4 @@
+// @ts-check
 // The loop over points and steps, as in points/kernel.py: the same layouts, the same numbers.
 
 const LARGEST_SQUARED_STATE = 1e300;

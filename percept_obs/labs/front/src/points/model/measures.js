@@ -1,3 +1,4 @@
+// @ts-check
 // What is read off a run of many points: the error's size, its decay, when points were not seen.
 
 export const TOLERANCE = 0.05;
@@ -52,13 +53,13 @@ export function decayRate(time, size) {
 
 /** Spans of samples from begin to end in which a point is not seen. */
 export function spansOf(time, outputs, points, point) {
+  /** @type {{first: number, last: number}[]} */
   const spans = [];
-  let open = null;
   for (let k = 0; k < time.length; k++) {
-    const missing = Number.isNaN(outputs[2 * (k * points + point)]);
-    if (missing && !open) spans.push((open = { first: k, last: k }));
-    if (missing) open.last = k;
-    else open = null;
+    if (!Number.isNaN(outputs[2 * (k * points + point)])) continue;
+    const open = spans.at(-1);
+    if (open && open.last === k - 1) open.last = k;
+    else spans.push({ first: k, last: k });
   }
   return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: time[Math.min(last + 1, time.length - 1)] }));
 }

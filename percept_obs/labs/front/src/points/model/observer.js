@@ -1,3 +1,4 @@
+// @ts-check
 // The observer of many points: the same numbers as track_points() in Python.
 
 import { halves, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
@@ -8,7 +9,9 @@ import { product, pseudoInverse } from "./symmetric.js";
 /** Follows what a camera has recorded. */
 export class Observer {
   constructor(model, memory, camera) {
-    Object.assign(this, { model, memory, camera });
+    this.model = model;
+    this.memory = memory;
+    this.camera = camera;
   }
 
   /** Let the observer follow. */

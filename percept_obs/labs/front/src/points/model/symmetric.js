@@ -1,3 +1,4 @@
+// @ts-check
 // Symmetric matrices, row by row in flat arrays: their extreme eigenvalues, all of them with vectors, least squares.
 
 const PRECISION = 1e-13;
@@ -115,8 +116,9 @@ export function pseudoInverse(R, m, n) {
   }
   const found = eigen(square, m);
   const inverse = new Float64Array(n * m);
+  const limit = NEGLIGIBLE * found[m - 1].value;
   for (const { value, vector } of found) {
-    if (value <= NEGLIGIBLE * found.at(-1).value) continue;
+    if (value <= limit) continue;
     for (let i = 0; i < n; i++) {
       let along = 0;
       for (let k = 0; k < m; k++) along += R[k * n + i] * vector[k];

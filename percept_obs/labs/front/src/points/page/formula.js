@@ -1,3 +1,4 @@
+// @ts-check
 // The equations of the observer and of the motion, with the numbers that sliders set.
 
 import { FormulaSheet } from "../../common/page/formulas.js";

@@ -1,10 +1,11 @@
+// @ts-check
 // The image plane of many points: their paths, those of their estimates, and each point at time 0 as a handle.
 
 import { readable, spread } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
-import { describe, picture, underlay } from "../../common/page/canvas.js";
+import { Picture } from "../../common/page/canvas.js";
 import { Handle } from "../../common/page/handle.js";
-import { clipTo, drawAxes, drawPath, placed, squareAround, widen } from "../../common/page/image_frame.js";
+import { clipTo, dot, drawAxes, drawPath, placed, squareAround, widen } from "../../common/page/image_frame.js";
 import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
 import { imagePlaneInWords } from "../model/text.js";
 
@@ -16,9 +17,11 @@ const FAINT = 0.35;
 const HIDDEN = [1, 4];
 
 /** The picture, with a handle for each point that there may be. */
-export class ImagePlane {
+export class ImagePlane extends Picture {
   constructor(lab, most) {
-    Object.assign(this, picture("image-plane", "Image plane"));
+    super("image-plane", "Image plane");
+    /** @type {ReturnType<typeof squareAround> | null} */
+    this.square = null;
     this.handles = Array.from({ length: most }, (_, k) => this.handle(lab, k));
     this.figure.append(...this.handles.map(({ node }) => node));
   }
@@ -35,18 +38,18 @@ export class ImagePlane {
         const step = FARTHER.includes(key) ? DEPTH_STEP : NEARER.includes(key) ? -DEPTH_STEP : 0;
         if (key === "Delete") lab.removePoint(k);
         else if (step) lab.moveDepth(k, Number((lab.depthOf(k) + step).toFixed(6)));
-        return step || key === "Delete";
+        return step !== 0 || key === "Delete";
       },
     });
   }
 
   /** Draw what is shown; while the hand holds a point the frame stays where it is. */
   draw(shown, ghost, cursor, theme) {
-    if (!this.handles.some(({ grip }) => grip) || !this.square) this.square = squareOf(shown);
-    const frame = placed(this, this.square);
+    const square = (this.handles.some(({ grip }) => grip) && this.square) || squareOf(shown);
+    this.square = square;
+    const frame = placed(this, square);
     const pen = this.context;
-    underlay(this, [this.square, theme], (below) => drawAxes(below, frame, this.square.ticks, theme));
-    pen.lineWidth = 1;
+    this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();
     clipTo(pen, frame.box);
     const [first, last] = trail(shown.time, cursor);
@@ -71,7 +74,7 @@ export class ImagePlane {
 
   /** Say what the picture shows, and where the points are at time 0. */
   describe(shown) {
-    describe(this, imagePlaneInWords(shown));
+    this.tell(imagePlaneInWords(shown));
     this.handles.forEach((handle, k) => {
       if (k < shown.points) handle.describe(`, depth ${readable(shown.depths[k])} m`);
     });
@@ -98,7 +101,7 @@ function squareOf({ points, images }) {
   const bounds = [0, 1].map((c) => {
     const found = Array.from({ length: points }, (_, k) =>
       spread(images, { lowPart: 0, highPart: 1, first: 2 * k + c, width: 2 * points }),
-    ).filter(Boolean);
+    ).flatMap((range) => (range ? [range] : []));
     const range = found.length ? [...found[0]] : [-1, 1];
     for (const other of found) widen(range, other);
     return [Math.max(range[0], -3), Math.min(range[1], 3)];
@@ -108,17 +111,10 @@ function squareOf({ points, images }) {
 
 /** Where points are at a time, full, and where they are estimated to be, open. */
 function drawAt(pen, { points, images, estimated }, k, { x, y }, theme) {
-  pen.setLineDash([]);
   for (let p = 0; p < points; p++) {
     const at = 2 * (k * points + p);
-    pen.fillStyle = pen.strokeStyle = theme.lines[p];
-    for (const rows of [images, estimated.images]) {
-      const [a, b] = [x(rows[at]), y(rows[at + 1])];
-      if (Number.isNaN(a + b)) continue;
-      pen.beginPath();
-      pen.arc(a, b, rows === images ? 3.5 : 5.5, 0, 2 * Math.PI);
-      if (rows === images) pen.fill();
-      else pen.stroke();
-    }
+    const found = estimated.images;
+    dot(pen, x(images[at]), y(images[at + 1]), 3.5, theme.lines[p]);
+    dot(pen, x(found[at]), y(found[at + 1]), 5.5, theme.lines[p], false);
   }
 }

@@ -1,3 +1,4 @@
+// @ts-check
 // The controls of the lab of many points: each reads from the settings and changes them.
 
 import { button, element } from "../../common/page/controls.js";
@@ -46,7 +47,7 @@ export class Panel extends Fieldsets {
 
   motion() {
     const { letters } = this.model;
-    const share = (place, holds = () => true) => this.lit(this.numberIf(place, holds, { letter: letters[place] }), place, "");
+    const share = (place, holds = (_settings) => true) => this.lit(this.numberIf(place, holds, { letter: letters[place] }), place, "");
     const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
     const still = button("v = 0", () => this.lab.change({ input: 0, velocity: [0, 0, 0] }, true), { "data-control": "no input" });
     return this.fieldset(

@@ -1,3 +1,4 @@
+// @ts-check
 // What each time chart shows of a run: lines, scale, bars where a point is not seen.
 
 import { columnOf } from "../../common/model/derived.js";

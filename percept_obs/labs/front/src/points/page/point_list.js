@@ -1,3 +1,4 @@
+// @ts-check
 // The points to drag: depth, when they are hidden, adding and removing.
 
 import { button, element, slider } from "../../common/page/controls.js";

@@ -1,3 +1,4 @@
+// @ts-check
 // What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record_structure().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";

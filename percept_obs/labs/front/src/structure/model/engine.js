@@ -1,3 +1,4 @@
+// @ts-check
 // The whole of a run: object, camera, observers. The same numbers as record_structure() and track() in Python.
 
 import { columnOf } from "../../common/model/derived.js";
@@ -15,7 +16,11 @@ export class StructureEngine extends Runner {
     this.camera = new StructureCamera(model, this.memory);
   }
 
-  /** What is shown of settings, with the functions that StructureKernels.of() gave; whole, or as far as is drawn. */
+  /**
+   * What is shown of settings, with the functions that StructureKernels.of() gave; whole, or as far as is drawn.
+   *
+   * @returns {import("../../types.js").StructureResult}
+   */
   run(settings, functions, whole = true) {
     const { refusal } = functions;
     const { scale, tolerance } = settings;

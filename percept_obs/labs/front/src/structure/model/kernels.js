@@ -1,3 +1,4 @@
+// @ts-check
 // The functions that settings need: of the point, of the choice of unknowns, of the observers.
 
 import { PrintedKernels } from "../../common/model/kernels.js";

@@ -1,3 +1,4 @@
+// @ts-check
 // Points worth seeing: each asks first, then shows, and may have more acts.
 
 const STILL = [0, 0, 0];

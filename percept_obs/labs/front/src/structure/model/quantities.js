@@ -1,3 +1,4 @@
+// @ts-check
 // What rows of ybar and theta say of the unknown quantities and of the range, as StructureAndMotion.quantities().
 
 import { columnOf, derived } from "../../common/model/derived.js";

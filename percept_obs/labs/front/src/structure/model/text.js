@@ -1,3 +1,4 @@
+// @ts-check
 // Why it happened, and the pictures in words.
 
 import { readable, short } from "../../common/model/scales.js";

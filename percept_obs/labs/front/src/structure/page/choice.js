@@ -1,3 +1,4 @@
+// @ts-check
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { readable } from "../../common/model/scales.js";
@@ -6,9 +7,9 @@ import { FormulaSheet } from "../../common/page/formulas.js";
 import { isZero, keyOf } from "../model/kernels.js";
 
 const GROUPS = [
-  ["Scale", ["d_s"]],
-  ["Velocity of the camera", ["v_c1", "v_c2", "v_c3"]],
-  ["Velocity of the object", ["v_p1", "v_p2", "v_p3"]],
+  { title: "Scale", names: ["d_s"] },
+  { title: "Velocity of the camera", names: ["v_c1", "v_c2", "v_c3"] },
+  { title: "Velocity of the object", names: ["v_p1", "v_p2", "v_p3"] },
 ];
 const KINDS = [
   ["dynamic", "Camera partly unknown"],
@@ -22,10 +23,14 @@ const OBJECTS = [
 /** The part of the lab above its pictures. */
 export class ChoiceOfUnknowns {
   constructor(model, lab) {
-    Object.assign(this, { model, lab });
-    this.shownFor = null;
+    this.model = model;
+    this.lab = lab;
+    this.shownFor = "";
+    /** @type {[number, Element][]} */
+    this.cases = [];
+    this.value = element("span", { class: "value" });
     this.determinant = new FormulaSheet();
-    this.boxes = GROUPS.map(([title, names]) => [title, names.map((name) => this.box(name))]);
+    this.boxes = GROUPS.map(({ title, names }) => ({ title, boxes: names.map((name) => this.box(name)) }));
     this.earlier = checkbox({
       name: "earlier",
       label: "d_s comes from an earlier stage, so that θ holds d_s v",
@@ -43,7 +48,7 @@ export class ChoiceOfUnknowns {
   }
 
   groups() {
-    return this.boxes.map(([title, boxes]) =>
+    return this.boxes.map(({ title, boxes }) =>
       element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...boxes.map((box) => box.row)),
     );
   }
@@ -68,7 +73,6 @@ export class ChoiceOfUnknowns {
   /** Table 1: how the camera and the object move, with the corollaries of each cell. */
   table() {
     const { corollaries } = this.model;
-    this.cases = [];
     const cell = (camera, object) =>
       corollaries
         .filter((c) => c.camera === camera && c.object === object)
@@ -103,7 +107,7 @@ export class ChoiceOfUnknowns {
     const key = JSON.stringify([keyOf(settings), refusal, corollary]);
     if (key !== this.shownFor) {
       this.shownFor = key;
-      for (const [, boxes] of this.boxes) for (const box of boxes) box.show();
+      for (const { boxes } of this.boxes) for (const box of boxes) box.show();
       this.earlier.show();
       this.earlier.row.hidden = settings.unknown.includes("d_s");
       for (const [number, press] of this.cases) press.setAttribute("aria-pressed", String(number === corollary));
@@ -130,10 +134,9 @@ export class ChoiceOfUnknowns {
       numbers.innerHTML = `<math displaystyle="true">${choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>")}</math>`;
       this.determinant.putNumbers(numbers, "");
     }
-    this.value = element("span", { class: "value" });
     numbers.append(this.value);
     this.told.replaceChildren(
-      element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice, settings)}`),
+      element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice)}`),
       element("div", { class: "determinant" }, theta, element("div", {}, letters, numbers)),
       element("p", { class: "where" }, `Not observable ${choice.zeroSet}.`),
     );

@@ -1,18 +1,14 @@
-// The structure lab's equations.
+// @ts-check
+// The structure lab's equations: of the choice of unknowns, with the numbers of their letters.
 
-import { ObserverFormulas } from "../../common/page/observer_formulas.js";
 import { keyOf } from "../model/kernels.js";
 
-/** Equations of the choice of unknowns and of the observers. */
-export class StructureFormulas extends ObserverFormulas {
-  systemOf(settings) {
-    const { formulas } = this.model.choices[keyOf(settings)] ?? { formulas: [] };
-    return { title: "What multiplies the unknowns, and what is known", lines: formulas };
-  }
+export function systemOf(settings, model) {
+  const { formulas } = model.choices[keyOf(settings)] ?? { formulas: [] };
+  return { title: "What multiplies the unknowns, and what is known", lines: formulas };
+}
 
-  numbersOf({ scale, v_c, v_p, w, ybar }) {
-    const named = (letter, values) => values.map((value, i) => [`${letter}${i + 1}`, value]);
-    const start = Object.fromEntries([["y1", ybar[0]], ["y2", ybar[1]], ["ybar3", ybar[2]]]);
-    return { d_s: scale, ...start, ...Object.fromEntries([...named("v_c", v_c), ...named("v_p", v_p), ...named("w", w)]) };
-  }
+export function numbersOf({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) {
+  const named = Object.entries({ v_c, v_p, w }).flatMap(([letter, values]) => values.map((value, i) => [`${letter}${i + 1}`, value]));
+  return { d_s: scale, y1, y2, ybar3, ...Object.fromEntries(named) };
 }

@@ -1,0 +1,141 @@
+// @ts-check
+// What passes from computing to drawing, and from schemas to panels. All of it is plain data: no functions, no nodes of
+// the page, and no array that a later run writes to, so that it may be kept, drawn again, or come from a worker.
+// Rows of numbers lie one after the other in a Float64Array, a row a sample; NaN stands for what is not there.
+
+/**
+ * @typedef {Record<string, any>} Settings  all that defines what is shown; their schema says what each may be
+ * @typedef {Record<string, any>} Model     what Python hands over when a lab opens
+ *
+ * @typedef {object} ObserverRun  what one observer made of a recording
+ * @property {string} name
+ * @property {string} title        its name for people
+ * @property {number} order        its place among all observers, which gives its line a colour and dashes
+ * @property {Float64Array} estimate  rows of `width` coordinates
+ * @property {Float64Array | null} deviation  the standard deviations that it claims, in the same rows
+ * @property {number[]} resets     times, in s
+ * @property {[begin: number, end: number, reason: number][]} gaps  when hidden coordinates have no estimate
+ * @property {string[]} gapReasons  for the numbers of gaps, from 1 on
+ * @property {number | null} divergedAt  in s
+ * @property {Float64Array | null} error  the largest error of a hidden coordinate at each sample
+ * @property {number | null} settling  seconds from the first sample until the error stays in the tolerance, or Infinity
+ *
+ * @typedef {object} SharedResult  what the labs of single points show
+ * @property {Settings} settings   those that it is the result of, the very object
+ * @property {string} [problem]    why there is nothing to show
+ * @property {string} [refusal]    why what is sought cannot be estimated, or nothing
+ * @property {boolean} whole       whether all that is read off it is there, or only what its pictures need
+ * @property {Float64Array} time   of the samples, in s
+ * @property {Float64Array} outputs  rows of `sampled` measured coordinates; NaN where a sample was lost
+ * @property {number} sampled
+ * @property {Float64Array | null} truth  rows of `width` coordinates
+ * @property {number} width
+ * @property {string[]} names      of the coordinates
+ * @property {number[]} measured   which of them are measured
+ * @property {number[]} hidden     which of them are not
+ * @property {string[]} hiddenNames
+ * @property {number | null} leavesAt  when the point leaves the half-space in front of the camera, in s
+ * @property {number} tolerance    of the error
+ * @property {ObserverRun[]} runs
+ *
+ * @typedef {object} Excitation
+ * @property {number} window       in s
+ * @property {Float64Array} time   at which windows end, in s
+ * @property {Float64Array} smallest  eigenvalue of the integral of w w^T over the window
+ *
+ * @typedef {object} OfObserverLab
+ * @property {number[] | null} foe  the focus of expansion in the image
+ * @property {number[] | null} circle  its y1, y2 and radius, within which |w| is below the threshold
+ * @property {Excitation | null} excitation
+ * @typedef {SharedResult & OfObserverLab} ObserverResult
+ *
+ * @typedef {object} OfStructureLab
+ * @property {Float64Array} image  rows of the true y1, y2 and ybar3
+ * @property {number} scale        the true d_s, in 1/m
+ * @property {{unknown: string[], scaled: boolean[], square: boolean} | null} choice  of unknowns, if it is possible
+ * @property {{sizes: Float64Array, determinants: Float64Array} | null} guard  how much errors are amplified
+ * @property {{name: string, time: number, rate: number, step: number, shorter: number, remedy: string}[]} limits
+ * @typedef {SharedResult & OfStructureLab} StructureResult
+ *
+ * @typedef {object} Gramian       what the images of each window tell of the state
+ * @property {number} window       in s
+ * @property {Float64Array} time   at which windows begin, in s
+ * @property {Float64Array} smallest  eigenvalue
+ * @property {Float64Array} largest  eigenvalue
+ * @property {number} weakest      the sample at which the window begins that tells least
+ * @property {Float64Array} matrix  of that window, n rows of n
+ *
+ * @typedef {object} PointsResult
+ * @property {Settings} settings
+ * @property {boolean} whole
+ * @property {number} points       how many
+ * @property {number} n            states
+ * @property {string[]} names      of the states
+ * @property {Float64Array} time   of the samples, in s
+ * @property {Float64Array} truth  rows of n states
+ * @property {Float64Array} estimate  rows of n states
+ * @property {Float64Array} images  rows of the true y1, y2 of each point
+ * @property {Float64Array} seenImages  the same, where they are seen
+ * @property {Float64Array} outputs  the same, as they are sampled
+ * @property {Float64Array} depths  rows of the true depth of each point, in m
+ * @property {{images: Float64Array, depths: Float64Array}} estimated  the same of the estimate
+ * @property {Float64Array} size   norm of the error at each sample
+ * @property {Float64Array[]} errors  of each point, in m
+ * @property {{rate: number, begin: number, level: number} | null} fit  the exponential fitted to the error's end
+ * @property {{first: number, last: number, begin: number, end: number}[][]} absences  of each point: samples and times
+ * @property {number | null} divergedAt  in s
+ * @property {Gramian | null} gramian
+ *
+ * @typedef {ObserverResult | StructureResult | PointsResult} Result
+ */
+
+/**
+ * @typedef {object} SettingSchema  what a setting may be, as a lab's schema has it by the setting's name
+ * @property {"number" | "choice" | "names" | "matrix" | "list" | "group" | "points" | "spans"} kind
+ * @property {string} [label]      what the panel calls it
+ * @property {string} [name]       what its control is called, if not as its place in the settings
+ * @property {string} [unit]
+ * @property {number} [low]        where its slider begins
+ * @property {number} [high]       and ends
+ * @property {number} [step]       of the slider
+ * @property {boolean} [log]       whether the slider is logarithmic
+ * @property {number} [least]      that may be typed
+ * @property {number} [most]
+ * @property {number} [above]      a limit that is itself not allowed
+ * @property {boolean} [whole]     whether only whole numbers are allowed
+ * @property {boolean} [nonzero]
+ * @property {Record<string, string>} [choices]  words for each value; where they are missing the model knows them
+ * @property {any} [entries]       schemas of a list's or a group's parts
+ * @property {number} [rows]       of a matrix
+ * @property {number} [columns]
+ * @property {SettingSchema} [depth]  of points
+ */
+
+/**
+ * @typedef {object} ChartLine
+ * @property {string} name
+ * @property {ArrayLike<number>} time
+ * @property {any} values          an array of numbers
+ * @property {string} colour
+ * @property {number[]} dash
+ *
+ * @typedef {object} ChartParts    one time chart, in the values and colours that it is drawn with
+ * @property {string} title
+ * @property {ChartLine[]} lines
+ * @property {Scale} scale
+ * @property {any} [band]
+ * @property {number[][]} [spans]  shaded: begin and end
+ * @property {{time: number, colour: string}[]} [marks]
+ * @property {{begin: number, end: number, colour: string}[]} [bars]
+ * @property {number} [level]      of a dotted line
+ *
+ * @typedef {{low: number, high: number, ticks: number[], log?: boolean}} Scale
+ *
+ * @typedef {object} Plane         a picture besides the time charts
+ * @property {HTMLElement} figure
+ * @property {{width: number, height: number} | null} size
+ * @property {(shown: any, ghost: any, cursor: number | null, theme: any) => void} draw
+ * @property {(shown: any) => void} describe
+ */
+
+export {};
