@@ -216,6 +216,51 @@ def test_a_preset_asks_shows_and_leads_back(fresh):
     assert state(fresh)["settings"] == before["settings"]
 
 
+def test_a_drag_is_one_step_back_and_forth_by_keys_and_by_buttons(fresh):
+    before = state(fresh)
+    drag_by_mouse(fresh, FOE)
+    rested(fresh)
+    dragged = state(fresh)
+    fresh.fill(control("identifier_based gain number"), "4")
+    rested(fresh)
+    fresh.keyboard.press("Control+z")
+    rested(fresh)
+    assert state(fresh) == dragged
+    fresh.keyboard.press("Control+z")
+    rested(fresh)
+    assert state(fresh) == before
+    fresh.click(control("redo"))
+    rested(fresh)
+    assert state(fresh) == dragged
+    fresh.keyboard.press("Control+Shift+z")
+    rested(fresh)
+    assert state(fresh)["settings"]["gains"]["identifier_based"]["gain"] == 4
+    assert fresh.get_attribute(control("redo"), "aria-disabled") == "true"
+    for _ in range(2):
+        fresh.click(control("undo"))
+    rested(fresh)
+    assert state(fresh) == before
+    assert_equals_python(before)
+
+
+def test_a_preset_is_undone_with_its_answer(fresh):
+    opening = state(fresh)
+    fresh.click(control("preset bias"))
+    fresh.click(control("act bias 0"))
+    rested(fresh)
+    shown, answer = state(fresh), fresh.inner_text(".answer")
+    fresh.click(control("way back"))
+    rested(fresh)
+    fresh.click(control("undo"))
+    rested(fresh)
+    assert (state(fresh), fresh.inner_text(".answer")) == (shown, answer)
+    fresh.click(control("undo"))
+    rested(fresh)
+    assert state(fresh) == opening
+    assert fresh.locator(".card").is_visible()
+    assert fresh.inner_text(".answer") == ""
+
+
 def test_a_kept_run_stays_to_compare_with(fresh):
     fresh.click(control("keep"))
     fresh.fill(control("identifier_based gain number"), "3")

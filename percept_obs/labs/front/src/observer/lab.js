@@ -4,7 +4,7 @@
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
-import { ObserverFormulas } from "../common/page/observer_formulas.js";
+import { ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, translationTowards } from "./model/engine.js";
 import { Kernels } from "./model/kernels.js";
@@ -17,14 +17,12 @@ import { SCHEMA } from "./schema.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
-const PARTS = {
-  ...{ schema: SCHEMA, Kernels, Engine, presets: PRESETS, settingsOf },
-  ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
-};
-
 export class ObserverLab extends Live {
   constructor(widget, place) {
-    super(widget, PARTS);
+    super(widget, {
+      ...{ schema: SCHEMA, Kernels, Engine, presets: PRESETS, settingsOf },
+      ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
+    });
     const plane = new ImagePlane({
       name: "foe",
       label: "Focus of expansion",

@@ -13,14 +13,10 @@ import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { SCHEMA } from "./schema.js";
 
-const PARTS = {
-  ...{ schema: SCHEMA, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf },
-  ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
-};
-
 export class PointsLab extends Live {
   constructor(widget, place) {
-    super(widget, PARTS);
+    const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
+    super(widget, { schema: SCHEMA, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
     this.planes = [new ImagePlane(this, this.model.mostPoints)];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);

@@ -5,7 +5,7 @@ import { settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
-import { ObserverFormulas } from "../common/page/observer_formulas.js";
+import { ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { StructureKernels } from "./model/kernels.js";
@@ -18,14 +18,11 @@ import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { Scene } from "./page/scene.js";
 import { SCHEMA } from "./schema.js";
 
-const PARTS = {
-  ...{ schema: SCHEMA, Kernels: StructureKernels, Engine: StructureEngine, presets: PRESETS, settingsOf },
-  ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
-};
-
 export class StructureLab extends Live {
   constructor(widget, place) {
-    super(widget, PARTS);
+    const computing = { schema: SCHEMA, Kernels: StructureKernels, Engine: StructureEngine };
+    const words = { reasons, readingAt, summaryOf, pythonOf };
+    super(widget, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
     const plane = new ImagePlane({
       name: "ybar",
       label: "Start of the point",

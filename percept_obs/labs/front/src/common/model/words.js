@@ -43,6 +43,20 @@ export function readingAt(shown, cursor) {
   return parts.join(" · ");
 }
 
+/** What the image plane of a point shows. */
+export function pathsInWords({ time, truth, width, names, runs }) {
+  const point = (rows, k) => names.slice(0, 2).map((name, c) => `${name} ${readable(rows[k * width + c])}`).join(", ");
+  const end = time.length - 1;
+  const path = truth ? [`the point goes from ${point(truth, 0)} to ${point(truth, end)}`] : [];
+  return [...path, ...runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`)];
+}
+
+/** When the point was lost, if it was. */
+export function leavingInWords({ leavesAt }) {
+  if (leavesAt === null) return [];
+  return [`The point leaves the half-space in front of the camera at ${readable(leavesAt)} s; shown until then.`];
+}
+
 /** Numbers that Python is told: verdicts, final estimates, resets, and estimates at some times. */
 export function summaryOf(shown, serial, model) {
   if (shown.problem) return { serial, problem: shown.problem };

@@ -7,10 +7,11 @@ import { swatch } from "./lines.js";
 /** Build the lab's page inside an element. */
 export function build(lab, place, presets) {
   const { planes, charts, panel, formulas } = lab;
-  const problem = element("p", { class: "problem", role: "alert", hidden: true });
-  const pythonError = element("p", { class: "problem percept-obs-error", role: "alert", hidden: true });
-  const silence = element("p", { class: "silence", role: "status", hidden: true });
-  const notice = element("p", { class: "notice", role: "status", hidden: true });
+  const paragraph = (className, role) => element("p", { class: className, role, hidden: true });
+  const problem = paragraph("problem", "alert");
+  const pythonError = paragraph("problem percept-obs-error", "alert");
+  const silence = paragraph("silence", "status");
+  const notice = paragraph("notice", "status");
   const progress = element("progress", { "aria-label": "Equations that have come from Python" });
   const awaited = element("span");
   const waiting = element("div", { class: "waiting", role: "status", hidden: true }, progress, awaited);
@@ -90,8 +91,8 @@ export function build(lab, place, presets) {
     said,
   );
   const chartBox = element("div", { class: "charts" }, ...Object.values(charts).map((chart) => chart.figure));
-  const details = element("details", { class: "equations" }, element("summary", { "data-control": "equations" }, "Equations, with the present numbers"));
-  details.append(formulas.body);
+  const unfolding = (name, title, open, inside) =>
+    element("details", { class: name, open }, element("summary", { "data-control": name }, title), inside);
   const root = element(
     "div",
     { class: "percept-lab", "data-lm-suppress-shortcuts": "true" },
@@ -113,8 +114,8 @@ export function build(lab, place, presets) {
     silence,
     live,
     panel.body,
-    element("details", { class: "deeper", open: true }, element("summary", { "data-control": "deeper" }, "What Python adds"), analysis),
-    details,
+    unfolding("deeper", "What Python adds", true, analysis),
+    unfolding("equations", "Equations, with the present numbers", false, formulas.body),
   );
   place.append(root);
 
@@ -161,9 +162,11 @@ export function build(lab, place, presets) {
     rested() {
       put(live, spoken);
     },
-    notice(text) {
-      put(notice, text);
-      notice.hidden = !text;
+    notice: (text) => show(notice, text),
+    problem: (text) => show(problem, text),
+    pythonError: (text) => show(pythonError, text && `Python says: ${text}`),
+    silence(error) {
+      show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it.");
     },
     waiting(found) {
       waiting.hidden = !found;
@@ -179,18 +182,6 @@ export function build(lab, place, presets) {
     answered(answer) {
       analysis.classList.toggle("of-others", !answer);
     },
-    problem(text) {
-      put(problem, text);
-      problem.hidden = !text;
-    },
-    pythonError(text) {
-      put(pythonError, text && `Python says: ${text}`);
-      pythonError.hidden = !text;
-    },
-    silence(error) {
-      silence.hidden = error === undefined;
-      put(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it.");
-    },
     say(text) {
       put(said, text);
       clearTimeout(said.timer);
@@ -202,6 +193,12 @@ export function build(lab, place, presets) {
 
 function put(node, text) {
   if (node.textContent !== text) node.textContent = text;
+}
+
+/** Put in a text that is there only if it says something. */
+function show(node, text) {
+  put(node, text);
+  node.hidden = !text;
 }
 
 /** What happened in each run, beside a piece of its line. */

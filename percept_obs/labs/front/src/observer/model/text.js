@@ -2,6 +2,7 @@
 // Why it happened, and the image plane in words.
 
 import { readable } from "../../common/model/scales.js";
+import { leavingInWords, pathsInWords } from "../../common/model/words.js";
 
 const UNEXCITED = 1e-4;
 
@@ -9,10 +10,7 @@ const UNEXCITED = 1e-4;
 export function reasons(shown) {
   const { settings, measured, names, hiddenNames } = shown;
   if (shown.problem) return [shown.problem];
-  const found = [];
-  if (shown.leavesAt !== null) {
-    found.push(`The point leaves the half-space in front of the camera at ${readable(shown.leavesAt)} s; shown until then.`);
-  }
+  const found = leavingInWords(shown);
   const least = leastOf(shown.excitation);
   if (least) {
     const over = `any ${readable(shown.excitation.window)} s`;
@@ -60,11 +58,7 @@ function nearestToFoe({ foe, truth, width, time }) {
 /** The text equivalent of the image plane. */
 export function imagePlaneInWords(shown) {
   if (shown.problem) return shown.problem;
-  const point = (rows, k) => shown.names.slice(0, 2).map((n, c) => `${n} ${readable(rows[k * shown.width + c])}`).join(", ");
-  const end = shown.time.length - 1;
-  const parts = [];
-  if (shown.truth) parts.push(`the point goes from ${point(shown.truth, 0)} to ${point(shown.truth, end)}`);
-  for (const run of shown.runs) parts.push(`the ${run.title} estimate ends at ${point(run.estimate, end)}`);
+  const parts = pathsInWords(shown);
   if (shown.foe) parts.push(`focus of expansion at y1 ${readable(shown.foe[0])}, y2 ${readable(shown.foe[1])}`);
   if (shown.circle) parts.push(`circle of radius ${readable(Math.abs(shown.circle[2]))} in which an instant tells little`);
   return `${parts.join("; ")}.`;

@@ -3,9 +3,8 @@
 
 import { columnOf, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { decades, line } from "../../common/page/chart_parts.js";
 import { KEPT, SOLID } from "../../common/page/lines.js";
-import { around, linesOf, marksOf, runLines } from "../../common/page/plots.js";
+import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
 

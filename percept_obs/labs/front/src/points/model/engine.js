@@ -15,7 +15,7 @@ export class PointsEngine {
     this.model = model;
     this.memory = new Memory();
     this.camera = new Camera(model, this.memory);
-    this.observer = new Observer(model, this.memory, this.camera);
+    this.observer = new Observer(this.camera);
   }
 
   /**

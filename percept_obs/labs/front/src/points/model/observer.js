@@ -8,15 +8,13 @@ import { product, pseudoInverse } from "./symmetric.js";
 
 /** Follows what a camera has recorded. */
 export class Observer {
-  constructor(model, memory, camera) {
-    this.model = model;
-    this.memory = memory;
+  constructor(camera) {
     this.camera = camera;
   }
 
   /** Let the observer follow. */
   track(scene, recording) {
-    const { memory, model } = this;
+    const { memory, model } = this.camera;
     const { settings, layout, n } = scene;
     const { time, truth } = recording;
     const { period, duration, step } = settings;
@@ -50,7 +48,8 @@ export class Observer {
 
   /** What the observer takes for the images between samples: three rows a step. */
   held(scene, { time, outputs }, { index, steps, places }) {
-    const { memory, camera } = this;
+    const { camera } = this;
+    const { memory } = camera;
     const { settings, points } = scene;
     const { hold, period, duration, step } = settings;
     const wide = 2 * points;
@@ -99,7 +98,7 @@ export class Observer {
       if (s === stops.length - 1) break;
       const next = stops[s + 1];
       const [from, to] = [index[sample], index[next]];
-      const path = this.memory.room("observer's path", (to - from + 1) * own);
+      const path = this.camera.memory.room("observer's path", (to - from + 1) * own);
       const tables = {
         steps: steps.subarray(from, to),
         coefficients: coefficients.subarray(2 * from * width),
@@ -109,7 +108,7 @@ export class Observer {
         points,
         first,
       };
-      const diverged = advance(layout, this.model.block, law, x, P, tables, path);
+      const diverged = advance(layout, this.camera.model.block, law, x, P, tables, path);
       for (let k = sample; k <= next; k++) {
         const at = (index[k] - from) * own;
         for (let i = 0; i < own; i++) estimate[k * n + states + i] = path[at + i];
@@ -139,7 +138,7 @@ export class Observer {
     });
     const part = Float64Array.from(rows.flatMap((row) => free.map((i) => all[row * own + i])));
     const key = [settings.state, own, rows, free];
-    const inverse = this.memory.once(`rays ${first}`, key, () => pseudoInverse(part, rows.length, free.length));
+    const inverse = this.camera.memory.once(`rays ${first}`, key, () => pseudoInverse(part, rows.length, free.length));
     product(inverse, goal, free.length).forEach((value, k) => (x[free[k]] = value));
     if (!P) return;
     for (const i of free) {

@@ -3,7 +3,7 @@
 
 import { readable, short } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
-import { filled } from "../../common/model/words.js";
+import { filled, leavingInWords, pathsInWords } from "../../common/model/words.js";
 import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];
@@ -20,9 +20,7 @@ export function reasons(shown, model) {
     };
     return `${model.observers[name].title}: ${filled(model.tooLong, values)}.`;
   });
-  if (shown.leavesAt !== null) {
-    found.push(`The point leaves the half-space in front of the camera at ${readable(shown.leavesAt)} s; shown until then.`);
-  }
+  found.push(...leavingInWords(shown));
   for (const run of shown.runs) if (run.divergedAt === null) found.push(endOf(run, shown));
   if (choice.unknown.includes("d_s") && settings.noise.size + settings.noise.depth > 0) {
     found.push(`An error of the rate is amplified up to ${readable(mostOf(shown), 2)} times, about 1/ȳ3², and noise with it.`);
@@ -64,12 +62,7 @@ function mostOf({ guard }) {
 
 /** The text equivalent of the image plane. */
 export function imagePlaneInWords(shown) {
-  if (shown.problem) return shown.problem;
-  const end = shown.time.length - 1;
-  const point = (rows, k) => `y1 ${readable(rows[k * shown.width])}, y2 ${readable(rows[k * shown.width + 1])}`;
-  const parts = [`the point goes from ${point(shown.truth, 0)} to ${point(shown.truth, end)}`];
-  for (const run of shown.runs) parts.push(`the estimate of ${run.title} ends at ${point(run.estimate, end)}`);
-  return `${parts.join("; ")}.`;
+  return shown.problem ?? `${pathsInWords(shown).join("; ")}.`;
 }
 
 /** The text equivalent of the view from above. */

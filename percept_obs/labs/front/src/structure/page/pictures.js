@@ -3,9 +3,8 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { decades, line } from "../../common/page/chart_parts.js";
 import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
-import { around, linesOf, marksOf, runLines } from "../../common/page/plots.js";
+import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
 
 export const LABELS = {
