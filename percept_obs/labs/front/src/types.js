@@ -1,6 +1,6 @@
 // @ts-check
-// What passes from computing to drawing, and from schemas to panels. All of it is plain data: no functions, no nodes of
-// the page, and no array that a later run writes to, so that it may be kept, drawn again, or come from a worker.
+// What passes from computing to drawing: results, which are plain data without functions, nodes of the page, or arrays
+// that a later run writes to, so that they may be kept, drawn again, or come from a worker; then schemas and charts.
 // Rows of numbers lie one after the other in a Float64Array, a row a sample; NaN stands for what is not there.
 
 /**
@@ -123,7 +123,7 @@
  * @property {string} title
  * @property {ChartLine[]} lines
  * @property {Scale} scale
- * @property {any} [band]
+ * @property {{time: ArrayLike<number>, low: any, high: any, colour: string}} [band]  between two arrays of numbers
  * @property {number[][]} [spans]  shaded: begin and end
  * @property {{time: number, colour: string}[]} [marks]
  * @property {{begin: number, end: number, colour: string}[]} [bars]

@@ -1,7 +1,8 @@
 // The parts of the page that need no browser: random numbers, tables, scales, measures, words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { same } from "../src/common/model/settings.js";
+import { columnOf, distancesOf } from "../src/common/model/derived.js";
+import { changeAt, same, valueAt } from "../src/common/model/settings.js";
 import { settlingTime } from "../src/common/model/errors.js";
 import { moduleText, Modules } from "../src/common/model/modules.js";
 import { smallestEigenvalue, windowed } from "../src/observer/model/measures.js";
@@ -11,6 +12,9 @@ import { held, interpolate, lastSamples, stepGrid } from "../src/common/model/ta
 import { inWords, mainly } from "../src/points/model/directions.js";
 import { spansOf } from "../src/points/model/measures.js";
 import { eigen, pseudoInverse, spectrum } from "../src/points/model/symmetric.js";
+import { SCHEMA as OBSERVER } from "../src/observer/schema.js";
+import { SCHEMA as POINTS } from "../src/points/schema.js";
+import { SCHEMA as STRUCTURE } from "../src/structure/schema.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {
@@ -122,4 +126,29 @@ test("directions are told as Python tells them", () => {
 test("the spans in which a point is not seen end with the next image of it", () => {
   const outputs = [0, 0, NaN, NaN, NaN, NaN, 1, 1];
   assert.deepEqual(spansOf([0, 1, 2, 3], outputs, 1, 0), [{ first: 1, last: 2, begin: 1, end: 3 }]);
+});
+
+test("a value in the settings is read and changed by its place, and nothing else is", () => {
+  const settings = { b: [1, 2, 3], start: { mode: "own", values: [0, 0, 0] }, believed: null };
+  assert.equal(valueAt(settings, "start.values.1"), 0);
+  assert.equal(valueAt(settings, "believed.b.0"), undefined);
+  assert.deepEqual(changeAt(settings, "b.1", 5), { b: [1, 5, 3] });
+  assert.deepEqual(changeAt(settings, "start.values.1", 5), { start: { mode: "own", values: [0, 5, 0] } });
+  assert.deepEqual(settings.b, [1, 2, 3]);
+});
+
+test("what follows from a result's rows is made once for them", () => {
+  const rows = Float64Array.of(1, 0.5, 2, -1);
+  const distances = distancesOf(rows, 2);
+  assert.deepEqual([...distances], [2, NaN]);
+  assert.equal(distancesOf(rows, 2), distances);
+  assert.equal(columnOf(rows, 2, 1), columnOf(rows, 2, 1));
+});
+
+test("every schema is plain data that a link may carry", () => {
+  for (const schema of [OBSERVER, STRUCTURE, POINTS]) {
+    assert.deepEqual(JSON.parse(JSON.stringify(schema)), schema);
+    const numbers = Object.values(schema).filter(({ kind }) => kind === "number");
+    for (const { low, high, least, most } of numbers) assert.ok(least <= low && low < high && high <= most);
+  }
 });

@@ -3,6 +3,8 @@
 
 import { Modules } from "./modules.js";
 
+/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean}} Module */
+
 /** Functions of a model; those of a lab say which modules settings need, and whether their texts have come. */
 export class PrintedKernels {
   constructor(model, load) {
@@ -10,6 +12,11 @@ export class PrintedKernels {
     this.modules = new Modules(load);
     this.whole = new Set();
     this.waiters = [];
+    const allowed = Object.entries(model.observers ?? {}).flatMap(([observer, { gains }]) =>
+      gains.map((gain) => [`${observer}_${gain.name}`, gain.allowed]),
+    );
+    /** @type {Module[]} which gains are allowed: of all at once, so that none can be moved before that is known */
+    this.limits = allowed.length ? [{ key: "gains", texts: Object.fromEntries(allowed), aside: true }] : [];
   }
 
   /** Whether the texts that settings need have come. */
@@ -19,7 +26,7 @@ export class PrintedKernels {
 
   /** Names and texts of the modules that settings need, with the observer whose loop one is. */
   needed(_settings) {
-    return /** @type {{key: string, texts: any, observer?: string, aside?: boolean}[]} */ ([]);
+    return /** @type {Module[]} */ ([]);
   }
 
   /** Go on with what has waited for a part. */
@@ -32,7 +39,7 @@ export class PrintedKernels {
   of(settings) {
     if (!this.has(settings)) return undefined;
     const found = { observers: {} };
-    for (const { key, observer, aside } of this.needed(settings)) {
+    for (const { key, observer, aside } of [...this.limits, ...this.needed(settings)]) {
       const functions = this.modules.get(key);
       if (!functions) return undefined;
       if (observer) found.observers[observer] = functions;
@@ -44,25 +51,17 @@ export class PrintedKernels {
   /** Wait for what settings need, and load it. */
   async prepare(settings) {
     while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
-    await Promise.all(this.needed(settings).map(({ key, texts }) => this.modules.prepare(key, texts)));
+    await Promise.all([...this.limits, ...this.needed(settings)].map(({ key, texts }) => this.modules.prepare(key, texts)));
   }
 
-  /** The module of an observer's loop, without what it has no need of, and that of its gains. */
+  /** The module of an observer's loop, without what it has no need of. */
   loop(key, observer, { run, start, estimate, variances, gap, fastest }) {
     const texts = Object.entries({ run, start, estimate, variances, gap, fastest }).filter(([, text]) => text);
-    return [{ key, observer, texts: Object.fromEntries(texts) }, this.gains(observer)];
-  }
-
-  /** The module that says which gains of an observer are allowed, which no run needs. */
-  gains(observer) {
-    const { gains } = this.model.observers[observer];
-    const texts = Object.fromEntries(gains.map((gain) => [`allow_${gain.name}`, gain.allowed]));
-    return { key: `gains of ${observer}`, texts, aside: true };
+    return { key, observer, texts: Object.fromEntries(texts) };
   }
 
   /** Whether an observer's gain may have this value. */
   allows(observer, gain, value) {
-    const functions = this.modules.get(`gains of ${observer}`);
-    return !functions || functions[`allow_${gain}`]([value], [0])[0] === 1;
+    return this.modules.get("gains")?.[`${observer}_${gain}`]([value], [0])[0] === 1;
   }
 }

@@ -162,12 +162,12 @@ function tracePath(pen, place, time, values) {
   flush();
 }
 
-/** A band between functions of the sample. */
+/** A band between two values at each time. */
 function fillBand(pen, place, { time, low, high, colour }) {
   const every = Math.max(1, Math.floor(time.length / (place.width * 2)));
   pen.beginPath();
   const along = (k, bound) => {
-    const value = bound(k);
+    const value = bound[k];
     if (Number.isFinite(value)) pen.lineTo(place.x(time[k]), place.y(value));
   };
   for (let k = 0; k < time.length; k += every) along(k, high);

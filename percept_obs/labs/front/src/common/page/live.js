@@ -11,6 +11,7 @@ import { chartInWords } from "./chart_parts.js";
 import { TimeChart } from "./charts.js";
 import { build } from "./layout.js";
 import { Link } from "./link.js";
+import { surround } from "./surroundings.js";
 
 /** @typedef {import("../../types.js").Plane} Plane */
 /** @typedef {import("../../types.js").ChartParts} ChartParts */
@@ -61,8 +62,7 @@ export class Live {
     this.pending = this.closed = false;
     /** @type {any} the timer that runs while the hand may go on */
     this.resting = null;
-    /** @type {(() => void)[]} */
-    this.endings = [];
+    this.leave = () => {};
   }
 
   get settings() {
@@ -91,34 +91,21 @@ export class Live {
       onPart: (part, value) => this.arrived(part, value),
       onUnprinted: () => this.schedule(),
     });
-    this.observeSurroundings();
+    this.leave = surround(this.view.root, {
+      figures: this.figures.map(({ figure }) => figure),
+      onSize: (node, size) => this.resized(node, size),
+      onTheme: () => this.retheme(),
+    });
     this.panel.show();
     this.schedule();
     this.rest();
   }
 
-  observeSurroundings() {
-    const sized = new ResizeObserver((entries) => {
-      for (const { target, contentRect } of entries) {
-        const picture = this.figures.find(({ figure }) => figure === target);
-        if (picture) picture.size = { width: contentRect.width, height: contentRect.height };
-        else this.width = contentRect.width;
-      }
-      this.schedule();
-    });
-    for (const { figure } of this.figures) sized.observe(figure);
-    sized.observe(this.view.root);
-    const scheme = window.matchMedia("(prefers-color-scheme: dark)");
-    const retheme = () => {
-      const light = document.body.dataset.jpThemeLight;
-      this.view.root.classList.toggle("dark", light ? light === "false" : scheme.matches);
-      this.retheme();
-    };
-    retheme();
-    const themed = new MutationObserver(retheme);
-    themed.observe(document.body, { attributes: true, attributeFilter: ["data-jp-theme-light", "class"] });
-    scheme.addEventListener("change", retheme);
-    this.endings = [() => sized.disconnect(), () => themed.disconnect(), () => scheme.removeEventListener("change", retheme)];
+  resized(node, size) {
+    const picture = this.figures.find(({ figure }) => figure === node);
+    if (picture) picture.size = size;
+    else this.width = size.width;
+    this.schedule();
   }
 
   retheme() {
@@ -131,7 +118,7 @@ export class Live {
     cancelAnimationFrame(this.frame);
     clearTimeout(this.resting);
     this.link?.close();
-    for (const end of this.endings) end();
+    this.leave();
   }
 
   // What the hand does.

@@ -36,7 +36,7 @@ export class Kernels extends PrintedKernels {
     const { w, circle, refused, observers } = this.model.structures[key];
     const loops = settings.observers
       .filter((name) => !refused[name])
-      .flatMap((name) => {
+      .map((name) => {
         const way = switchOf(settings, name);
         return this.loop([key, name, way].filter(Boolean).join(" "), name, observers[name][way]);
       });

@@ -1,7 +1,7 @@
 // @ts-check
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
-import { columnOf, distancesOf } from "../../common/model/derived.js";
+import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { KEPT, SOLID } from "../../common/page/lines.js";
 import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
@@ -65,11 +65,7 @@ const BUILD = {
 
 function bandOf(shown, run, c, theme) {
   const middle = columnOf(run.estimate, shown.width, c);
-  const deviation = (k) => run.deviation[k * shown.width + c];
-  return {
-    time: shown.time,
-    low: (k) => middle[k] - 2 * deviation(k),
-    high: (k) => middle[k] + 2 * deviation(k),
-    colour: theme.lines[run.order],
-  };
+  const deviation = columnOf(run.deviation, shown.width, c);
+  const bound = (factor) => derived(deviation, `bound ${factor}`, () => middle.map((value, k) => value + factor * deviation[k]));
+  return { time: shown.time, low: bound(-2), high: bound(2), colour: theme.lines[run.order] };
 }

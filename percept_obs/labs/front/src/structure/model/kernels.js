@@ -65,7 +65,7 @@ export class StructureKernels extends PrintedKernels {
       point,
       { key: `choice ${key}`, texts: { signals: choices[key].signals } },
       { key: `guard ${count}`, texts: { guard: kernels[count].guard } },
-      ...settings.observers.flatMap((name) => this.loop(`${count} ${name}`, name, kernels[count].observers[name])),
+      ...settings.observers.map((name) => this.loop(`${count} ${name}`, name, kernels[count].observers[name])),
     ];
   }
 }
