@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { columnOf, distancesOf } from "../src/common/model/derived.js";
 import { changeAt, same, valueAt } from "../src/common/model/settings.js";
 import { settlingTime } from "../src/common/model/errors.js";
+import { PrintedKernels } from "../src/common/model/kernels.js";
 import { moduleText, Modules } from "../src/common/model/modules.js";
 import { smallestEigenvalue, windowed } from "../src/observer/model/measures.js";
 import { uniformFrom } from "../src/common/model/random.js";
@@ -151,4 +152,14 @@ test("every schema is plain data that a link may carry", () => {
     const numbers = Object.values(schema).filter(({ kind }) => kind === "number");
     for (const { low, high, least, most } of numbers) assert.ok(least <= low && low < high && high <= most);
   }
+});
+
+test("no gain is allowed before it is known which are, and functions come once all of them are there", async () => {
+  const gains = [{ name: "gain", allowed: "function allowed(x, out) { out[0] = x[0] > 0 ? 1 : 0; return out; }" }];
+  const kernels = new PrintedKernels({ observers: { ibo: { gains } } }, loadHere);
+  assert.equal(kernels.allows("ibo", "gain", 1), false);
+  assert.equal(kernels.of({}), undefined);
+  await kernels.prepare({});
+  assert.deepEqual(kernels.of({}), { observers: {} });
+  assert.deepEqual([-1, 1].map((value) => kernels.allows("ibo", "gain", value)), [false, true]);
 });
