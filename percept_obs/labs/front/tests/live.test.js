@@ -175,6 +175,9 @@ test("an answer of Python to other settings than those that are shown is not sho
   assert.notEqual(lab.link.waitingFor, null);
   widget.tell("analysis", { of: lab.serial, sentences: ["of gain 5"], bound: 4 });
   assert.equal(lab.answered().bound, 4);
+  const before = lab.told.words;
+  frame(10);
+  assert.notEqual(lab.told.words, before, "words follow an answer at once");
   assert.deepEqual(lab.told.analysis, ["of gain 5"]);
   lab.close();
 });

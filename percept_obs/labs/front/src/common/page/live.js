@@ -377,6 +377,8 @@ export class Live {
   analysed(answer) {
     this.answer = answer;
     this.view.analysis((answer.sentences ?? []).filter(Boolean));
+    // What is said of it is said with the next picture, however short the last words are ago.
+    this.spoken = 0;
     this.schedule();
   }
 
