@@ -54,7 +54,8 @@ export class ObserverLab extends Live {
     return this.change({ scenario: name, surface, outputs, duration, window, hold, believed: null }, true);
   }
 
-  fitted(settings) {
+  fitted(asked) {
+    const settings = withOutputsOf(this.model.surfaces[asked.surface], asked);
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
     if (!lost.length) return settings;

@@ -35,10 +35,11 @@ export class Panel extends Fieldsets {
   measuring() {
     const { lab } = this;
     const seen = (name) => this.track()?.names.includes(name) ?? true;
+    const offered = (value) => this.model.surfaces[lab.settings.surface].outputs.some((names) => names.join("+") === value);
     const outputs = this.inSight("outputs", {
       get: () => lab.settings.outputs.join("+"),
       set: (value) => lab.change({ outputs: value.split("+") }, true),
-      possible: (value) => value.split("+").every(seen),
+      possible: (value) => offered(value) && value.split("+").every(seen),
     });
     return this.fieldset("Measure", {}, outputs);
   }

@@ -12,7 +12,7 @@ const WEIGHTS = {
 
 /** Python text for settings that are shown. */
 export function pythonOf({ settings, truth, n, points, names: states }, { error }) {
-  const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record_points", "track_points"]);
+  const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
   const [P, weights] = WEIGHTS[settings.weight](settings);
   const helpers = new Set(weights);
   const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
@@ -22,17 +22,20 @@ export function pythonOf({ settings, truth, n, points, names: states }, { error 
     ...formOf(settings, points, names, helpers),
     `# the state is ${states.join(", ")}`,
     `scenario = PointsScenario("from the lab", form, ${list(start)}, ${duration})`,
-    `camera = Camera(period=${period}, noise=${NOISES[noise.kind]}(${noise.size}), dropout=${dropout})`,
-    `recording = record_points(scenario, camera=camera, seed=${seed}, view=${view})`,
+    `camera = Camera(period=${period}, noise=${NOISES[noise.kind]}(${noise.size}), dropout=${dropout}, reach=${view})`,
+    `recording = record(scenario, camera=camera, seed=${seed})`,
   ];
-  settings.hidden.forEach((times, k) => times && lines.push(`recording = recording.hidden(${k}, ${times.join(", ")})`));
+  settings.hidden.forEach((times, k) => times && lines.push(`recording = recording.without(${times.join(", ")}, point=${k})`));
   const options = [`hold="${settings.hold}"`, `step=${settings.step}`];
-  if (settings.start === "rays") options.unshift(`depth=${settings.depth}`);
+  if (settings.start === "rays") {
+    names.add("FirstSight");
+    options.unshift(`FirstSight(${settings.depth})`);
+  }
   if (settings.start === "error") {
     lines.push(`start = recording.truth[0] - ${settings.error} * np.resize(${list(error)}, form.states)`);
     options.unshift("start");
   }
-  lines.push(`run = track_points(recording, luenberger(form, ${P}), ${options.join(", ")})`, "print(run.verdict())");
+  lines.push(`run = track(recording, luenberger(form, ${P}), ${options.join(", ")})`, "print(run.verdict())");
   const wanted = {
     percept_obs: names,
     "percept_obs.points": helpers,

@@ -29,19 +29,20 @@ export function pythonOf(shown, model) {
     `depth = 1 / (${scale} * ${ybar[2]})`,
     `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
     `choice = StructureAndMotion(${options.join(", ")})`,
-    `setup = StructureScenario(Scenario("from the lab", motion, position, ${durationOf(shown)}, pinhole()), ${scale}, choice)`,
-    `camera = Camera(${period}, ${make}(${noise.size}))`,
+    `where = ("from the lab", motion, position, ${durationOf(shown)}, pinhole())`,
+    `scenario = StructureScenario(*where, scale=${scale}, choice=choice)`,
     `depths = GivenDepth(${make}(${noise.depth}), bias=${settings.bias}, drift=${settings.drift})`,
-    `recording = record_structure(setup, camera=camera, depth=depths, seed=${settings.seed})`,
+    `camera = ScaledDepthCamera(${period}, ${make}(${noise.size}), depth=depths)`,
+    `recording = record(scenario, camera=camera, seed=${settings.seed})`,
   ];
   const start = settings.start === "zero" ? ['{"y1": 0.0, "y2": 0.0, "ybar3": 0.0}'] : [];
   const makerOf = (name) => MAKERS[name] ?? [name, ""];
   const how = [...start, `hold="${settings.hold}"`, `step=${settings.step}`];
   lines.push(...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }));
   const wanted = {
-    percept_obs: ["Camera", make, "Scenario", "StructureAndMotion", "pinhole", "record_structure", "rigid", "track"],
+    percept_obs: [make, "StructureAndMotion", "pinhole", "record", "rigid", "track"],
     "percept_obs.observers": new Set(settings.observers.map((name) => makerOf(name)[0])),
-    "percept_obs.structure": ["GivenDepth", "StructureScenario"],
+    "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
   return `${swings ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
 }
