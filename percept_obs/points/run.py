@@ -17,6 +17,11 @@ from percept_obs.tracking import Run
 Array = NDArray[np.float64]
 
 
+JUDGED = "the state"
+REMEDY = "choose a larger P or shorter steps, and look at conditions() if P is no longer positive definite"
+"""What verdicts say of it, and what to do about a run that diverged; live labs use the same words."""
+
+
 @dataclass(frozen=True, eq=False)
 class PointsRun(Run):
     """Estimates of a state at the samples of a recording of several points.
@@ -72,12 +77,12 @@ class PointsRun(Run):
     @property
     def judged(self) -> str:
         """What the verdict judges, in words."""
-        return "the state"
+        return JUDGED
 
     @property
     def remedy(self) -> str:
         """What to do about it if it diverged."""
-        return "choose a larger P or shorter steps, and look at conditions() if P is no longer positive definite"
+        return REMEDY
 
     def decay_rate(self, begin: float = -math.inf, end: float = math.inf) -> float:
         """Rate of the exponential fitted to the error's norm between two times, in 1/s; positive where it shrinks.

@@ -10,9 +10,9 @@ export function filled(text, values) {
 }
 
 /** What happened to one observer, as Run.verdict() in Python. */
-export function verdict(run, shown, { verdicts, settledPart }) {
+export function verdict(run, shown, { verdicts, settledPart, remedy }) {
   const say = (which, values) => filled(verdicts[which], values);
-  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
+  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt), remedy });
   const count = run.resets.length;
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
@@ -22,14 +22,19 @@ export function verdict(run, shown, { verdicts, settledPart }) {
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
-  const inside = length - run.settling >= settledPart * length ? "converged" : "late";
-  const words = say(run.settling === Infinity ? "outside" : inside, {
-    hidden: shown.hiddenNames.join(", "),
-    error: short(run.error.at(-1), 2),
-    tolerance: short(shown.tolerance, 6),
-    time: short(run.settling),
+  const judged = { judged: shown.hiddenNames.join(", "), error: run.error.at(-1), tolerance: shown.tolerance };
+  return settledInWords(judged, run.settling, length, { verdicts, settledPart }) + besides;
+}
+
+/** Whether an error settled, with its last value; `settling` is infinite where it ends outside of the tolerance. */
+export function settledInWords({ judged, error, tolerance }, settling, length, { verdicts, settledPart }) {
+  const inside = length - settling >= settledPart * length ? "converged" : "late";
+  return filled(verdicts[settling === Infinity ? "outside" : inside], {
+    judged,
+    error: short(error, 2),
+    tolerance: short(tolerance, 6),
+    time: short(settling),
   });
-  return words + besides;
 }
 
 /** The values under the cursor. */

@@ -1,5 +1,5 @@
 // @ts-check
-// Points in motion and the camera that sees them: the same numbers as record_points() in Python.
+// Points in motion and the camera that sees them: the same numbers as record() in Python.
 
 import { clockOf, errorOf } from "../../common/model/camera.js";
 import { draws } from "../../common/model/random.js";

@@ -1,5 +1,5 @@
 // @ts-check
-// The observer of many points: the same numbers as track_points() in Python.
+// The observer of many points: the same numbers as track() in Python.
 
 import { halves, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
 import { rowsOf } from "./camera.js";

@@ -4,7 +4,7 @@
 import { derived } from "../../common/model/derived.js";
 import { readable, short } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
-import { filled } from "../../common/model/words.js";
+import { filled, settledInWords } from "../../common/model/words.js";
 import { inWords, mainly } from "./directions.js";
 import { settledAt, TOLERANCE } from "./measures.js";
 import { eigen } from "./symmetric.js";
@@ -12,12 +12,11 @@ import { eigen } from "./symmetric.js";
 const MOST_ABSENCES = 3;
 
 /** What happened to the error, as PointsRun.verdict() in Python. */
-export function verdict({ time, size, divergedAt }, { verdicts }) {
-  if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt) });
-  const settled = settledAt(time, size);
-  const words = { first: short(size[0], 2), last: short(size.at(-1), 2), tolerance: TOLERANCE };
-  if (settled === null) return filled(verdicts.outside, { ...words, time: short(time.at(-1) - time[0]) });
-  return filled(verdicts.converged, { ...words, time: short(settled) });
+export function verdict({ time, size, divergedAt }, model) {
+  const { verdicts, remedy, judged } = model;
+  if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
+  const error = { judged, error: size.at(-1), tolerance: TOLERANCE };
+  return settledInWords(error, settledAt(time, size) ?? Infinity, time.at(-1) - time[0], model);
 }
 
 /** How fast the error decays, and what is guaranteed. */

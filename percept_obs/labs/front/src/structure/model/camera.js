@@ -1,5 +1,5 @@
 // @ts-check
-// What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record_structure().
+// What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { halves } from "../../common/model/tables.js";

@@ -1,5 +1,5 @@
 // @ts-check
-// The whole of a run: object, camera, observers. The same numbers as record_structure() and track() in Python.
+// The whole of a run: object, camera, observers. The same numbers as record() and track() in Python.
 
 import { columnOf } from "../../common/model/derived.js";
 import { Runner } from "../../common/model/runner.js";
