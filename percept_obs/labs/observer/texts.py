@@ -1,11 +1,12 @@
 """What the page needs to simulate and to observe: texts and formulas of the point, the surfaces, the observers.
 
-Kept apart from the widgets, so that another process can print it: see printing.py.
+Printed when the package is built, see printing.py; one form, observer or surface can be printed by itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import inspect
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import MappingProxyType
 
@@ -14,20 +15,29 @@ import sympy as sp
 from percept_obs.compile import function_source, source
 from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
-from percept_obs.labs.shared.kernels import Texts, kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.markup import formula, markup
+from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
+from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
+from percept_obs.observers.switching import SWITCHES
 from percept_obs.system import surfaces
-from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.forms import CanonicalForm, NotAffine
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
 SURFACES = {make.__name__: make for make in surfaces.SURFACES}
-BY_NAME = {make.key: make for make in OBSERVERS}
+OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
+BY_NAME: dict[str, Callable[..., Observer]] = {make.__name__: make for make in OBSERVERS}
 
-WAYS = MappingProxyType({name: make.switches or ("",) for name, make in BY_NAME.items()})
+
+def _ways(make: Callable[..., Observer]) -> tuple[str, ...]:
+    own = inspect.signature(make).parameters.get("switch")
+    return ("",) if own is None else tuple(dict.fromkeys((own.default, *SWITCHES)))
+
+
+WAYS = MappingProxyType({name: _ways(make) for name, make in BY_NAME.items()})
 """Ways in which each observer switches, its own first; one without a name for those that do not."""
 
 OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if ways[0]})
@@ -37,26 +47,28 @@ MOTION = affine()
 
 
 def key_of(surface: str, outputs: Iterable[str]) -> str:
-    """Name of a structure: what is seen, and what of it is measured."""
+    """Name of a form: what is seen, and what of it is measured."""
     return f"{surface} {'+'.join(outputs)}"
 
 
 @lru_cache
-def system_of(surface: str) -> PerspectiveSystem:
-    """Affine motion seen on a surface."""
-    return PerspectiveSystem(MOTION, SURFACES[surface]())
+def outputs_of(surface: str) -> tuple[tuple[str, ...], ...]:
+    """The sets of outputs of which a surface has a canonical form."""
+    return tuple(outputs for outputs in OUTPUTS if _is_affine(surface, outputs))
 
 
-@lru_cache
-def keys() -> tuple[str, ...]:
-    """Names of all structures that a lab offers."""
-    return tuple(key_of(surface, outputs) for surface in SURFACES for outputs in system_of(surface).output_choices)
+def _is_affine(surface: str, outputs: tuple[str, ...]) -> bool:
+    try:
+        form_of(surface, outputs)
+    except NotAffine:
+        return False
+    return True
 
 
 @lru_cache
 def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
     """The canonical form of affine motion on a surface."""
-    return system_of(surface).measure(*outputs)
+    return PerspectiveSystem(MOTION, SURFACES[surface]()).measure(*outputs)
 
 
 @lru_cache(maxsize=256)
@@ -66,20 +78,25 @@ def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = ""
     Raises
     ------
     ValueError
-        If it does not exist for this structure.
+        If it does not exist for this form.
     """
-    switch = {"switch": way or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
-    return BY_NAME[name](form_of(surface, outputs), **switch)
+    form = form_of(surface, outputs)
+    return BY_NAME[name](form, switch=way or OWN_SWITCH[name]) if name in OWN_SWITCH else BY_NAME[name](form)
 
 
 def ways_of(name: str) -> dict[str, Observer]:
     """The observer for all image coordinates, in every way in which it switches."""
-    return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
+    return {way: observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]}
+
+
+def with_every_gain(name: str) -> Observer:
+    """The observer that has the gains of every way in which it switches."""
+    return with_all_gains(ways_of(name))
 
 
 @lru_cache
 def model_for_the_page() -> Texts:
-    """What does not depend on the structure: the point's loop, the surfaces, the observers."""
+    """What does not depend on the form: the point's loop, the surfaces, the observers."""
     rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
     return {
         "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
@@ -89,12 +106,13 @@ def model_for_the_page() -> Texts:
 
 
 def _surface_for_the_page(name: str) -> Texts:
-    system = system_of(name)
-    surface, shape = system.surface, system.surface.parameters
+    surface = SURFACES[name]()
+    system = PerspectiveSystem(MOTION, surface)
+    shape = surface.parameters
     return {
-        "outputs": system.output_choices,
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
+        "outputs": outputs_of(name),
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
@@ -108,23 +126,8 @@ def _observer_for_the_page(name: str) -> Texts:
 
 
 @lru_cache
-def structure_for_the_page(
-    surface: str, outputs: tuple[str, ...], observers: tuple[tuple[str, str], ...] | None = None
-) -> Texts:
-    """What depends on the structure: its form, and the loops of observers of it.
-
-    Parameters
-    ----------
-    surface : str
-    outputs : tuple of str
-    observers : tuple of pairs of an observer's name and its way to switch, optional
-        All of them when left out.
-
-    Returns
-    -------
-    dict
-        An observer that does not exist for this structure is among the `refused`, with the reason.
-    """
+def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
+    """A form, and the loops of its observers; one that does not exist is among the `refused`, with the reason."""
     form = form_of(surface, outputs)
     names = [s.name for s in form.coordinates]
     letters = {s.name: s for s in form.parameters}
@@ -134,16 +137,15 @@ def structure_for_the_page(
         circle = function_source((*form.parameters, threshold), (*centre, radius))
     except ValueError:
         circle = None
-    if observers is None:
-        observers = tuple((name, way) for name, ways in WAYS.items() for way in ways)
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
-    for name, way in observers:
-        refusal = BY_NAME[name].refusal(form)
-        if refusal:
-            refused[name] = refusal
+    for name, way in ((name, way) for name, ways in WAYS.items() for way in ways):
+        try:
+            observer = observer_of(surface, outputs, name, way)
+        except ValueError as error:
+            refused[name] = str(error)
         else:
-            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer_of(surface, outputs, name, way))
+            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer)
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],
@@ -159,7 +161,9 @@ def structure_for_the_page(
     }
 
 
-def texts_of(key: str) -> Texts:
-    """Texts of the structure with this name, for all observers."""
-    surface, outputs = key.split(" ")
-    return structure_for_the_page(surface, tuple(outputs.split("+")))
+def texts_for_the_page() -> Parts:
+    """Everything that the lab offers: the model's own texts, and every form."""
+    yield "", model_for_the_page()
+    for surface in SURFACES:
+        for outputs in outputs_of(surface):
+            yield f"forms/{key_of(surface, outputs)}", form_for_the_page(surface, outputs)

@@ -1,4 +1,4 @@
-"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, a filter's consistency."""
+"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, whether a filter is consistent."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from functools import lru_cache, reduce
 import numpy as np
 import sympy as sp
 from scipy.linalg import expm
+from scipy.stats import chi2
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.observer.texts import observer_of
 from percept_obs.observability.pointwise import windowed
-from percept_obs.observers.parts import hats
+from percept_obs.observers.base import hats
 from percept_obs.recording import Recording
-from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.tracking.run import Run
 
 INSTANTS = 200
 """At how many instants of the window the error dynamics are linearised, at most."""
 
-Structure = tuple[str, tuple[str, ...], str, str]
+Chosen = tuple[str, tuple[str, ...], str, str]
 """Names of a surface, of the measured outputs, of an observer, and of its way to switch."""
 
 
@@ -34,21 +34,21 @@ def excitation_in_words(form: CanonicalForm, recording: Recording, window: float
     return f"{start}: not excited; one direction is seen only through the dynamics g, or not at all."
 
 
-def has_words(structure: Structure) -> bool:
+def has_words(chosen: Chosen) -> bool:
     """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
-    observer = observer_of(*structure)
-    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(structure)
+    observer = observer_of(*chosen)
+    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(chosen)
 
 
-def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """What is to be said of one observer's run; nothing where it diverged."""
     if run.diverged_at is not None:
         return []
     if run.observer.covariance is not None:
         return [_claim_in_words(run), _consistency_in_words(run)]
-    if run.recording.truth is None or not _can_be_linearised(structure):
+    if run.recording.truth is None or not _can_be_linearised(chosen):
         return []
-    return _error_in_words(structure, run, window)
+    return _error_in_words(chosen, run, window)
 
 
 def _claim_in_words(run: Run) -> str:
@@ -57,23 +57,43 @@ def _claim_in_words(run: Run) -> str:
 
 
 def _consistency_in_words(run: Run) -> str:
-    if not np.isfinite(run.nis[1:]).any():
-        return f"{run.observer.name}: there is no complete sample after the first to test its innovations by."
-    # the estimate starts from the first sample, which therefore tells nothing
-    found = check_consistency(run, samples=1, after=float(run.time[1] - run.time[0]) / 2)
-    return f"{run.observer.name}: it is {found.summary}."
+    """The test of the normalised innovation: its mean per degree of freedom, against that of a consistent filter."""
+    start = f"{run.observer.name}: normalised innovation test"
+    try:
+        # the estimate starts from the first sample, which therefore tells nothing
+        squares = run.normalised_innovation[1:]
+    except np.linalg.LinAlgError:
+        return f"{start}: impossible, its covariance is singular."
+    squares = squares[np.isfinite(squares)]
+    degrees = len(squares) * len(run.observer.form.measured)
+    if not degrees:
+        return f"{start}: impossible, there is no complete sample after the first."
+    mean = float(squares.sum()) / degrees
+    low, high = (float(bound) / degrees for bound in chi2.interval(0.95, degrees))
+    if mean > high:
+        verdict = "overconfident: its errors are larger than it claims; doubt the motion (Q) or the samples (R) more"
+    elif mean < low:
+        verdict = (
+            "conservative: its errors are smaller than it claims; its noise variance (R) is larger than the noise's"
+        )
+    else:
+        verdict = "consistent: its errors are as large as it claims"
+    return (
+        f"{start}: {mean:.3g} per degree of freedom; 95 % of consistent filters lie from {low:.3g} to {high:.3g}. "
+        f"It is {verdict}."
+    )
 
 
-def _can_be_linearised(structure: Structure) -> bool:
+def _can_be_linearised(chosen: Chosen) -> bool:
     """Whether the estimate is a part of the state, and the flow smooth where the error is zero."""
-    observer = observer_of(*structure)
-    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and structure[-1] != "sign"
+    observer = observer_of(*chosen)
+    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and chosen[-1] != "sign"
 
 
 @lru_cache
-def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
+def _at_the_truth(chosen: Chosen) -> Callable[..., list[np.ndarray]]:
     """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
-    observer = observer_of(*structure)
+    observer = observer_of(*chosen)
     form, equations = observer.form, observer.equations
     truth = (*form.x1, *form.x2)
     estimate = equations.state[: len(truth)]
@@ -85,7 +105,7 @@ def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
     return vectorised(symbols, [entry.subs(there, simultaneous=True) for entry in found])
 
 
-def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """How a small error grows or shrinks, and where noise pushes it, from the flow linearised at the truth."""
     observer, recording = run.observer, run.recording
     assert recording.truth is not None
@@ -98,7 +118,7 @@ def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
     shape = [recording.view.values[s] for s in recording.view.parameters]
     gains = {gain.name: gain.value for gain in observer.gains}
     others = run.state[part, size:]
-    entries = _at_the_truth(structure)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
+    entries = _at_the_truth(chosen)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
     J = np.stack(entries[: size**2], axis=-1).reshape(-1, size, size)
     with np.errstate(all="ignore"):  # what grows beyond all numbers is said so below
         steps = expm(J[:-1] * np.diff(run.time[part])[:, None, None])

@@ -4,6 +4,7 @@
 // pictures and words; name it below, as its Python side names it in `kind`. Charts, controls, groups of controls, the
 // layout, modules made from printed texts, and the line to Python are in common/ and know nothing of observers.
 
+import { modelOf } from "./common/texts.js";
 import { ObserverLab } from "./observer/lab.js";
 import { PointsLab } from "./points/lab.js";
 import { StructureLab } from "./structure/lab.js";
@@ -11,12 +12,12 @@ import { StructureLab } from "./structure/lab.js";
 const LABS = { observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 export default {
-  render({ model, el }) {
+  async render({ model, el }) {
     const place = document.createElement("div");
     el.append(place);
     let lab;
     try {
-      lab = new LABS[model.get("kind")](model, place);
+      lab = new LABS[model.get("kind")](model, place, await modelOf(model.get("texts"), model.get("model")));
     } catch (error) {
       place.textContent = `The lab could not be opened: ${error.message}`;
       throw error;

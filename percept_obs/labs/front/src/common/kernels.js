@@ -1,29 +1,19 @@
-// The functions that settings need, made from texts of which some follow after a lab has been opened.
+// The functions that settings need, made from the texts that were printed for them.
 
 import { Modules } from "./modules.js";
 
 /**
  * Functions of a model.  A lab of its own says in methods of its own:
- *   has(settings)      whether the texts that these settings need have come
  *   needed(settings)   names and texts of the modules that they are made of
  */
 export class PrintedKernels {
   constructor(model, load) {
     this.model = model;
     this.modules = new Modules(load);
-    this.whole = new Set();
-    this.waiters = [];
   }
 
-  /** Go on with what has waited for a part. */
-  came(part) {
-    this.whole.add(part);
-    for (const retry of this.waiters.splice(0)) retry();
-  }
-
-  /** Wait for what settings need, and load it. */
+  /** Load what settings need. */
   async prepare(settings) {
-    while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
     await Promise.all(this.needed(settings).map(([key, texts]) => this.modules.prepare(key, texts)));
   }
 

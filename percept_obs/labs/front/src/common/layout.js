@@ -11,9 +11,6 @@ export function build(lab, place, presets) {
   const pythonError = element("p", { class: "problem percept-obs-error", role: "alert", hidden: true });
   const silence = element("p", { class: "silence", role: "status", hidden: true });
   const notice = element("p", { class: "notice", role: "status", hidden: true });
-  const progress = element("progress", { "aria-label": "Equations that have come from Python" });
-  const awaited = element("span");
-  const waiting = element("div", { class: "waiting", role: "status", hidden: true }, progress, awaited);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
   const verdicts = element("ul", { class: "verdicts" });
   const why = element("ul", { class: "why" });
@@ -109,7 +106,6 @@ export function build(lab, place, presets) {
     problem,
     pythonError,
     notice,
-    waiting,
     ...(lab.head ? [lab.head] : []),
     element(
       "div",
@@ -161,14 +157,6 @@ export function build(lab, place, presets) {
     notice(text) {
       put(notice, text);
       notice.hidden = !text;
-    },
-    waiting(found) {
-      waiting.hidden = !found;
-      if (!found) return;
-      const { done, of, reason } = found;
-      progress.max = of;
-      progress.value = done;
-      put(awaited, reason || `Python is still printing these equations: ${done} of ${of} parts are here.`);
     },
     analysis(sentences) {
       fill(analysis, sentences);

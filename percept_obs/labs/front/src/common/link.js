@@ -2,37 +2,24 @@
 
 const PATIENCE = 4000;
 
-/** Sends settings and summary, hears of parts and analyses, and tells when Python does not answer. */
+/** Sends settings and summary, hears what Python adds to them, and tells when Python does not answer. */
 export class Link {
-  constructor(widget, { onSettings, onAnalysis, onError, onSilence, onPart, onUnprinted }) {
+  constructor(widget, { onSettings, onAnalysis, onError, onSilence }) {
     this.widget = widget;
     this.waitingFor = null;
+    this.sent = null;
     this.onSilence = onSilence;
     this.listeners = {
       "change:settings": () => onSettings(widget.get("settings")),
       "change:error": () => onError(widget.get("error")),
       "change:analysis": () => this.heard(widget.get("analysis"), onAnalysis),
-      "change:unprinted": onUnprinted,
     };
-    const missing = [];
-    for (const part of widget.get("parts")) {
-      const there = () => Object.keys(widget.get(part) ?? {}).length > 0;
-      this.listeners[`change:${part}`] = () => there() && onPart(part, widget.get(part));
-      if (there()) onPart(part, widget.get(part));
-      else missing.push(part);
-    }
     for (const [event, listener] of Object.entries(this.listeners)) widget.on(event, listener);
-    if (missing.length) this.ask();
-  }
-
-  /** Python begins to print the parts by itself in a notebook; elsewhere it waits to be asked. */
-  ask() {
-    this.widget.set("missed", true);
-    this.save();
   }
 
   /** Hand the latest state over. */
   send(settings, summary) {
+    this.sent = { settings, serial: summary.serial };
     this.widget.set("settings", settings);
     this.widget.set("summary", summary);
     this.save();
@@ -49,12 +36,13 @@ export class Link {
     }
   }
 
+  /** Take an answer, with the settings that it is about, if they are the latest that were sent. */
   heard(analysis, onAnalysis) {
-    if (analysis.of !== this.waitingFor && this.waitingFor !== null) return;
+    if (analysis.serial !== this.sent?.serial) return;
     this.waitingFor = null;
     clearTimeout(this.timer);
     this.onSilence(undefined);
-    onAnalysis(analysis);
+    onAnalysis(analysis, this.sent.settings);
   }
 
   close() {

@@ -14,9 +14,9 @@ const BETWEEN_WORDS = 250;
  *   afterAct(act)      the settings that a preset's act shows
  */
 export class Live {
-  constructor(widget) {
+  constructor(widget, model) {
     this.widget = widget;
-    this.model = widget.get("model");
+    this.model = model;
     this.settings = structuredClone(widget.get("settings"));
     this.cursor = null;
     this.width = 800;
@@ -30,11 +30,9 @@ export class Live {
   open() {
     this.link = new Link(this.widget, {
       onSettings: (settings) => this.adopt(settings),
-      onAnalysis: (analysis) => this.analysed(analysis),
+      onAnalysis: (analysis, settings) => settings === this.settings && this.analysed(analysis),
       onError: (text) => this.view.pythonError(text),
       onSilence: (silence) => this.view.silence(silence),
-      onPart: (part, value) => this.arrived(part, value),
-      onUnprinted: () => this.schedule(),
     });
     this.observeSurroundings();
     this.panel.show();
@@ -117,11 +115,6 @@ export class Live {
     return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
   }
 
-  /** How much of what follows is there, for those who have to wait. */
-  progress() {
-    return { done: this.kernels.whole.size, of: this.widget.get("parts").length, reason: this.widget.get("unprinted") };
-  }
-
   allows(observer, gain, value) {
     return this.kernels.allows(observer, gain, value);
   }
@@ -129,16 +122,6 @@ export class Live {
   /** The settings, or those that take their place where they are impossible. */
   fitted(settings) {
     return settings;
-  }
-
-  /** Take a part of the model that Python hands over after opening. */
-  arrived(part, value) {
-    this.kernels.arrive(part, value);
-    if (!this.link) return;
-    this.panel.shownFor = null;
-    this.settings = this.fitted(this.settings);
-    this.panel.show();
-    if (this.shown?.settings !== this.settings) this.rest();
   }
 
   restSoon() {
@@ -181,7 +164,6 @@ export class Live {
       this.wait(settings);
       return;
     }
-    this.view.waiting(null);
     try {
       this.shown = this.show(settings);
       this.theme ??= themeOf(this.view.root);
@@ -195,7 +177,6 @@ export class Live {
   }
 
   wait(settings) {
-    this.view.waiting(this.progress());
     if (this.awaited === settings) return;
     this.awaited = settings;
     this.prepare(settings).then(

@@ -21,7 +21,7 @@ export class Engine extends Runner {
   /** Everything that is shown for these settings, with the functions that Kernels.of() gave for them. */
   run(settings, kernels) {
     const chart = this.model.surfaces[settings.surface];
-    const structure = this.model.structures[keyOf(settings)];
+    const structure = this.model.forms[keyOf(settings)];
     const recording = this.camera.record(settings, kernels, chart);
     const shown = { settings, ...recording, width: chart.coordinates.length, names: chart.coordinates, runs: [] };
     shown.tolerance = TOLERANCE;

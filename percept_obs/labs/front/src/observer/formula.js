@@ -6,7 +6,7 @@ import { keyOf } from "./kernels.js";
 /** Equations of the canonical form and of the observers. */
 export class Formulas extends ObserverFormulas {
   systemOf(settings) {
-    return { title: "What is measured and what is hidden", lines: this.model.structures[keyOf(settings)].formulas };
+    return { title: "What is measured and what is hidden", lines: this.model.forms[keyOf(settings)].formulas };
   }
 
   numbersOf({ A, b, normal }) {

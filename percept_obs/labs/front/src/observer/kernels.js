@@ -1,37 +1,23 @@
-// The functions that settings need: of the point, the surface, the structure, the observers.
+// The functions that settings need: of the point, the surface, the form, the observers.
 
 import { PrintedKernels } from "../common/kernels.js";
 import { switchOf } from "../common/observer_list.js";
 
-/** Name of a structure: what is seen, and what of it is measured; as in structures.py. */
+/** Name of a form: what is seen, and what of it is measured; as in texts.py. */
 export function keyOf({ surface, outputs }) {
   return `${surface} ${outputs.join("+")}`;
 }
 
-/** All functions of a model; some structures follow after it has been opened. */
+/** All functions of a model. */
 export class Kernels extends PrintedKernels {
-  /** Take a structure with all its observers. */
-  arrive(key, structure) {
-    this.model.structures[key] = structure;
-    this.came(key);
-  }
-
-  /** Whether the texts that settings need have come. */
-  has(settings) {
-    const structure = this.model.structures[keyOf(settings)];
-    const there = (name) => structure.refused[name] || structure.observers[name]?.[switchOf(settings, name)];
-    return Boolean(structure) && settings.observers.every(there);
-  }
-
-  /** The observers that do not exist for these settings' structure or recording, with the reasons. */
+  /** The observers that do not exist for these settings' form or recording, with the reasons. */
   refused(settings) {
-    const { structures, recordings } = this.model;
-    return { ...structures[keyOf(settings)]?.refused, ...recordings[settings.scenario]?.refused };
+    const { forms, recordings } = this.model;
+    return { ...forms[keyOf(settings)]?.refused, ...recordings[settings.scenario]?.refused };
   }
 
-  /** The functions that settings need, or undefined while one of them has to be waited for. */
+  /** The functions that settings need, or undefined while one of them is not loaded. */
   of(settings) {
-    if (!this.has(settings)) return undefined;
     const found = Object.fromEntries(this.needed(settings).map(([key]) => [key, this.modules.get(key)]));
     return Object.values(found).every(Boolean) ? this.arranged(settings, found) : undefined;
   }
@@ -39,14 +25,14 @@ export class Kernels extends PrintedKernels {
   needed(settings) {
     const key = keyOf(settings);
     const { project, ray, foe } = this.model.surfaces[settings.surface];
-    const structure = this.model.structures[key];
+    const form = this.model.forms[key];
     const groups = [
       ["plant", { run: this.model.plant }],
       [settings.surface, { project, ray, foe }],
-      [key, { w: structure.w, ...(structure.circle && { circle: structure.circle }) }],
+      [key, { w: form.w, ...(form.circle && { circle: form.circle }) }],
     ];
-    for (const name of settings.observers.filter((n) => !structure.refused[n])) {
-      const { run, start, estimate, variances, gap } = structure.observers[name][switchOf(settings, name)];
+    for (const name of settings.observers.filter((n) => !form.refused[n])) {
+      const { run, start, estimate, variances, gap } = form.observers[name][switchOf(settings, name)];
       groups.push(this.gains(name));
       const texts = { run, start, estimate, ...(variances && { variances }), ...(gap && { gap }) };
       groups.push([nameOf(settings, name), texts]);

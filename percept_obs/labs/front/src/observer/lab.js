@@ -3,6 +3,7 @@
 import { chartInWords } from "../common/chart_parts.js";
 import { TimeChart } from "../common/charts.js";
 import { ImagePlane } from "../common/image_plane.js";
+import { same } from "../common/equal.js";
 import { build } from "../common/layout.js";
 import { Live } from "../common/live.js";
 import { linearScale } from "../common/scales.js";
@@ -19,8 +20,8 @@ import { imagePlaneInWords, reasons } from "./text.js";
 const ALWAYS_POSSIBLE = "identifier_based";
 
 export class ObserverLab extends Live {
-  constructor(widget, place) {
-    super(widget);
+  constructor(widget, place, model) {
+    super(widget, model);
     this.kernels = new Kernels(this.model);
     this.engine = new Engine(this.model);
     this.ghostEngine = new Engine(this.model);
@@ -69,7 +70,10 @@ export class ObserverLab extends Live {
   // What is there to show it with.
 
   fitted(asked) {
-    const settings = withOutputsOf(this.model.surfaces[asked.surface], asked);
+    const { outputs } = this.model.surfaces[asked.surface];
+    const allowed = outputs.some((names) => same(names, asked.outputs));
+    const settings = allowed ? asked : { ...asked, outputs: outputs[0] };
+    if (!allowed) this.view.notice(`The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`);
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
     if (!lost.length) return settings;
@@ -131,10 +135,4 @@ export class ObserverLab extends Live {
   summary(serial) {
     return summaryOf(this.shown, serial, this.model);
   }
-}
-
-/** The settings, with all outputs where the surface does not allow those that were chosen. */
-function withOutputsOf({ outputs }, settings) {
-  const allowed = outputs.some((names) => names.join() === settings.outputs.join());
-  return allowed ? settings : { ...settings, outputs: [...outputs[0]] };
 }

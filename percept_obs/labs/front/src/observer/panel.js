@@ -54,10 +54,11 @@ export class Panel extends Fieldsets {
     outputs.show = () => {
       show();
       const track = model.recordings[lab.settings.scenario];
-      const offered = model.surfaces[lab.settings.surface].outputs.map((names) => names.join("+"));
       for (const input of outputs.parts) {
-        const missing = track && !input.value.split("+").every((name) => track.names.includes(name));
-        input.disabled = Boolean(missing) || !offered.includes(input.value);
+        const names = input.value.split("+");
+        const lost = track && !names.every((name) => track.names.includes(name));
+        const { outputs } = model.surfaces[lab.settings.surface];
+        input.disabled = Boolean(lost) || !outputs.some((allowed) => allowed.join("+") === input.value);
       }
     };
     return this.fieldset("Measure", {}, this.add(outputs));

@@ -5,7 +5,7 @@ import { DASHES, KEPT, SOLID } from "../common/lines.js";
 import { around, linesOf, marksOf } from "../common/plots.js";
 import { readable } from "../common/scales.js";
 
-const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
+const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range" };
 
 export const LABELS = {
   outputs: "Image coordinates over time",

@@ -6,8 +6,6 @@ export class Functions {
   constructor(model, load) {
     this.model = model;
     this.modules = new Modules(load);
-    // Parts that have come: none follow.
-    this.whole = new Set();
   }
 
   /** The functions of these settings, or undefined while they are not loaded. */

@@ -18,8 +18,8 @@ import { decayInWords, imagePlaneInWords, readingAt, reasons, summaryOf, verdict
 const FARTHEST = 1000;
 
 export class PointsLab extends Live {
-  constructor(widget, place) {
-    super(widget);
+  constructor(widget, place, model) {
+    super(widget, model);
     this.kernels = new Functions(this.model);
     this.engine = new Engine(this.model);
     this.ghostEngine = new Engine(this.model);
@@ -100,12 +100,6 @@ export class PointsLab extends Live {
 
   copy() {
     return pythonOf(this.shown, this.model);
-  }
-
-  // What is there to show it with.
-
-  progress() {
-    return { done: 0, of: 1, reason: "The page prepares these equations." };
   }
 
   // What is shown.

@@ -25,7 +25,7 @@ export class StructureEngine extends Runner {
       const seen = { truth: image, width: 3, names: OUTPUTS, ...this.columns("image", image, 3) };
       return Object.assign(shown, { measured: [0, 1, 2], hidden: [], hiddenNames: [], ...seen });
     }
-    const choice = this.model.choices[keyOf(settings)];
+    const choice = this.model.unknowns[keyOf(settings)];
     const hidden = choice.unknown.map((_, i) => 3 + i);
     const hiddenNames = choice.unknown.map((_, i) => `theta${i + 1}`);
     const width = 3 + hidden.length;
@@ -39,7 +39,7 @@ export class StructureEngine extends Runner {
     lazily(shown, "guard", () => this.guard(shown, inputs, kernels));
     lazily(shown, "limits", () => this.limits(settings, inputs, kernels));
     shown.runs = settings.observers.map((name) => {
-      const kernel = this.model.kernels[hidden.length].observers[name];
+      const kernel = this.model.forms[hidden.length].observers[name];
       const run = this.follow(name, settings.gains[name], shown, inputs, kernel, kernels.observers[name], asked);
       run.innovation = () => this.innovation(run, inputs.last, name);
       return this.readable(run, shown, `estimate ${name}`);
@@ -149,7 +149,7 @@ export class StructureEngine extends Runner {
     return settings.observers.flatMap((name) => {
       const { fastest } = kernels.observers[name];
       if (!fastest) return [];
-      const kernel = this.model.kernels[settings.unknown.length].observers[name];
+      const kernel = this.model.forms[settings.unknown.length].observers[name];
       const x = Float64Array.from([0, ...kernel.gains.map((gain) => settings.gains[name][gain])]);
       const out = new Float64Array(1);
       const rateAt = (k) => {

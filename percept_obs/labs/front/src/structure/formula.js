@@ -6,7 +6,7 @@ import { keyOf } from "./kernels.js";
 /** Equations of the choice of unknowns and of the observers. */
 export class StructureFormulas extends ObserverFormulas {
   systemOf(settings) {
-    const { formulas } = this.model.choices[keyOf(settings)] ?? { formulas: [] };
+    const { formulas } = this.model.unknowns[keyOf(settings)] ?? { formulas: [] };
     return { title: "What multiplies the unknowns, and what is known", lines: formulas };
   }
 

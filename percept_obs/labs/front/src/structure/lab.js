@@ -20,8 +20,8 @@ import { Scene } from "./scene.js";
 import { imagePlaneInWords, readingAt, reasons, sceneInWords } from "./text.js";
 
 export class StructureLab extends Live {
-  constructor(widget, place) {
-    super(widget);
+  constructor(widget, place, model) {
+    super(widget, model);
     this.kernels = new StructureKernels(this.model);
     this.engine = new StructureEngine(this.model);
     this.ghostEngine = new StructureEngine(this.model);

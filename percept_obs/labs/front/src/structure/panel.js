@@ -158,7 +158,7 @@ export class StructurePanel extends Fieldsets {
   /** Whether settings have no more steps than the page can take, and a positive number where one is needed. */
   fits(changes) {
     const { duration, period, step } = { ...this.lab.settings, ...changes };
-    const [low, high] = this.model.ranges[Object.keys(changes)[0]];
+    const { low, high } = this.model.schema[Object.keys(changes)[0]];
     const [value] = Object.values(changes);
     return value >= low && value <= high && duration / Math.min(period, step) <= this.model.mostSteps;
   }

@@ -1,0 +1,17 @@
+// What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
+
+import { lazily } from "./memory.js";
+
+/** A lab's model: the parts that were printed for it, compressed, and what Python hands over besides. */
+export async function modelOf(texts, given) {
+  const unpacked = new Blob([texts]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const model = {};
+  for (const line of (await new Response(unpacked).text()).split("\n")) {
+    const tab = line.indexOf("\t");
+    const [group, name] = line.slice(0, tab).split("/");
+    const read = () => JSON.parse(line.slice(tab + 1));
+    if (name === undefined) Object.assign(model, read());
+    else lazily((model[group] ??= {}), name, read);
+  }
+  return Object.assign(model, given);
+}
