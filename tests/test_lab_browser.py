@@ -244,7 +244,7 @@ def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder
     cells = [
         OPEN.format(arguments=""),
         "lab.settings = {**lab.settings, 'outputs': ['y2'], 'observers': ['extended_kalman']}",
-        "type(lab).analyse = lambda self, summary: 1 / 0",
+        "type(lab).analyse = lambda self: 1 / 0",
     ]
     write_notebook(folder, "set.ipynb", *cells)
     open_notebook(page, "set.ipynb")

@@ -54,7 +54,7 @@ class Lab(anywidget.AnyWidget):
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
-    settings = traitlets.Any(help="Everything that defines what is shown.").tag(sync=True)
+    settings: Any = traitlets.TraitType({}, help="Everything that defines what is shown.").tag(sync=True)
     summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
     error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
@@ -69,7 +69,8 @@ class Lab(anywidget.AnyWidget):
     def __init_subclass__(cls) -> None:
         """Let the docstring list the settings."""
         super().__init_subclass__()
-        cls.__doc__ = (cls.__doc__ or "").replace("{settings}", cls.schema.listed())
+        if cls.__doc__:  # anywidget makes subclasses without one
+            cls.__doc__ = cls.__doc__.replace("{settings}", cls.schema.listed())
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""

@@ -96,7 +96,8 @@ class Number(Kind):
         return f"{kind} from {' to '.join(bounds)}{'' if self.zero else ', not 0'}{self.reason and f'; {self.reason}'}"
 
     def _read(self, name: str, value: Any) -> float:
-        if isinstance(value, bool) or not isinstance(value, Integral if self.whole else Real):
+        kind: Any = Integral if self.whole else Real
+        if isinstance(value, bool) or not isinstance(value, kind):
             raise self._refusal(name, value)
         if not self.low <= value <= self.high or not (self.zero or value):
             raise self._refusal(name, value)

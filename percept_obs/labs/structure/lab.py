@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import vectorised
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import as_far_as_seen
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
-from percept_obs.labs.structure.texts import OBSERVERS, PHASES, SWING, SWINGING, observer_of
+from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.structure import (
@@ -138,7 +137,7 @@ def motion_of(settings: Settings) -> Motion:
     around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
 
     def known(time: float) -> list[float]:
-        return [*settings["w"], *_swinging(around, swings, settings["rate"], _phases, time)[0]]
+        return [*settings["w"], *swinging(around, swings, settings["rate"], _phases, time, np.sin)]
 
     if settings["rate"] and swings.any():
         return replace(rigid(), signal=Signal(known))
@@ -146,7 +145,6 @@ def motion_of(settings: Settings) -> Motion:
     return rigid(still[:3], still[3:6], still[6:])
 
 
-_swinging = vectorised(SWING, (SWINGING,))
 _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 from itertools import combinations, permutations
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 
@@ -44,9 +45,15 @@ OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
 )
 """Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
 
-SWING = constant, amplitude, rate, phase, time = sp.symbols("constant amplitude rate phase t", real=True)
-SWINGING = constant + amplitude * sp.sin(rate * time + phase)
-"""A component of a velocity that swings around a constant."""
+SWING = sp.symbols("constant amplitude rate phase t", real=True)
+
+
+def swinging(
+    constant: Any, amplitude: Any, rate: Any, phase: Any, time: Any, sin: Callable[[Any], Any] = sp.sin
+) -> Any:
+    """A component of a velocity that swings around a constant."""
+    return constant + amplitude * sin(rate * time + phase)
+
 
 PHASES = {"v_c": (sp.pi / 2, 0, 0), "v_p": (0, sp.pi / 2, 0)}
 """Where each component begins to swing, so that the camera circles and the object wanders."""
@@ -85,7 +92,7 @@ def model_for_the_page() -> Texts:
     return {
         "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
         "project": function_source(POINT, (*surface.image, surface.distance)),
-        "swinging": function_source(SWING, (SWINGING,)),
+        "swinging": function_source(SWING, (swinging(*SWING),)),
         "phases": {name: [float(phase) for phase in phases] for name, phases in PHASES.items()},
         "observers": {
             name: {**observer_for_the_page({"": observer_of(name)}, {"": equations_of(make)}), "title": title}
