@@ -15,7 +15,7 @@ KERNEL = {"kernelspec": {"name": "python3", "display_name": "Python 3", "languag
 
 OPEN = """
 import json, pathlib
-from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs import observer_lab
 lab = observer_lab({arguments})
 def keep(change):
     pathlib.Path("state.new").write_text(json.dumps(lab.settings))
