@@ -63,7 +63,7 @@ class ObserverLab(Lab):
             scenario = scenario.source or "recording"
         known = {name: as_settings(s) for name, s in offered.items()}
         self._recordings = {name: with_affine_motion(name, r) for name, r in tracks.items()}
-        names = Choice(opening=STANDARD["scenario"], names=(*known, *self._recordings))
+        names = Choice(STANDARD["scenario"], (*known, *self._recordings))
         self.schema = Schema(
             SCHEMA | {"scenario": names, "gains": gains(standard_gains("observer_lab"), with_every_gain)}
         )
@@ -92,7 +92,7 @@ class ObserverLab(Lab):
         allowed = part("observer_lab")["surfaces"][surface]["outputs"]
         if recording is not None:
             allowed = [o for o in allowed if set(o) <= set(recording.names)]
-            Choice(names=HOLDS[:2]).read("hold of a recording", settings["hold"])
+            Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
         if outputs not in allowed:
             told = ", ".join(map(str, allowed))
             raise ValueError(f"outputs is {outputs!r}; on the {surface} surface it must be one of {told}")

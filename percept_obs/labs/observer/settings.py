@@ -8,6 +8,9 @@ import numpy as np
 
 from percept_obs.labs.observer.texts import BY_NAME, OUTPUTS, OWN_SWITCH, SURFACES, WAYS
 from percept_obs.labs.shared.schema import (
+    DROPOUT,
+    KEPT,
+    SEED,
     Choice,
     Group,
     Names,
@@ -16,7 +19,6 @@ from percept_obs.labs.shared.schema import (
     Row,
     Schema,
     Settings,
-    Whole,
     noise,
     vector,
 )
@@ -28,12 +30,12 @@ PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 
-def _matrix(about: str) -> Row:
-    return Row(entries=[vector(row, step=0.05) for row in _ROWS], label="Motion A", unit="1/s", about=about)
+def _matrix(about: str = "") -> Row:
+    return Row([vector(row, step=0.05) for row in _ROWS], label="Motion A", unit="1/s", about=about)
 
 
-def _translation(about: str) -> Row:
-    return vector(("b1", "b2", "b3"), usual=(-1, 1), step=0.01, unit="m/s", about=about)
+def _translation(about: str = "") -> Row:
+    return vector(("b1", "b2", "b3"), about, "m/s", usual=(-1, 1), step=0.01)
 
 
 def as_settings(scenario: Scenario) -> Settings:
@@ -57,72 +59,46 @@ def as_settings(scenario: Scenario) -> Settings:
     return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **surface}
 
 
+_TILT: Settings = {"usual": (-1, 1), "step": 0.05}
+_NOT_ALONG = "the plane must not hold the optical axis"
+_WINDOW = "over which w w^T is gathered"
+_THRESHOLD = "|w| below which an instant tells too little"
+
 SCHEMA = Schema(
-    scenario=Choice(opening="ma2005_eq35", names=tuple(SCENARIOS), label="Scenario", about="a name"),
-    A=_matrix("of the true motion X' = A X + b, in 1/s"),
-    b=_translation("of the true motion, in m/s"),
-    X0=vector(("X", "Y", "Z"), usual=(-5, 10), step=0.05, unit="m", about="the point at time 0, in metres"),
-    duration=Number(opening=80.0, low=0.1, high=200, usual=(2, 120), step=1, unit="s", about="seconds"),
-    surface=Choice(opening="pinhole", names=tuple(SURFACES), label="Imaging surface"),
+    scenario=Choice("ma2005_eq35", tuple(SCENARIOS), about="a name"),
+    A=_matrix("of the true motion X' = A X + b"),
+    b=_translation("of the true motion"),
+    X0=vector(("X", "Y", "Z"), "the point at time 0", "m", usual=(-5, 10), step=0.05),
+    duration=Number(80.0, 0.1, 200, (2, 120), 1, unit="s"),
+    surface=Choice("pinhole", tuple(SURFACES)),
     normal=Row(
-        entries=[
-            Number(label="n1", usual=(-1, 1), step=0.05),
-            Number(label="n2", usual=(-1, 1), step=0.05),
-            Number(
-                label="n3",
-                opening=1.0,
-                usual=(-1, 1),
-                step=0.05,
-                zero=False,
-                reason="the plane must not hold the optical axis",
-            ),
+        [
+            *(Number(label=label, **_TILT) for label in ("n1", "n2")),
+            Number(1.0, label="n3", zero=False, reason=_NOT_ALONG, **_TILT),
         ],
         about="the normal vector of a plane",
     ),
-    outputs=Names(opening=["y1", "y2"], names=OUTPUTS[0], about="names of what is measured"),
-    observers=Names(opening=["identifier_based"], names=tuple(BY_NAME), about="names"),
-    gains=Group(of={}, about="for each observer, its gains by name"),
-    switches=Group(
-        of={name: Choice(opening=own, names=WAYS[name]) for name, own in OWN_SWITCH.items()},
-        partial=True,
-        about="for each observer that switches, how",
-    ),
-    believed=Optional(
-        of=Group(of={"A": _matrix(""), "b": _translation("")}),
-        about="None, or the A and the b that the observers believe",
-    ),
-    noise=noise(size=Number(low=0, high=1, usual=(0, 0.05), step=0.0005, label="bound or σ")),
-    dropout=Number(low=0, high=0.95, usual=(0, 0.9), step=0.01, label="lost samples", about="share that is lost"),
-    seed=Number(opening=0, low=0, high=2**32 - 1, usual=(0, 100), step=1, whole=True, about="of noise and losses"),
-    period=Number(opening=0.01, low=1e-3, high=1, usual=(0.002, 0.2), log=True, unit="s", about="seconds"),
-    hold=Choice(opening="zero", names=HOLDS, label="Hold"),
+    outputs=Names(["y1", "y2"], OUTPUTS[0], about="names of what is measured"),
+    observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
+    gains=Group({}, about="for each observer, its gains by name"),
+    switches=Group({n: Choice(own, WAYS[n]) for n, own in OWN_SWITCH.items()}, partial=True, about="by observers"),
+    believed=Optional(Group({"A": _matrix(), "b": _translation()}), about="None, or the motion that observers believe"),
+    noise=noise(size=Number(0.0, 0, 1, (0, 0.05), 0.0005, label="bound or σ")),
+    dropout=DROPOUT,
+    seed=SEED,
+    period=Number(0.01, 1e-3, 1, (0.002, 0.2), unit="s"),
+    hold=Choice("zero", HOLDS),
     start=Group(
-        of={
-            "mode": Choice(opening="own", names=("own", "zero", "chosen"), label="x̂ starts at"),
+        {
+            "mode": Choice("own", ("own", "zero", "chosen"), label="x̂ starts at"),
             "values": vector(("y1", "y2", "y3"), usual=(-2, 2), step=0.01),
         },
         about='a mapping of mode, "own", "zero" or "chosen", and the chosen values',
     ),
-    window=Number(
-        opening=10.0,
-        low=0.1,
-        high=200,
-        usual=(0.5, 30),
-        step=0.5,
-        unit="s",
-        about="seconds over which w w^T is gathered",
-    ),
-    threshold=Number(
-        opening=0.1,
-        low=0,
-        high=10,
-        usual=(0, 0.5),
-        step=0.005,
-        label="threshold of |w|",
-        about="|w| below which an instant tells too little",
-    ),
-    pictures=Names(opening=["distance", "error", "excitation"], names=PICTURES, about="time charts that are shown"),
-    kept=Optional(of=Whole(), about="None, or the settings of the run that is kept to compare with"),
+    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW),
+    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD),
+    pictures=Names(["distance", "error", "excitation"], PICTURES, about="time charts that are shown"),
+    kept=KEPT,
 )
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
 

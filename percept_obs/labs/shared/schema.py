@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, fields
 from functools import partial
 from numbers import Integral, Real
@@ -64,18 +65,19 @@ class Kind:
         return ValueError(f"{name} is {reprlib.repr(value)}; it must be {self.expected}")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Number(Kind):
-    """A number from `low` to `high`.
+    """A number that opens with a value and may be anything from `low` to `high`.
 
     Parameters
     ----------
+    opening, low, high : float
     usual : two floats, optional
         The part of the range that a slider has.
     step : float, optional
-        A slider's; none where it is logarithmic.
-    log, whole, zero : bool
-        Whether the slider is logarithmic, only whole numbers are allowed, 0 is.
+        A slider's; it is logarithmic without one.
+    whole, zero : bool
+        Whether only whole numbers are allowed, and whether 0 is.
     reason : str
         Why it is bounded, where that is not plain.
     """
@@ -85,7 +87,6 @@ class Number(Kind):
     high: float = 1e3
     usual: tuple[float, float] | None = None
     step: float | None = None
-    log: bool = False
     whole: bool = False
     zero: bool = True
     reason: str = ""
@@ -104,11 +105,12 @@ class Number(Kind):
         return int(value) if self.whole else float(value)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Choice(Kind):
     """One of several names."""
 
-    names: Sequence[str]
+    opening: str = ""
+    names: Sequence[str] = ()
 
     def _expected(self) -> str:
         return f"one of {', '.join(self.names)}"
@@ -119,11 +121,12 @@ class Choice(Kind):
         return value
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Names(Kind):
     """Some of several names, each once; `least` says how many at least."""
 
-    names: Sequence[str]
+    opening: Sequence[str] = ()
+    names: Sequence[str] = ()
     least: int = 1
 
     def _expected(self) -> str:
@@ -137,7 +140,7 @@ class Names(Kind):
         return list(value)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Flag(Kind):
     """Yes or no."""
 
@@ -152,7 +155,7 @@ class Flag(Kind):
         return value
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Row(Kind):
     """A list with an entry of each of some kinds, such as a vector, or a matrix, which is a row of rows."""
 
@@ -173,12 +176,13 @@ class Row(Kind):
         return [entry.read(n, v) for entry, n, v in zip(self.entries, named, values, strict=True)]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Several(Kind):
     """A list of one to `most` entries of one kind."""
 
-    of: Kind
-    most: int
+    opening: Sequence[Any] = ()
+    of: Kind = field(default_factory=Number)
+    most: int = 1
 
     def _expected(self) -> str:
         return f"a list of 1 to {self.most}, each {self.of.expected}"
@@ -190,7 +194,7 @@ class Several(Kind):
         return [self.of.read(f"{name} {k}", entry) for k, entry in enumerate(values, 1)]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Group(Kind):
     """Settings of their own by their names; where it is `partial`, those that are left out stay as they open."""
 
@@ -226,7 +230,7 @@ class GainsOf(Group):
         return found
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Optional(Kind):
     """None, or a value of another kind."""
 
@@ -239,7 +243,7 @@ class Optional(Kind):
         return None if value is None else self.of.read(name, value)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Whole(Kind):
     """Settings of the same lab, which the lab itself reads."""
 
@@ -258,7 +262,7 @@ class Schema(dict[str, Kind]):
     @property
     def opening(self) -> Settings:
         """What every setting opens with."""
-        return {name: kind.opening for name, kind in self.items()}
+        return deepcopy({name: kind.opening for name, kind in self.items()})
 
     def read(self, settings: object, opening: Settings) -> Settings:
         """Settings as plain data, completed by those to open with.
@@ -281,26 +285,27 @@ class Schema(dict[str, Kind]):
 
     def listed(self) -> str:
         """A line for each setting, for a docstring."""
-        return "\n    ".join(f"{name} : {kind.about or kind.expected}" for name, kind in self.items())
+        told = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
+        units = {name: f", in {kind.unit}" if kind.unit else "" for name, kind in self.items()}
+        return "\n    ".join(f"{name} : {told[name]}{units[name]}" for name in self)
 
 
-def vector(entries: Sequence[str], opening: Sequence[float] = (0.0, 0.0, 0.0), about: str = "", **kind: Any) -> Row:
-    """A row of numbers of one kind, with their labels."""
-    numbers = [Number(opening=float(o), label=label, **kind) for o, label in zip(opening, entries, strict=True)]
-    return Row(entries=numbers, about=about)
+def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:
+    """A row of numbers of one kind, with their labels; it opens with zeros."""
+    return Row([Number(label=label, unit=unit, **kind) for label in entries], about=about, unit=unit)
 
 
 def gains(standard: Mapping[str, Mapping[str, float]], observer_of: Callable[[str], Observer]) -> Group:
     """Gains by the observers' names and their own, with the values that they open with."""
     groups = {
         name: GainsOf(
-            of={gain: Number(opening=value, low=-1e300, high=1e300) for gain, value in values.items()},
+            {gain: Number(value, -1e300, 1e300) for gain, value in values.items()},
             partial=True,
             observer=partial(observer_of, name),
         )
         for name, values in standard.items()
     }
-    return Group(of=groups, partial=True, about="for each observer, its gains by name")
+    return Group(groups, partial=True, about="for each observer, its gains by name")
 
 
 def standard_gains(kind: str) -> dict[str, dict[str, float]]:
@@ -311,8 +316,13 @@ def standard_gains(kind: str) -> dict[str, dict[str, float]]:
 
 def noise(**sizes: Number) -> Group:
     """The noise of a camera: its kind, and its sizes by their names."""
-    kind = Choice(opening="uniform", names=("uniform", "gaussian"), label="Noise")
-    return Group(of={"kind": kind, **sizes}, about=f"of the camera: a mapping of kind, {', '.join(sizes)}")
+    kind = Choice("uniform", ("uniform", "gaussian"), label="Noise")
+    return Group({"kind": kind, **sizes}, about=f"of the camera: a mapping of kind, {', '.join(sizes)}")
+
+
+SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random")
+DROPOUT = Number(0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost")
+KEPT = Optional(Whole(), about="None, or the settings of the run that is kept to compare with")
 
 
 def _listed(value: object) -> list[Any] | None:
