@@ -102,8 +102,8 @@ class ObserverLab(Lab):
         for name in settings["observers"]:
             if name in refused:
                 raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
-        if recording is not None and not recording.surface.fits(SURFACES[surface]()):
-            raise ValueError(f"the recording was seen on the {recording.surface.name}, not on the {surface}")
+        if recording is not None and not recording.view.fits(SURFACES[surface]()):
+            raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
         if recording is not None and settings["believed"] is not None:
             raise ValueError("a recording's motion varies and is measured; believed must be None with it")
 

@@ -36,7 +36,7 @@ def track_for_the_page(recording: Recording, motion: str) -> dict[str, Any]:
 def fitting(recording: Recording) -> Settings:
     """Settings that a recording brings with it."""
     duration = float(np.ptp(recording.time))
-    surface = next(kind for kind in SURFACES if recording.surface.fits(SURFACES[kind]()))
+    surface = next(kind for kind in SURFACES if recording.view.fits(SURFACES[kind]()))
     return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
 
 

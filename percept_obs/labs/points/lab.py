@@ -17,7 +17,7 @@ from percept_obs.labs.shared.schema import Settings
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points import (
-    PointsRecording,
+    FirstSight,
     PointsRun,
     PointsScenario,
     UnseenDirection,
@@ -25,14 +25,14 @@ from percept_obs.points import (
     constant,
     luenberger,
     lyapunov,
-    record_points,
     riccati,
     scheduled,
-    track_points,
 )
+from percept_obs.points.form import points_form
 from percept_obs.points.manoeuvre import Manoeuvre
-from percept_obs.points.run import VERDICTS
-from percept_obs.recording import Camera
+from percept_obs.recording import Camera, Recording, record
+from percept_obs.tracking import track
+from percept_obs.tracking.run import VERDICTS
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
@@ -110,7 +110,7 @@ class PointsLab(Lab):
 points_lab = PointsLab
 
 
-def recording_of(settings: Settings) -> PointsRecording:
+def recording_of(settings: Settings) -> Recording:
     """What the camera records of the settings' points."""
     manoeuvre = Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
     with warnings.catch_warnings():
@@ -119,26 +119,23 @@ def recording_of(settings: Settings) -> PointsRecording:
     state = state_of(form, settings["points"]).tolist()
     scenario = PointsScenario("from the lab", form, state, settings["duration"])
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
-    camera = Camera(settings["period"], noise, settings["dropout"])
-    recording = record_points(scenario, camera=camera, seed=settings["seed"], view=settings["view"])
+    camera = Camera(settings["period"], noise, settings["dropout"], settings["view"])
+    recording = record(scenario, camera=camera, seed=settings["seed"])
     for point, times in enumerate(settings["hidden"]):
         if times is not None:
-            recording = recording.hidden(point, *times)
+            recording = recording.without(times[0], times[1], point)
     return recording
 
 
 def run_of(settings: Settings) -> PointsRun:
     """The run that lab settings stand for."""
     recording = recording_of(settings)
+    form = points_form(recording)
     assert recording.truth is not None
-    begin = None
+    begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None
     if settings["start"] == "error":
-        begin = recording.truth[0] - settings["error"] * np.resize(ERROR, recording.form.states)
-    return track_points(
-        recording,
-        luenberger(recording.form, _WEIGHTS[settings["weight"]](settings)),
-        begin,
-        settings["depth"] if settings["start"] == "rays" else None,
-        hold=settings["hold"],
-        step=settings["step"],
-    )
+        begin = recording.truth[0] - settings["error"] * np.resize(ERROR, form.states)
+    observer = luenberger(form, _WEIGHTS[settings["weight"]](settings))
+    run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"])
+    assert isinstance(run, PointsRun)
+    return run

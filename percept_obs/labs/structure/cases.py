@@ -20,7 +20,7 @@ def case_of(number: int) -> dict[str, Any]:
             **{"v_c_swing": swings[0], "v_p_swing": swings[1]},
         }
     case = chwa2019_experiment(corollary.section)
-    known = case.scenario.motion.known(0.0)[0].tolist()
+    known = case.motion.known(0.0)[0].tolist()
     return fixed | {
         **{"ybar": [0.32, 0.3, 0.05], "scale": case.scale, "v_c": known[3:6], "v_p": known[6:]},
         **{"v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3},

@@ -16,14 +16,14 @@ from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gai
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
-from percept_obs.recording import Camera, Recording, Scenario
+from percept_obs.recording import Recording, record
 from percept_obs.structure import (
     QUANTITIES,
     GivenDepth,
     ImpossibleChoice,
+    ScaledDepthCamera,
     StructureAndMotion,
     StructureScenario,
-    record_structure,
 )
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.surfaces import BehindCamera, pinhole
@@ -159,14 +159,12 @@ def _recorded_once(text: str, unknowns: StructureAndMotion) -> Recording:
     settings = json.loads(text)
     y1, y2, ybar3 = settings["ybar"]
     depth = 1 / (settings["scale"] * ybar3)
-    place = (y1 * depth, y2 * depth, depth)
-    scenario = Scenario("the lab's", motion_of(settings), place, settings["duration"], pinhole())
-    make, period = NOISES[settings["noise"]["kind"]], settings["period"]
-    simulate = partial(
-        record_structure,
-        StructureScenario(scenario, settings["scale"], unknowns),
-        camera=Camera(period, make(settings["noise"]["size"])),
-        depth=GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"]),
-        seed=settings["seed"],
+    place, scale = (y1 * depth, y2 * depth, depth), settings["scale"]
+    scenario = StructureScenario(
+        "the lab's", motion_of(settings), place, settings["duration"], pinhole(), scale=scale, choice=unknowns
     )
+    make, period = NOISES[settings["noise"]["kind"]], settings["period"]
+    source = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])
+    camera = ScaledDepthCamera(period, make(settings["noise"]["size"]), depth=source)
+    simulate = partial(record, scenario, camera=camera, seed=settings["seed"])
     return as_far_as_seen(simulate, scenario, period)

@@ -10,7 +10,7 @@ from percept_obs.tracking.run import SETTLED_PART, Run
 
 def late_errors(title: str, run: Run) -> list[str]:
     """How far the estimates of the unknown quantities lie from the truth over the last tenth of the run."""
-    unknowns = run.recording.surface
+    unknowns = run.recording.view
     assert isinstance(unknowns, StructureAndMotion)
     late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
     found, true = (unknowns.quantities(values[late, 3:]) for values in (run.estimate, run.truth))
