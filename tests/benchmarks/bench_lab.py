@@ -138,7 +138,7 @@ def opened(page, folder, arguments, lab="observer_lab", handle="foe"):
     open_notebook(page, "bench.ipynb")
     page.locator(".jp-Cell").first.click()
     page.keyboard.press("Shift+Enter")
-    page.wait_for_selector(".jp-InputPrompt:has-text('[1]')", timeout=120_000)
+    page.wait_for_function("/[0-9]/.test(document.querySelector('.jp-InputPrompt').textContent)", timeout=120_000)
     page.wait_for_selector(IDLE)
     page.evaluate(OPENING.replace("SWITCH", json.dumps(SWITCH[lab])))
     page.keyboard.press("Shift+Enter")

@@ -22,7 +22,7 @@ from percept_obs.recording import Camera, Recording, Scenario, record
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
 from percept_obs.tracking.following import StepTooLong, track
-from percept_obs.tracking.run import SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
 
 
 class ObserverLab(Lab):
@@ -79,6 +79,7 @@ class ObserverLab(Lab):
             pictures=PICTURES,
             verdicts=dict(VERDICTS),
             settledPart=SETTLED_PART,
+            remedy=REMEDY,
         )
 
     def run(self) -> dict[str, Run]:

@@ -28,7 +28,7 @@ from percept_obs.structure import (
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.tracking.following import LARGEST_STEP_RATE, TOO_LONG, StepTooLong, track
-from percept_obs.tracking.run import SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
@@ -64,6 +64,7 @@ class StructureLab(Lab):
             pictures=PICTURES,
             verdicts=dict(VERDICTS),
             settledPart=SETTLED_PART,
+            remedy=REMEDY,
             tooLong=TOO_LONG,
             largestStepRate=LARGEST_STEP_RATE,
             mostSteps=MOST_STEPS,

@@ -4,9 +4,9 @@ import { sampleAt } from "./image_frame.js";
 import { readable, short } from "./scales.js";
 
 /** What happened to one observer, as Run.verdict() in Python. */
-export function verdict(run, shown, { verdicts, settledPart }) {
+export function verdict(run, shown, { verdicts, settledPart, remedy }) {
   const say = (which, values) => verdicts[which].replace(/{(\w+)}/g, (_, name) => values[name]);
-  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt) });
+  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt), remedy });
   const count = run.resets.length;
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
@@ -18,7 +18,7 @@ export function verdict(run, shown, { verdicts, settledPart }) {
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
   const inside = length - run.settling >= settledPart * length ? "converged" : "late";
   const words = say(run.settling === Infinity ? "outside" : inside, {
-    hidden: shown.hiddenNames.join(", "),
+    judged: shown.hiddenNames.join(", "),
     error: short(run.error.at(-1), 2),
     tolerance: short(shown.tolerance, 6),
     time: short(run.settling),
