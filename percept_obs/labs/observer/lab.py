@@ -38,11 +38,6 @@ class ObserverLab(Lab):
         Those to open with, such as ``outputs=["y1"]``:
 
     {settings}
-
-    Raises
-    ------
-    ValueError
-        If a setting is unknown or makes no sense.
     """
 
     schema = SCHEMA

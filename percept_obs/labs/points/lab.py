@@ -57,11 +57,6 @@ class PointsLab(Lab):
         Those to open with, such as ``state="independent"``:
 
     {settings}
-
-    Raises
-    ------
-    ValueError
-        If a setting is unknown or makes no sense.
     """
 
     schema = SCHEMA

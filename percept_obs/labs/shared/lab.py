@@ -23,6 +23,14 @@ BUNDLE = FRONT / "lab.js"
 FROM_THE_PAGE = ("settings", "summary")
 """What the page may set."""
 
+REFUSES = """
+
+    Raises
+    ------
+    ValueError
+        If a setting is unknown or makes no sense."""
+"""The end of every lab's docstring."""
+
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
 
@@ -70,7 +78,7 @@ class Lab(anywidget.AnyWidget):
         """Let the docstring list the settings."""
         super().__init_subclass__()
         if cls.__doc__:  # anywidget makes subclasses without one
-            cls.__doc__ = cls.__doc__.replace("{settings}", cls.schema.listed())
+            cls.__doc__ = cls.__doc__.replace("{settings}", cls.schema.listed() + REFUSES)
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""

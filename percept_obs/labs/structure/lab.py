@@ -37,17 +37,14 @@ MOST_STEPS = 200_000
 class StructureLab(Lab):
     """The lab of structure and motion; `settings` define everything, and may be set from Python as well.
 
+    Unknowns that cannot be told apart are shown, with the reason.
+
     Parameters
     ----------
     **settings
         Those to open with, such as ``unknown=["v_p1", "v_p2", "v_p3"]``:
 
     {settings}
-
-    Raises
-    ------
-    ValueError
-        If a setting is unknown or makes no sense.  Unknowns that cannot be told apart are shown, with the reason.
     """
 
     schema = SCHEMA
