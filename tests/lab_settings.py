@@ -10,7 +10,7 @@ import numpy as np
 
 import percept_obs.labs
 from percept_obs.labs.observer.lab import runs
-from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, outputs_of
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, system_of
 from percept_obs.labs.shared.printed import unpacked
 from percept_obs.system.motion import affine
 from percept_obs.tracking.following import StepTooLong, track
@@ -20,7 +20,7 @@ FRONT = Path(percept_obs.labs.__file__).parent / "front"
 NOISY = {"kind": "uniform", "size": 0.01}
 SMOOTH = ["identifier_based", "extended_kalman"]
 ALL = list(BY_NAME)
-KEYS = [key_of(surface, outputs) for surface in SURFACES for outputs in outputs_of(surface)]
+KEYS = [key_of(surface, outputs) for surface in SURFACES for outputs in system_of(surface).output_choices]
 B_AT_THE_SIDE = [0.4, 0.3, 0.3]
 PLANE = [0.2, -0.1, 0.9]
 
@@ -135,7 +135,7 @@ def random_settings(lab, seed):
         return values[rng.integers(len(values))]
 
     surface = one(*SURFACES)
-    outputs = list(one(*outputs_of(surface)))
+    outputs = list(one(*system_of(surface).output_choices))
     model = whole_model(lab)
     refused = model["forms"][key_of(surface, outputs)]["refused"]
     chosen = [name for name in BY_NAME if rng.random() < 0.4 and name not in refused]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.labs.observer.texts import BY_NAME, OUTPUTS, OWN_SWITCH, SURFACES, WAYS
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS
 from percept_obs.labs.shared.schema import (
     DROPOUT,
     KEPT,
@@ -78,7 +78,7 @@ SCHEMA = Schema(
         ],
         about="the normal vector of a plane",
     ),
-    outputs=Names(["y1", "y2"], OUTPUTS[0], about="names of what is measured"),
+    outputs=Names(["y1", "y2"], ("y1", "y2"), about="names of what is measured"),
     observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
     gains=Group({}, about="for each observer, its gains by name"),
     switches=Group({n: Choice(own, WAYS[n]) for n, own in OWN_SWITCH.items()}, partial=True, about="by observers"),

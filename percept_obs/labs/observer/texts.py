@@ -5,8 +5,7 @@ Printed when the package is built, see printing.py; one form, observer or surfac
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 from types import MappingProxyType
 
@@ -20,24 +19,16 @@ from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
-from percept_obs.observers.switching import SWITCHES
 from percept_obs.system import surfaces
-from percept_obs.system.forms import CanonicalForm, NotAffine
+from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
 SURFACES = {make.__name__: make for make in surfaces.SURFACES}
-OUTPUTS = (("y1", "y2"), ("y1",), ("y2",))
-BY_NAME: dict[str, Callable[..., Observer]] = {make.__name__: make for make in OBSERVERS}
+BY_NAME = {make.key: make for make in OBSERVERS}
 
-
-def _ways(make: Callable[..., Observer]) -> tuple[str, ...]:
-    own = inspect.signature(make).parameters.get("switch")
-    return ("",) if own is None else tuple(dict.fromkeys((own.default, *SWITCHES)))
-
-
-WAYS = MappingProxyType({name: _ways(make) for name, make in BY_NAME.items()})
+WAYS = MappingProxyType({name: make.switches or ("",) for name, make in BY_NAME.items()})
 """Ways in which each observer switches, its own first; one without a name for those that do not."""
 
 OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if ways[0]})
@@ -52,23 +43,15 @@ def key_of(surface: str, outputs: Iterable[str]) -> str:
 
 
 @lru_cache
-def outputs_of(surface: str) -> tuple[tuple[str, ...], ...]:
-    """The sets of outputs of which a surface has a canonical form."""
-    return tuple(outputs for outputs in OUTPUTS if _is_affine(surface, outputs))
-
-
-def _is_affine(surface: str, outputs: tuple[str, ...]) -> bool:
-    try:
-        form_of(surface, outputs)
-    except NotAffine:
-        return False
-    return True
+def system_of(surface: str) -> PerspectiveSystem:
+    """Affine motion seen on a surface."""
+    return PerspectiveSystem(MOTION, SURFACES[surface]())
 
 
 @lru_cache
 def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
     """The canonical form of affine motion on a surface."""
-    return PerspectiveSystem(MOTION, SURFACES[surface]()).measure(*outputs)
+    return system_of(surface).measure(*outputs)
 
 
 @lru_cache(maxsize=256)
@@ -80,13 +63,13 @@ def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = ""
     ValueError
         If it does not exist for this form.
     """
-    form = form_of(surface, outputs)
-    return BY_NAME[name](form, switch=way or OWN_SWITCH[name]) if name in OWN_SWITCH else BY_NAME[name](form)
+    switch = {"switch": way or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
+    return BY_NAME[name](form_of(surface, outputs), **switch)
 
 
 def ways_of(name: str) -> dict[str, Observer]:
     """The observer for all image coordinates, in every way in which it switches."""
-    return {way: observer_of("pinhole", OUTPUTS[0], name, way) for way in WAYS[name]}
+    return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
 
 
 def with_every_gain(name: str) -> Observer:
@@ -106,13 +89,12 @@ def model_for_the_page() -> Texts:
 
 
 def _surface_for_the_page(name: str) -> Texts:
-    surface = SURFACES[name]()
-    system = PerspectiveSystem(MOTION, surface)
-    shape = surface.parameters
+    system = system_of(name)
+    surface, shape = system.surface, system.surface.parameters
     return {
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
-        "outputs": outputs_of(name),
+        "outputs": system.output_choices,
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
@@ -140,12 +122,11 @@ def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
     for name, way in ((name, way) for name, ways in WAYS.items() for way in ways):
-        try:
-            observer = observer_of(surface, outputs, name, way)
-        except ValueError as error:
-            refused[name] = str(error)
+        refusal = BY_NAME[name].refusal(form)
+        if refusal:
+            refused[name] = refusal
         else:
-            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer)
+            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer_of(surface, outputs, name, way))
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],
@@ -165,5 +146,5 @@ def texts_for_the_page() -> Parts:
     """Everything that the lab offers: the model's own texts, and every form."""
     yield "", model_for_the_page()
     for surface in SURFACES:
-        for outputs in outputs_of(surface):
+        for outputs in system_of(surface).output_choices:
             yield f"forms/{key_of(surface, outputs)}", form_for_the_page(surface, outputs)

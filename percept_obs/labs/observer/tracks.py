@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.observer.texts import SURFACES
-from percept_obs.labs.shared.printed import part
+from percept_obs.labs.observer.texts import BY_NAME, SURFACES
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.recording import Recording
 from percept_obs.system.motion import affine
@@ -46,8 +45,7 @@ def refused_for(recording: Recording) -> dict[str, str]:
     if signal is None or signal.constant:
         return {}
     reason = "it needs a motion with constant coefficients, but the recording's varies"
-    observers = part("observer_lab")["observers"].items()
-    return {name: reason for name, observer in observers if observer["constantMotion"]}
+    return {name: reason for name, make in BY_NAME.items() if make.constant_motion}
 
 
 def with_affine_motion(name: str, recording: Recording) -> Recording:

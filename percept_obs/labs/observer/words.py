@@ -1,4 +1,4 @@
-"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, whether a filter is consistent."""
+"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, a filter's consistency."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from functools import lru_cache, reduce
 import numpy as np
 import sympy as sp
 from scipy.linalg import expm
-from scipy.stats import chi2
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.observer.texts import observer_of
 from percept_obs.observability.pointwise import windowed
-from percept_obs.observers.base import hats
+from percept_obs.observers.parts import hats
 from percept_obs.recording import Recording
+from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.tracking.run import Run
 
@@ -57,31 +57,11 @@ def _claim_in_words(run: Run) -> str:
 
 
 def _consistency_in_words(run: Run) -> str:
-    """The test of the normalised innovation: its mean per degree of freedom, against that of a consistent filter."""
-    start = f"{run.observer.name}: normalised innovation test"
-    try:
-        # the estimate starts from the first sample, which therefore tells nothing
-        squares = run.normalised_innovation[1:]
-    except np.linalg.LinAlgError:
-        return f"{start}: impossible, its covariance is singular."
-    squares = squares[np.isfinite(squares)]
-    degrees = len(squares) * len(run.observer.form.measured)
-    if not degrees:
-        return f"{start}: impossible, there is no complete sample after the first."
-    mean = float(squares.sum()) / degrees
-    low, high = (float(bound) / degrees for bound in chi2.interval(0.95, degrees))
-    if mean > high:
-        verdict = "overconfident: its errors are larger than it claims; doubt the motion (Q) or the samples (R) more"
-    elif mean < low:
-        verdict = (
-            "conservative: its errors are smaller than it claims; its noise variance (R) is larger than the noise's"
-        )
-    else:
-        verdict = "consistent: its errors are as large as it claims"
-    return (
-        f"{start}: {mean:.3g} per degree of freedom; 95 % of consistent filters lie from {low:.3g} to {high:.3g}. "
-        f"It is {verdict}."
-    )
+    if not np.isfinite(run.nis[1:]).any():
+        return f"{run.observer.name}: there is no complete sample after the first to test its innovations by."
+    # the estimate starts from the first sample, which therefore tells nothing
+    found = check_consistency(run, samples=1, after=float(run.time[1] - run.time[0]) / 2)
+    return f"{run.observer.name}: it is {found.summary}."
 
 
 def _can_be_linearised(chosen: Chosen) -> bool:

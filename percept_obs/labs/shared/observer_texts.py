@@ -30,7 +30,6 @@ def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, 
         "about": about and {"title": about.title, "source": about.source, "needs": about.needs, "claim": about.claim},
         "gains": [gain_for_the_page(gain) for gain in whole.gains],
         "ways": {way: [gain.name for gain in made.gains] for way, made in ways.items()},
-        "constantMotion": whole.constant_motion,
         "equations": dict(equations),
     }
 

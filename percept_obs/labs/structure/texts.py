@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs import observers
 from percept_obs.compile import function_source, source
 from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
@@ -21,7 +22,7 @@ from percept_obs.labs.shared.markup import formula, markup
 from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.structure.cases import case_of
-from percept_obs.observers import Observer, de_luca, extended_kalman, identifier_based, integral_sliding_mode
+from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.observers.integral_sliding_mode import IDEAL
 from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
 from percept_obs.system.forms import CanonicalForm, partition
@@ -33,15 +34,14 @@ _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
 LARGEST = 3
 """How many unknowns there are at most."""
 
+ISMO_WAYS = {
+    "ideal": ("ideal switch", IDEAL),
+    "layer": ("boundary layer", "hyperbolic tangent"),
+    "sign": ("sign", "sign"),
+}
 OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
-    {
-        "ideal": ("ISMO, ideal switch", partial(integral_sliding_mode, switch=IDEAL)),
-        "layer": ("ISMO, boundary layer", partial(integral_sliding_mode, switch="hyperbolic tangent")),
-        "sign": ("ISMO, sign", partial(integral_sliding_mode, switch="sign")),
-        "extended_kalman": ("extended Kalman filter", extended_kalman),
-        "identifier_based": ("identifier-based", identifier_based),
-        "de_luca": ("De Luca", de_luca),
-    }
+    {key: (f"ISMO, {way}", partial(integral_sliding_mode, switch=switch)) for key, (way, switch) in ISMO_WAYS.items()}
+    | {make.key: (make.name, make) for make in observers.OBSERVERS if make.offered_for_structure}
 )
 """Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
 
@@ -185,7 +185,7 @@ def _determinant(choice: StructureAndMotion, letters: dict[str, sp.Symbol]) -> s
 
 
 def form_for_the_page(count: int) -> Texts:
-    """The loops of observers for so many unknowns, and what guards the recovery of theta."""
+    """The loops of observers for so many unknowns, and what guards the inversion that gives theta."""
     form = general_form(count)
     numerator, determinant = form.cramer
     size = sp.sqrt(sum(entry**2 for entry in numerator))
