@@ -15,7 +15,7 @@ KERNEL = {"kernelspec": {"name": "python3", "display_name": "Python 3", "languag
 
 OPEN = """
 import json, pathlib
-from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs import observer_lab
 lab = observer_lab({arguments})
 def keep(change):
     pathlib.Path("state.new").write_text(json.dumps(lab.settings))
@@ -30,9 +30,6 @@ RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.pe
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
         && lab.link.waitingFor === null)"""
 
-HANDED_OVER = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
-    (lab) => lab.kernels.whole.size === lab.widget.get("parts").length)"""
-
 STATE = """(which) => {
     const lab = [...window.perceptObsLabs][which];
     const numbers = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
@@ -45,7 +42,6 @@ STATE = """(which) => {
         verdicts: [...lab.view.root.querySelectorAll(".verdicts li")].map((item) => item.textContent),
         labels: [...lab.view.root.querySelectorAll("figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
         problems: [...lab.view.root.querySelectorAll(".problem:not([hidden])")].map((p) => p.textContent),
-        waiting: !lab.view.root.querySelector(".waiting").hidden,
         notice: lab.view.root.querySelector(".notice").textContent,
         silent: !lab.view.root.querySelector(".silence").hidden,
     };
@@ -64,11 +60,6 @@ def open_lab(page, folder, name="lab.ipynb", arguments="", lab="observer_lab"):
     open_notebook(page, name)
     run_all(page)
     rested(page)
-
-
-def handed_over(page, patience=120):
-    """Wait until every lab has all parts of its model."""
-    page.wait_for_function(HANDED_OVER, timeout=1000 * patience)
 
 
 def rested(page, patience=30):

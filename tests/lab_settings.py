@@ -10,7 +10,8 @@ import numpy as np
 
 import percept_obs.labs
 from percept_obs.labs.observer.lab import runs
-from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, keys, system_of, texts_of
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, system_of
+from percept_obs.labs.shared.printed import unpacked
 from percept_obs.system.motion import affine
 from percept_obs.tracking.following import StepTooLong, track
 
@@ -19,6 +20,7 @@ FRONT = Path(percept_obs.labs.__file__).parent / "front"
 NOISY = {"kind": "uniform", "size": 0.01}
 SMOOTH = ["identifier_based", "extended_kalman"]
 ALL = list(BY_NAME)
+KEYS = [key_of(surface, outputs) for surface in SURFACES for outputs in system_of(surface).output_choices]
 B_AT_THE_SIDE = [0.4, 0.3, 0.3]
 PLANE = [0.2, -0.1, 0.9]
 
@@ -50,10 +52,18 @@ SMOOTH_CASES = {
 }
 
 
+def whole_model(lab):
+    """A lab's model as the page has it: what was printed for it, and what Python hands over."""
+    model = {}
+    for place, text in unpacked(lab.texts).items():
+        group, _, name = place.partition("/")
+        model.update({group: model.get(group, {}) | {name: json.loads(text)}} if name else json.loads(text))
+    return {**model, **json.loads(json.dumps(lab.model, allow_nan=False))}
+
+
 def run_in_node(node, lab, tasks):
-    """What the page's engine makes of each of the settings, once all parts of the model have come."""
-    model = {**lab.model, "structures": {key: texts_of(key) for key in keys()}}
-    task = json.dumps({"model": model, "tasks": tasks}, allow_nan=False)
+    """What the page's engine makes of each of the settings."""
+    task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
     script = FRONT / "tests/run_settings.js"
     answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
@@ -126,11 +136,12 @@ def random_settings(lab, seed):
 
     surface = one(*SURFACES)
     outputs = list(one(*system_of(surface).output_choices))
-    refused = texts_of(key_of(surface, outputs))["refused"]
+    model = whole_model(lab)
+    refused = model["forms"][key_of(surface, outputs)]["refused"]
     chosen = [name for name in BY_NAME if rng.random() < 0.4 and name not in refused]
     gains = {
         name: {g["name"]: float(rng.uniform(g["low"], g["high"])) if rng.random() < 0.7 else g["value"] for g in known}
-        for name, known in ((name, lab.model["observers"][name]["gains"]) for name in BY_NAME)
+        for name, known in ((name, model["observers"][name]["gains"]) for name in BY_NAME)
     }
     return {
         "surface": surface,

@@ -4,9 +4,10 @@ import json
 import subprocess
 
 import numpy as np
-from lab_settings import FRONT
+from lab_settings import FRONT, whole_model
 
-from percept_obs.labs.points.lab import HOLDS, STARTS, STATES, WEIGHTS
+from percept_obs.labs.points.settings import SCHEMA, WEIGHTS
+from percept_obs.labs.points.texts import STATES
 
 NOISY = {"kind": "uniform", "size": 0.01}
 ONE = {"points": [[0.0, 1.2, 2.5]]}
@@ -49,7 +50,7 @@ CASES = {
 
 def run_in_node(node, lab, tasks):
     """What the page's engine makes of each of the settings."""
-    task = json.dumps({"model": lab.model, "tasks": tasks}, allow_nan=False)
+    task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
     script = FRONT / "tests/run_points.js"
     answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
@@ -83,13 +84,13 @@ def random_settings(seed):
         "final": float(rng.uniform(0.3, 3)),
         "decrease": float(rng.uniform(0, 0.1)),
         "forgetting": float(rng.uniform(0, 1)),
-        "start": one(*STARTS),
+        "start": one(*SCHEMA["start"].names),
         "noise": {"kind": one("uniform", "gaussian"), "size": float(one(0, rng.uniform(0, 0.05)))},
         "dropout": float(one(0, rng.uniform(0, 0.9))),
         "seed": int(rng.integers(100)),
         "period": float(rng.uniform(0.02, 0.2)),
         "view": float(rng.uniform(0.5, 3)),
-        "hold": one(*HOLDS),
+        "hold": one(*SCHEMA["hold"].names),
         "duration": float(rng.uniform(4, 12)),
         "window": float(rng.uniform(0.5, 8)),
     }

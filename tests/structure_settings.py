@@ -6,10 +6,11 @@ import warnings
 from functools import lru_cache
 
 import numpy as np
-from lab_settings import FRONT
+from lab_settings import FRONT, whole_model
 
-from percept_obs.labs.structure.lab import case_of, runs
-from percept_obs.labs.structure.texts import CHOICES, OBSERVERS, PARTS, texts_of
+from percept_obs.labs.structure.cases import case_of
+from percept_obs.labs.structure.lab import runs
+from percept_obs.labs.structure.texts import OBSERVERS
 from percept_obs.tracking.following import StepTooLong
 
 EVERY = list(OBSERVERS)
@@ -36,14 +37,8 @@ OTHERS = {
 CASES = {**COROLLARIES, **OTHERS}
 
 
-def whole_model(lab):
-    """A lab's model with all parts that follow."""
-    kernels = {part.split()[0]: texts_of(part) for part in PARTS if part != CHOICES}
-    return {**lab.model, CHOICES: texts_of(CHOICES), "kernels": kernels}
-
-
 def structure_in_node(node, lab, tasks):
-    """What the page's engine makes of each of the settings, once all parts of the model have come."""
+    """What the page's engine makes of each of the settings."""
     task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
     script = FRONT / "tests/run_structure.js"
     answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)

@@ -60,7 +60,7 @@ def test_an_error_from_the_page_s_settings_shows_and_goes_with_the_next_good_one
     assert lab.error.startswith("BadSettings: seed is -1")
     lab.set_state({"settings": {**lab.settings, "seed": 1}, "summary": {"serial": 2}})
     assert lab.error == ""
-    assert lab.analysis["of"] == 2
+    assert lab.analysis["serial"] == 2
 
 
 def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(monkeypatch):

@@ -11,7 +11,6 @@ from lab_browser import (
     drag_by_mouse,
     drag_by_touch,
     end_kernel,
-    handed_over,
     open_lab,
     rested,
     state,
@@ -46,7 +45,6 @@ def browser_page(chromium, server, tmp_path_factory):
 def lab(browser_page, folder):
     """A page with one lab that the tests of this module share."""
     open_lab(browser_page, folder)
-    handed_over(browser_page)
     return browser_page
 
 
@@ -136,23 +134,20 @@ def test_what_is_known_of_an_observer_is_told_beside_it(fresh):
     about.click()
 
 
-def test_equations_that_have_not_come_are_waited_for(fresh):
-    fresh.evaluate("""() => {
-        const [lab] = window.perceptObsLabs;
-        lab.taken = lab.model.structures["chained y2"];
-        delete lab.model.structures["chained y2"];
-        lab.kernels.whole.delete("chained y2");
-        lab.change({ surface: "chained", outputs: ["y2"] }, true);
-    }""")
-    fresh.wait_for_selector(".waiting:not([hidden])")
-    assert "8 of 9 parts" in fresh.inner_text(".waiting")
-    before = state(fresh)
-    assert before["settings"]["outputs"] == ["y2"]
-    fresh.evaluate("() => { const [lab] = window.perceptObsLabs; lab.arrived('chained y2', lab.taken); }")
+@pytest.mark.parametrize("surface", ["chained", "plane", "sphere"])
+def test_every_surface_is_there_with_the_outputs_that_it_allows(fresh, surface):
+    fresh.check(control("outputs y2"))
+    fresh.select_option(control("surface"), surface)
     rested(fresh)
     shown = state(fresh)
-    assert not shown["waiting"]
+    only_both = surface == "sphere"
+    assert shown["settings"]["outputs"] == (["y1", "y2"] if only_both else ["y2"])
+    assert ("needs y1 and y2" in shown["notice"]) == only_both
+    assert fresh.locator(control("outputs y1")).is_disabled() == only_both
     assert_equals_python(shown)
+    drag_by_mouse(fresh, FOE)
+    rested(fresh)
+    assert_equals_python(state(fresh))
 
 
 def test_a_gain_is_changed(fresh):
@@ -294,7 +289,7 @@ def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder
     cells = [
         OPEN.format(arguments=""),
         "lab.settings = {**lab.settings, 'outputs': ['y2'], 'observers': ['extended_kalman']}",
-        "type(lab).analyse = lambda self, summary: 1 / 0",
+        "type(lab).analyse = lambda self: 1 / 0",
     ]
     write_notebook(folder, "set.ipynb", *cells)
     open_notebook(page, "set.ipynb")
@@ -330,7 +325,6 @@ def test_two_labs_live_side_by_side_and_a_cell_replaces_its_own(browser_page, fo
 def test_the_lab_outlives_its_kernel_and_says_so(browser_page, folder, server):
     page = browser_page
     open_lab(page, folder, "dead.ipynb")
-    handed_over(page)
     end_kernel(page, server, "dead.ipynb")
     page.fill(control("identifier_based gain number"), "4")
     page.wait_for_selector(".silence:not([hidden])")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lab_settings import (
     ALL,
+    KEYS,
     NOISY,
     PLANE,
     SMOOTH_CASES,
@@ -16,7 +17,8 @@ from lab_settings import (
 from utias_folder import utias_folder
 
 from percept_obs.labs.observer.lab import observer_lab, runs
-from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS, keys, texts_of
+from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS
+from percept_obs.labs.shared.printed import part
 from percept_obs.observability.pointwise import windowed
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.surfaces import BehindCamera
@@ -52,9 +54,9 @@ def test_smooth_observers_agree_to_1e_9(lab, answers, case):
 def of_every_structure(lab, node):
     """What the page says of all observers of every structure, with noise and losses, and of every switch."""
     tasks = []
-    for key in keys():
+    for key in KEYS:
         surface, outputs = key.split()
-        names = list(texts_of(key)["observers"])
+        names = list(part("observer_lab", f"forms/{key}")["observers"])
         for k, start in enumerate(("own", "zero", "chosen", "own")):
             tasks.append(
                 {
@@ -74,11 +76,11 @@ def of_every_structure(lab, node):
             for s, answer in zip(whole, found, strict=True)
             if key == f"{s['surface']} {'+'.join(s['outputs'])}"
         ]
-        for key in keys()
+        for key in KEYS
     }
 
 
-@pytest.mark.parametrize("key", keys())
+@pytest.mark.parametrize("key", KEYS)
 def test_every_observer_agrees_in_every_structure(of_every_structure, key):
     for settings, answer in of_every_structure[key]:
         assert_follows_python(settings, answer["runs"])
@@ -119,7 +121,7 @@ def test_the_bound_and_divergence_are_told_alike(lab, node):
 @pytest.mark.parametrize("outputs", [["y1", "y2"], ["y1"], ["y2"]])
 def test_a_real_track_is_followed_alike(node, outputs):
     recording = load_utias(utias_folder())[5]
-    refused = {"immersion_and_invariance", *texts_of(f"pinhole {'+'.join(outputs)}")["refused"]}
+    refused = {"immersion_and_invariance", *part("observer_lab", f"forms/pinhole {'+'.join(outputs)}")["refused"]}
     lab = observer_lab(recording, outputs=outputs, observers=[name for name in ALL if name not in refused])
     (answer,) = run_in_node(node, lab, [lab.settings])
     for name, run in lab.run().items():

@@ -1,97 +1,57 @@
-"""Texts for the page come from a process of their own, once for all labs, and a failure is told."""
+"""What is printed for the page is shipped, current and whole, and a lab opens with it at once."""
 
-from types import SimpleNamespace
+import json
+import subprocess
+import threading
 
+import numpy as np
 import pytest
+from lab_settings import whole_model
 
-from percept_obs.labs.observer.lab import observer_lab
-from percept_obs.labs.observer.texts import texts_of
-from percept_obs.labs.shared import printing
+from percept_obs.labs import observer_lab, points_lab, printing, structure_lab
+from percept_obs.labs.shared.printed import file_of, packed, part, unpacked
 
-STRUCTURES = "percept_obs.labs.observer.texts"
-KEYS = ["pinhole y1+y2", "chained y2"]
-
-
-def all_of(press, keys):
-    """What printing hands over, in its order, and what it complains of."""
-    found, complaints = [], []
-    press.ask(keys, lambda key, texts: found.append((key, texts)), complaints.append)
-    if press._thread is not None:
-        press._thread.join(120)
-    return found, complaints
-
-
-@pytest.fixture
-def nothing_kept(monkeypatch, tmp_path):
-    """A cache of its own for this test and the processes that it starts."""
-    for name in ("XDG_CACHE_HOME", "HOME", "LOCALAPPDATA"):
-        monkeypatch.setenv(name, str(tmp_path))
-    return printing.kept_in(STRUCTURES)
+MAKERS = {"observer_lab": observer_lab, "structure_lab": structure_lab, "points_lab": points_lab}
 
 
 @pytest.mark.slow
-def test_another_process_prints_what_this_one_would_and_keeps_it(nothing_kept):
-    assert not nothing_kept.exists()
-    found, complaints = all_of(printing.Printing(STRUCTURES), KEYS)
-    assert complaints == []
-    assert found == [(key, texts_of(key)) for key in KEYS]
-    assert {file.name for file in nothing_kept.iterdir()} == {f"{key}.json" for key in KEYS}
+@pytest.mark.parametrize("kind", printing.LABS)
+def test_what_is_shipped_is_what_the_package_prints(kind):
+    assert printing.changed(kind) == [], "run python -m percept_obs.labs.printing"
 
 
-def test_what_is_kept_is_not_printed_again(nothing_kept, capsys):
-    nothing_kept.mkdir(parents=True)
-    (nothing_kept / "a part.json").write_text('{"of": "a part"}')
-    printing.main(STRUCTURES, "a part")
-    assert capsys.readouterr().out == '["a part", {"of": "a part"}]\n'
+def test_a_file_that_differs_is_told_by_its_places_and_written_anew(monkeypatch, tmp_path, capsys):
+    texts = {"": {"plant": "x"}, "forms/one": {"w": "y"}, "forms/two": {"w": "z"}}
+    monkeypatch.setattr(printing, "LABS", {"a lab": texts.items})
+    monkeypatch.setattr(printing, "file_of", lambda kind: tmp_path / kind)
+    assert printing.changed("a lab") == list(texts)
+    printing.main()
+    assert "a lab" in capsys.readouterr().out
+    assert printing.changed("a lab") == []
+    texts["forms/one"]["w"] = "changed"
+    del texts["forms/two"]
+    assert printing.changed("a lab") == ["forms/one", "forms/two"]
 
 
-def test_another_line_of_the_package_has_other_texts(nothing_kept, monkeypatch, tmp_path):
-    monkeypatch.setattr(printing, "__file__", str(tmp_path / "labs" / "printing.py"))
-    (tmp_path / "one.py").write_text("")
-    before = printing.kept_in(STRUCTURES)
-    (tmp_path / "one.py").write_text("changed = True")
-    assert len({nothing_kept, before, printing.kept_in(STRUCTURES)}) == 3
+def test_the_same_texts_are_the_same_bytes_and_come_back():
+    texts = {"": {"plant": "function ẋ() {\n}\t"}, "forms/one": {"w": [1, None]}}
+    assert packed(texts.items()) == packed(texts.items())
+    assert {place: json.loads(text) for place, text in unpacked(packed(texts.items())).items()} == texts
+    with pytest.raises(ValueError, match="JSON"):
+        packed([("", {"bound": np.inf})])
 
 
-@pytest.mark.parametrize("place", ["a file", "half"])
-def test_where_nothing_whole_is_or_can_be_kept_it_is_printed_all_the_same(monkeypatch, capsys, tmp_path, place):
-    (tmp_path / "a file").write_text("")
-    (tmp_path / "half").mkdir()
-    (tmp_path / "half" / "a part.json").write_text('{"of": ')
-    monkeypatch.setattr(printing, "kept_in", lambda module: tmp_path / place)
-    monkeypatch.setattr(printing, "import_module", lambda module: SimpleNamespace(texts_of=lambda key: {"of": key}))
-    printing.main(STRUCTURES, "a part")
-    assert capsys.readouterr().out == '["a part", {"of": "a part"}]\n'
+@pytest.mark.parametrize("kind", MAKERS)
+def test_a_lab_is_whole_when_it_opens_without_threads_processes_or_printing(kind, monkeypatch):
+    for owner, name in ((threading.Thread, "start"), (subprocess, "Popen")):
+        monkeypatch.setattr(owner, name, lambda *_, **__: pytest.fail("something runs beside"))
+    for name in ("function_source", "source"):
+        monkeypatch.setattr(f"percept_obs.labs.shared.observer_texts.{name}", lambda *_: pytest.fail("printed again"))
+    lab = MAKERS[kind]()
+    assert lab.texts == file_of(kind).read_bytes()
+    assert set(part(kind)) <= set(whole_model(lab))
+    assert set(lab.model).isdisjoint(part(kind))
 
 
-def test_what_was_printed_is_handed_over_at_once_and_not_printed_again(monkeypatch):
-    press = printing.Printing(STRUCTURES)
-    press.texts = {key: {"of": key} for key in KEYS}
-    monkeypatch.setattr(printing, "_printed_beside", lambda *_: pytest.fail("printed again"))
-    assert all_of(press, KEYS) == ([(key, {"of": key}) for key in KEYS], [])
-
-
-@pytest.mark.slow
-def test_a_process_that_fails_is_told_and_the_next_lab_tries_again():
-    press = printing.Printing("no.such.module")
-    for _ in range(2):
-        found, (complaint,) = all_of(press, KEYS)
-        assert found == []
-        assert "No module named 'no'" in complaint
-
-
-def test_a_lab_takes_its_parts_and_one_that_is_gone_takes_none(monkeypatch):
-    asked = []
-    monkeypatch.setattr(printing.Printing, "ask", lambda self, keys, *takers: asked.append((keys, takers)))
-    lab = observer_lab()
-    assert not asked
-    lab.missed = True
-    ((keys, (take, complain)),) = asked
-    assert keys == lab.parts
-    take(keys[0], {"w": "text"})
-    complain("no process")
-    assert getattr(lab, keys[0]) == {"w": "text"}
-    assert lab.unprinted == "no process"
-    lab.close()
-    del lab
-    take(keys[1], {"w": "text"})
+def test_all_texts_together_are_small():
+    assert sum(file_of(kind).stat().st_size for kind in MAKERS) < 250_000

@@ -10,7 +10,6 @@ from lab_browser import (
     assert_moved_by_keyboard,
     assert_python_has,
     control,
-    handed_over,
     open_lab,
     reached_by_keyboard,
     rested,
@@ -41,7 +40,6 @@ def lab(chromium, folder, tmp_path_factory):
     with jupyterlab(folder, homes[0]) as server, lab_page(chromium, server, homes[1]) as page:
         page.set_default_timeout(15_000)
         open_lab(page, folder)
-        handed_over(page)
         yield page
 
 
@@ -159,7 +157,7 @@ def test_the_lab_fits_its_cell(fresh, width):
 def test_a_kernel_text_that_fails_to_load_is_told(fresh):
     fresh.evaluate("""() => {
         const [lab] = window.perceptObsLabs;
-        lab.model.structures["pinhole y2"].observers.sliding_mode.fraction.run = "function run( {";
+        lab.model.forms["pinhole y2"].observers.sliding_mode.fraction.run = "function run( {";
         const { groups, waiting } = lab.kernels.modules;
         for (const kept of [groups, waiting]) kept.delete("pinhole y2 sliding_mode fraction");
         lab.change({ outputs: ["y2"], observers: ["sliding_mode"] }, true);

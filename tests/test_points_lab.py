@@ -5,9 +5,11 @@ import warnings
 
 import numpy as np
 import pytest
+from lab_settings import whole_model
 from points_settings import CASES, as_array, random_settings, run_in_node
 
-from percept_obs.labs.points.lab import PICTURES, points_lab, recording_of, run_of
+from percept_obs.labs.points.lab import points_lab, recording_of, run_of
+from percept_obs.labs.points.settings import PICTURES
 from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
 from percept_obs.observability.gramian import gramian
 from percept_obs.points import kernel
@@ -102,7 +104,7 @@ def assert_same_gramian(answer, settings, recording):
 @pytest.mark.parametrize("points", [1, 3, MOST_POINTS])
 def test_the_layouts_are_those_of_the_form(lab, state, points):
     """And each vector of three states is moved by itself, as the page takes it to be."""
-    layout = lab.model["states"][state]["layouts"][points - 1]
+    layout = whole_model(lab)["states"][state]["layouts"][points - 1]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         form = form_of(state, points, Manoeuvre(0.3, 0.4, 0.5, (0.1, 0.2, 0.3)))
@@ -148,19 +150,19 @@ def test_points_without_a_word_on_hiding_are_not_hidden(lab):
         ({"weight": "heavy"}, "it must be one of constant, scheduled, lyapunov, riccati"),
         ({"hold": "second"}, "it must be one of exact, zero, first"),
         ({"start": "guess"}, "it must be one of rays, error, zero"),
-        ({"points": []}, "a list of 1 to 8 places"),
-        ({"points": [[0.0, 0.0, 1.0]] * 9}, "a list of 1 to 8 places"),
-        ({"points": [[0.0, 0.0]]}, "numbers between"),
-        ({"points": [[0.0, 0.0, float("nan")]]}, "numbers between"),
+        ({"points": []}, "a list of 1 to 8, each a list of 3"),
+        ({"points": [[0.0, 0.0, 1.0]] * 9}, "a list of 1 to 8, each a list of 3"),
+        ({"points": [[0.0, 0.0]]}, "points 1 is .* it must be a list of 3"),
+        ({"points": [[0.0, 0.0, float("nan")]]}, "points 1 Z is nan; it must be a number"),
         ({"hidden": [None]}, "an entry for each of the 3 points"),
-        ({"hidden": [None, [3, 2], None]}, "hidden of point 2 is .* it must begin at 0 s or later and end after that"),
-        ({"hidden": [None, [3], None]}, "hidden of point 2"),
-        ({"velocity": [0, 0]}, "numbers between"),
+        ({"hidden": [None, [3, 2], None]}, "hidden 2 is .* it must begin at 0 s or later and end after that"),
+        ({"hidden": [None, [3], None]}, "hidden 2 is .* it must be a list of 2"),
+        ({"velocity": [0, 0]}, "velocity is .* it must be a list of 3"),
         ({"size": 0}, "it must be a number from 0.0001 to 10000"),
         ({"turning": float("inf")}, "it must be a number from -10 to 10"),
         ({"noise": {"kind": "pink", "size": 0.1}}, "it must be one of uniform, gaussian"),
         ({"noise": {"kind": "uniform", "size": -1}}, "it must be a number from 0 to 1"),
-        ({"pictures": []}, "name at least one of error, depth, points, gramian"),
+        ({"pictures": []}, "at least one of error, depth, points, gramian"),
         ({"duration": 0.5}, "it must be a number from 1 to 120"),
         ({"seed": 1.5}, "whole number"),
         ({"kept": {"seed": -1}}, "whole number"),
@@ -188,7 +190,7 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
 def test_the_analysis_says_what_python_found(settings, words):
     lab = points_lab(**settings, duration=12.0)
     lab.summary = {"serial": 7}
-    assert lab.analysis["of"] == 7
+    assert lab.analysis["serial"] == 7
     text = " ".join(lab.analysis["sentences"])
     assert all(any(part in text for part in choice.split("|")) for choice in words)
     assert (lab.analysis["bound"] is not None) == ("guarantees that errors decay" in text)

@@ -15,7 +15,6 @@ from lab_browser import (
     drag_by_mouse,
     drag_by_touch,
     end_kernel,
-    handed_over,
     open_lab,
     reached_by_keyboard,
     rested,
@@ -25,7 +24,7 @@ from lab_browser import (
 )
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.structure.lab import choice_of, structure_lab
+from percept_obs.labs.structure.lab import structure_lab, unknowns_of
 from percept_obs.structure import ImpossibleChoice
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -54,7 +53,6 @@ def lab(chromium, server, folder, tmp_path_factory):
     with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
         page.set_default_timeout(15_000)
         open_lab(page, folder, lab="structure_lab")
-        handed_over(page)
         yield page
 
 
@@ -97,7 +95,7 @@ def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, folder):
     rested(fresh)
     refused = state(fresh)
     with pytest.raises(ImpossibleChoice) as reason:
-        choice_of(refused["settings"])
+        unknowns_of(refused["settings"])
     assert fresh.inner_text(f"{TOLD} .refused").lower() == f"{reason.value}.".lower()
     assert refused["runs"] == {}
     assert set(refused["drawn"]) == {"image", "depth"}
@@ -268,8 +266,6 @@ def test_two_labs_live_side_by_side_and_outlive_their_kernel(lab, folder, server
     assert state(lab, 0) == first
     assert state(lab, 1)["settings"] == {**other["settings"], "seed": 9}
     assert np.isfinite(first["runs"]["ideal"][-1])
-    whole = "() => { const [l] = window.perceptObsLabs; return l.kernels.whole.size === l.widget.get('parts').length; }"
-    lab.wait_for_function(whole)
     end_kernel(lab, server, "two.ipynb")
     lab.click(control("corollary 6"))
     lab.wait_for_selector(".silence:not([hidden])")

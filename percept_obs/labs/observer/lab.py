@@ -10,40 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.labs.observer.texts import (
-    BY_NAME,
-    OWN_SWITCH,
-    SURFACES,
-    WAYS,
-    form_of,
-    key_of,
-    keys,
-    model_for_the_page,
-    observer_of,
-    structure_for_the_page,
-    system_of,
-    ways_of,
-)
-from percept_obs.labs.observer.tracks import track_for_the_page, with_affine_motion
+from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEMA, STANDARD, as_settings
+from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
+from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
-from percept_obs.labs.shared.checks import gains_of, known_names, number, numbers, one_of, some_of, whole_number
-from percept_obs.labs.shared.kernels import with_all_gains
-from percept_obs.labs.shared.lab import Lab, Settings
-from percept_obs.labs.shared.printing import Printing
-from percept_obs.labs.shared.sampling import samples_in_front
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
+from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.printed import part
+from percept_obs.labs.shared.sampling import as_far_as_seen
+from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
+from percept_obs.recording import Camera, Recording, Scenario, record
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
 from percept_obs.tracking.following import StepTooLong, track
-from percept_obs.tracking.run import SETTLED_PART, VERDICTS, Run
-
-SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
-NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
-HOLDS = ("zero", "first", "exact")
-STARTS = ("own", "zero", "chosen")
-RANGES = {"dropout": (0, 0.95), "period": (1e-3, 1), "duration": (0.1, 200), "window": (0.1, 200), "threshold": (0, 10)}
-PRINTING = Printing("percept_obs.labs.observer.texts")
-PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
+from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
 
 
 class ObserverLab(Lab):
@@ -58,29 +37,14 @@ class ObserverLab(Lab):
     **settings
         Those to open with, such as ``outputs=["y1"]``:
 
-    duration : seconds
-    surface, normal : "pinhole", "chained" or "plane", and the plane's normal vector
-    outputs, observers : lists of names
-    gains : for each observer, its gains by name
-    switches : for each observer that switches, how
-    A, b, X0 : the true motion X' = A X + b and the point at time 0
-    believed : None, or a mapping with the A and the b that the observers believe
-    noise, dropout, seed, period : the camera; noise is a mapping of kind and size
-    hold : "zero", "first" or "exact"
-    start : a mapping of mode ("own", "zero", "chosen") and the chosen values
-    window, threshold : seconds over which w w^T is gathered, and the |w| below which an instant tells too little
-    pictures : which time charts are shown
-    kept : None, or the settings of the run that is kept to compare with
-
-    Raises
-    ------
-    ValueError
-        If a setting is unknown or makes no sense.
+    {settings}
     """
+
+    schema = SCHEMA
 
     def __init__(
         self,
-        scenario: str | Scenario | Recording = "ma2005_eq35",
+        scenario: str | Scenario | Recording = STANDARD["scenario"],
         recordings: Mapping[str, Recording] | None = None,
         **settings: Any,
     ) -> None:
@@ -92,80 +56,71 @@ class ObserverLab(Lab):
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
-        self._scenarios = {name: {"title": s.name, **_as_settings(s)} for name, s in offered.items()}
+        known = {name: as_settings(s) for name, s in offered.items()}
         self._recordings = {name: with_affine_motion(name, r) for name, r in tracks.items()}
-        self._tracks = {
-            name: {**track_for_the_page(r), **_fitting(r), "kind": tracks[name].motion.name, "refused": _refused(r)}
-            for name, r in self._recordings.items()
-        }
-        one_of({"scenario": scenario}, "scenario", [*self._scenarios, *self._recordings])
-        fit = dict(self._scenarios.get(scenario) or _fitting(self._recordings[scenario]))
-        fit.pop("title", None)
-        self._opening: Settings = {**_opening_settings(), **fit, "scenario": scenario}
-        self._opening = self.check(self._opening | settings)
-        near = sorted(keys(), key=lambda key: key.split()[0] != self._opening["surface"])
-        here = key_of(self._opening["surface"], self._opening["outputs"])
-        parts = sorted(near, key=lambda key: key != here)
-        super().__init__("observer_lab", self._model(), self._opening, PRINTING, parts)
+        names = Choice(STANDARD["scenario"], (*known, *self._recordings))
+        self.schema = Schema(
+            SCHEMA | {"scenario": names, "gains": gains(standard_gains("observer_lab"), with_every_gain)}
+        )
+        opening = str(names.read("scenario", scenario))
+        fit = known.get(opening) or fitting(self._recordings[opening])
+        super().__init__(
+            "observer_lab",
+            settings,
+            {**STANDARD, "gains": self.schema["gains"].opening, **fit, "scenario": opening},
+            STANDARD,
+            scenarios={name: {"title": s.name, **known[name]} for name, s in offered.items()},
+            recordings={n: track_for_the_page(r, tracks[n].motion.name) for n, r in self._recordings.items()},
+            pictures=PICTURES,
+            verdicts=dict(VERDICTS),
+            settledPart=SETTLED_PART,
+            remedy=REMEDY,
+        )
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
         return runs(self.settings, self._recordings)
 
-    def check(self, settings: Settings) -> Settings:
-        """Complete settings, or a ValueError that says what is wrong."""
-        known_names(settings, self._opening)
-        whole = self._opening | settings
-        recording = self._recordings.get(one_of(whole, "scenario", [*self._scenarios, *self._recordings]))
-        whole["gains"] = gains_of(whole["gains"], {name: with_all_gains(ways_of(name)) for name in BY_NAME})
-        whole["switches"] = _checked_switches(whole["switches"])
-        _check_choices(whole, recording)
-        _check_numbers(whole)
-        if whole["kept"] is not None:
-            whole["kept"] = self.check({**whole["kept"], "kept": None})
-        return whole
+    def refuse(self, settings: Settings) -> None:
+        """Raise a ValueError for settings that do not go together."""
+        recording = self._recordings.get(settings["scenario"])
+        surface, outputs = settings["surface"], settings["outputs"]
+        allowed = part("observer_lab")["surfaces"][surface]["outputs"]
+        if recording is not None:
+            allowed = [o for o in allowed if set(o) <= set(recording.names)]
+            Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
+        if outputs not in allowed:
+            told = ", ".join(map(str, allowed))
+            raise ValueError(f"outputs is {outputs!r}; on the {surface} surface it must be one of {told}")
+        refused = dict(part("observer_lab", f"forms/{key_of(surface, outputs)}")["refused"])
+        if recording is not None:
+            refused |= refused_for(recording)
+        for name in settings["observers"]:
+            if name in refused:
+                raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
+        if recording is not None and not recording.view.fits(SURFACES[surface]()):
+            raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
+        if recording is not None and settings["believed"] is not None:
+            raise ValueError("a recording's motion varies and is measured; believed must be None with it")
 
-    def analyse(self, summary: Settings) -> Settings:
+    def analyse(self) -> Settings:
         """Sentences on excitation, error dynamics and the bias of noise for the present settings."""
         settings = self.settings
-        place = (settings["surface"], tuple(settings["outputs"]))
-        structures = {name: (*place, name, _way(settings, name)) for name in settings["observers"]}
-        told = [name for name, structure in structures.items() if has_words(structure)]
+        seen = (settings["surface"], tuple(settings["outputs"]))
+        observers = {name: (*seen, name, _way(settings, name)) for name in settings["observers"]}
+        told = [name for name, observer in observers.items() if has_words(observer)]
         try:
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
         except BehindCamera as error:
             return {"sentences": [str(error)]}
         window = min(settings["window"], float(np.ptp(recording.time)))
-        sentences = [excitation_in_words(form_of(*place), recording, window)]
+        sentences = [excitation_in_words(form_of(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)
             found = runs({**settings, "observers": told}, self._recordings)
         for name, run in found.items():
-            sentences += run_in_words(structures[name], run, window)
+            sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught)]}
-
-    def _model(self) -> Settings:
-        return {
-            **model_for_the_page(),
-            "structures": self._structures_of_the_opening(),
-            "scenarios": self._scenarios,
-            "recordings": self._tracks,
-            "opening": self._opening,
-            "standard": self.check(_opening_settings()),
-            "pictures": PICTURES,
-            "verdicts": dict(VERDICTS),
-            "settledPart": SETTLED_PART,
-        }
-
-    def _structures_of_the_opening(self) -> Settings:
-        """Structures with the observers that are shown first; the whole ones follow as parts."""
-        shown = [self._opening, *filter(None, [self._opening["kept"]])]
-        structures: Settings = {}
-        for settings in shown:
-            place = (settings["surface"], tuple(settings["outputs"]))
-            chosen = [(name, _way(s, name)) for s in shown for name in s["observers"]]
-            structures[key_of(*place)] = structure_for_the_page(*place, tuple(dict.fromkeys(chosen)))
-        return structures
 
 
 observer_lab = ObserverLab
@@ -179,8 +134,8 @@ def runs(settings: Settings, recordings: Mapping[str, Recording]) -> dict[str, R
     found = {}
     for name in settings["observers"]:
         observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _way(settings, name))
-        gains = settings["gains"][name]
-        observer = observer.with_gains(**{gain.name: gains[gain.name] for gain in observer.gains})
+        values = settings["gains"][name]
+        observer = observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
         found[name] = track(recording, observer, start, settings["hold"], believed or None)
     return found
 
@@ -200,111 +155,8 @@ def _simulated(settings: Settings) -> Recording:
 def _simulated_once(text: str) -> Recording:
     settings = json.loads(text)
     surface = plane(settings["normal"]) if settings["surface"] == "plane" else SURFACES[settings["surface"]]()
-    scenario = Scenario(
-        "the lab's", affine(settings["A"], settings["b"]), settings["X0"], settings["duration"], surface
-    )
-    noise: Uniform | Gaussian = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
+    motion = affine(settings["A"], settings["b"])
+    scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
+    noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])
-    simulate = partial(record, scenario, camera=camera, seed=settings["seed"])
-    try:
-        return simulate(settings["duration"])
-    except BehindCamera:
-        times = camera.period * np.arange(np.floor(settings["duration"] / camera.period + 1e-9) + 1)
-        return simulate(times[samples_in_front(scenario, times) - 1])
-
-
-def _fitting(recording: Recording) -> Settings:
-    """Settings that a recording brings with it."""
-    duration = float(np.ptp(recording.time))
-    surface = next(kind for kind in SURFACES if recording.view.fits(SURFACES[kind]()))
-    return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
-
-
-def _refused(recording: Recording) -> dict[str, str]:
-    """Observers that cannot follow this recording, with the reasons."""
-    signal = recording.motion.signal
-    if signal is None or signal.constant:
-        return {}
-    reason = "it needs a motion with constant coefficients, but the recording's varies"
-    return {name: reason for name, make in BY_NAME.items() if make.constant_motion}
-
-
-def _as_settings(scenario: Scenario) -> Settings:
-    values = scenario.motion.values
-    if not values:
-        raise ValueError(
-            f"the motion of the scenario {scenario.name!r} varies over time; record() it and open the lab with the "
-            "recording"
-        )
-    A, b = (np.array(block.subs(values), dtype=float) for block in (scenario.motion.A, scenario.motion.b))
-    normal = list(scenario.surface.values.values())
-    surface = {"surface": scenario.surface.name, **({"normal": normal} if normal else {})}
-    X0, duration = list(map(float, scenario.position)), scenario.duration
-    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **surface}
-
-
-def _opening_settings() -> Settings:
-    return {
-        "scenario": "ma2005_eq35",
-        **_as_settings(scenarios.ma2005_eq35()),
-        "normal": [0.0, 0.0, 1.0],
-        "outputs": ["y1", "y2"],
-        "observers": ["identifier_based"],
-        "gains": {},
-        "switches": {},
-        "believed": None,
-        "noise": {"kind": "uniform", "size": 0.0},
-        "dropout": 0.0,
-        "seed": 0,
-        "period": 0.01,
-        "hold": "zero",
-        "start": {"mode": "own", "values": [0.0, 0.0, 0.0]},
-        "window": 10.0,
-        "threshold": 0.1,
-        "pictures": ["distance", "error", "excitation"],
-        "kept": None,
-    }
-
-
-def _checked_switches(given: Mapping[str, str]) -> dict[str, str]:
-    unknown = sorted(set(given) - set(OWN_SWITCH))
-    if unknown:
-        raise ValueError(f"{', '.join(unknown)} does not switch; {', '.join(OWN_SWITCH)} do")
-    whole = {**OWN_SWITCH, **given}
-    return {name: one_of({f"switch of {name}": way}, f"switch of {name}", WAYS[name]) for name, way in whole.items()}
-
-
-def _check_choices(settings: Settings, recording: Recording | None) -> None:
-    surface = one_of(settings, "surface", SURFACES)
-    offered = [o for o in system_of(surface).output_choices if recording is None or set(o) <= set(recording.names)]
-    if tuple(settings["outputs"]) not in offered:
-        raise ValueError(
-            f"outputs is {settings['outputs']!r}; it must be one of {', '.join(map(str, map(list, offered)))}"
-        )
-    some_of(settings, "pictures", PICTURES)
-    refused = {} if recording is None else _refused(recording)
-    for name in some_of(settings, "observers", BY_NAME):
-        if name in refused:
-            raise ValueError(f"{name} cannot follow this recording: {refused[name]}")
-        observer_of(surface, tuple(settings["outputs"]), name, _way(settings, name))
-    one_of({"noise kind": settings["noise"].get("kind")}, "noise kind", NOISES)
-    one_of({"start mode": settings["start"].get("mode")}, "start mode", STARTS)
-    one_of(settings, "hold", HOLDS if recording is None else HOLDS[:2])
-    if recording is not None and not recording.view.fits(SURFACES[surface]()):
-        raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
-    if recording is not None and settings["believed"] is not None:
-        raise ValueError("a recording's motion varies and is measured; believed must be None with it")
-
-
-def _check_numbers(settings: Settings) -> None:
-    for key, shape in (("A", (3, 3)), ("b", (3,)), ("X0", (3,)), ("normal", (3,))):
-        numbers(settings, key, shape)
-    if settings["normal"][2] == 0:
-        raise ValueError("the normal's third entry is 0; the plane must not hold the optical axis")
-    for key, shape in (("A", (3, 3)), ("b", (3,))) if settings["believed"] else ():
-        numbers(settings["believed"], key, shape)
-    numbers(settings["start"], "values", (3,))
-    number({"noise size": settings["noise"].get("size")}, "noise size", 0, 1)
-    for key, (low, high) in RANGES.items():
-        number(settings, key, low, high)
-    whole_number(settings)
+    return as_far_as_seen(partial(record, scenario, camera=camera, seed=settings["seed"]), scenario, camera.period)

@@ -1,6 +1,6 @@
 """What the page needs to simulate and to observe: texts and formulas of the point, the surfaces, the observers.
 
-Kept apart from the widgets, so that another process can print it: see printing.py.
+Printed when the package is built, see printing.py; one form, observer or surface can be printed by itself.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ import sympy as sp
 from percept_obs.compile import function_source, source
 from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
-from percept_obs.labs.shared.kernels import Texts, kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.markup import formula, markup
+from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
+from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.system import surfaces
@@ -37,7 +38,7 @@ MOTION = affine()
 
 
 def key_of(surface: str, outputs: Iterable[str]) -> str:
-    """Name of a structure: what is seen, and what of it is measured."""
+    """Name of a form: what is seen, and what of it is measured."""
     return f"{surface} {'+'.join(outputs)}"
 
 
@@ -45,12 +46,6 @@ def key_of(surface: str, outputs: Iterable[str]) -> str:
 def system_of(surface: str) -> PerspectiveSystem:
     """Affine motion seen on a surface."""
     return PerspectiveSystem(MOTION, SURFACES[surface]())
-
-
-@lru_cache
-def keys() -> tuple[str, ...]:
-    """Names of all structures that a lab offers."""
-    return tuple(key_of(surface, outputs) for surface in SURFACES for outputs in system_of(surface).output_choices)
 
 
 @lru_cache
@@ -66,7 +61,7 @@ def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = ""
     Raises
     ------
     ValueError
-        If it does not exist for this structure.
+        If it does not exist for this form.
     """
     switch = {"switch": way or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
     return BY_NAME[name](form_of(surface, outputs), **switch)
@@ -77,9 +72,14 @@ def ways_of(name: str) -> dict[str, Observer]:
     return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
 
 
+def with_every_gain(name: str) -> Observer:
+    """The observer that has the gains of every way in which it switches."""
+    return with_all_gains(ways_of(name))
+
+
 @lru_cache
 def model_for_the_page() -> Texts:
-    """What does not depend on the structure: the point's loop, the surfaces, the observers."""
+    """What does not depend on the form: the point's loop, the surfaces, the observers."""
     rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
     return {
         "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
@@ -92,9 +92,9 @@ def _surface_for_the_page(name: str) -> Texts:
     system = system_of(name)
     surface, shape = system.surface, system.surface.parameters
     return {
-        "outputs": system.output_choices,
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
+        "outputs": system.output_choices,
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
@@ -108,23 +108,8 @@ def _observer_for_the_page(name: str) -> Texts:
 
 
 @lru_cache
-def structure_for_the_page(
-    surface: str, outputs: tuple[str, ...], observers: tuple[tuple[str, str], ...] | None = None
-) -> Texts:
-    """What depends on the structure: its form, and the loops of observers of it.
-
-    Parameters
-    ----------
-    surface : str
-    outputs : tuple of str
-    observers : tuple of pairs of an observer's name and its way to switch, optional
-        All of them when left out.
-
-    Returns
-    -------
-    dict
-        An observer that does not exist for this structure is among the `refused`, with the reason.
-    """
+def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
+    """A form, and the loops of its observers; one that does not exist is among the `refused`, with the reason."""
     form = form_of(surface, outputs)
     names = [s.name for s in form.coordinates]
     letters = {s.name: s for s in form.parameters}
@@ -134,11 +119,9 @@ def structure_for_the_page(
         circle = function_source((*form.parameters, threshold), (*centre, radius))
     except ValueError:
         circle = None
-    if observers is None:
-        observers = tuple((name, way) for name, ways in WAYS.items() for way in ways)
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
-    for name, way in observers:
+    for name, way in ((name, way) for name, ways in WAYS.items() for way in ways):
         refusal = BY_NAME[name].refusal(form)
         if refusal:
             refused[name] = refusal
@@ -159,7 +142,9 @@ def structure_for_the_page(
     }
 
 
-def texts_of(key: str) -> Texts:
-    """Texts of the structure with this name, for all observers."""
-    surface, outputs = key.split(" ")
-    return structure_for_the_page(surface, tuple(outputs.split("+")))
+def texts_for_the_page() -> Parts:
+    """Everything that the lab offers: the model's own texts, and every form."""
+    yield "", model_for_the_page()
+    for surface in SURFACES:
+        for outputs in system_of(surface).output_choices:
+            yield f"forms/{key_of(surface, outputs)}", form_for_the_page(surface, outputs)

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.observer.texts import SURFACES
+from percept_obs.labs.observer.texts import BY_NAME, SURFACES
+from percept_obs.labs.shared.schema import Settings
 from percept_obs.recording import Recording
 from percept_obs.system.motion import affine
 
 
-def track_for_the_page(recording: Recording) -> dict[str, Any]:
-    """A recording in numbers; a lost sample is null, since JSON knows no NaN."""
+def track_for_the_page(recording: Recording, motion: str) -> dict[str, Any]:
+    """A recording in numbers, with the name of its own motion; a lost sample is null, since JSON knows no NaN."""
     signal = recording.motion.signal
     if signal is None or callable(signal.samples):
         raise ValueError(f"the motion of {recording.source!r} has no sampled numbers; bind it to numbers first")
@@ -25,7 +26,26 @@ def track_for_the_page(recording: Recording) -> dict[str, Any]:
         "samples": [[None if np.isnan(v) else v for v in row] for row in recording.outputs.tolist()],
         "truth": None if recording.truth is None else recording.truth.tolist(),
         "motion": {"times": times, "rows": signal.samples.tolist()},
+        **fitting(recording),
+        "kind": motion,
+        "refused": refused_for(recording),
     }
+
+
+def fitting(recording: Recording) -> Settings:
+    """Settings that a recording brings with it."""
+    duration = float(np.ptp(recording.time))
+    surface = next(kind for kind in SURFACES if recording.view.fits(SURFACES[kind]()))
+    return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
+
+
+def refused_for(recording: Recording) -> dict[str, str]:
+    """Observers that cannot follow a recording, with the reasons."""
+    signal = recording.motion.signal
+    if signal is None or signal.constant:
+        return {}
+    reason = "it needs a motion with constant coefficients, but the recording's varies"
+    return {name: reason for name, make in BY_NAME.items() if make.constant_motion}
 
 
 def with_affine_motion(name: str, recording: Recording) -> Recording:

@@ -21,7 +21,7 @@ from percept_obs.tracking.run import Run
 INSTANTS = 200
 """At how many instants of the window the error dynamics are linearised, at most."""
 
-Structure = tuple[str, tuple[str, ...], str, str]
+Chosen = tuple[str, tuple[str, ...], str, str]
 """Names of a surface, of the measured outputs, of an observer, and of its way to switch."""
 
 
@@ -34,21 +34,21 @@ def excitation_in_words(form: CanonicalForm, recording: Recording, window: float
     return f"{start}: not excited; one direction is seen only through the dynamics g, or not at all."
 
 
-def has_words(structure: Structure) -> bool:
+def has_words(chosen: Chosen) -> bool:
     """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
-    observer = observer_of(*structure)
-    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(structure)
+    observer = observer_of(*chosen)
+    return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(chosen)
 
 
-def run_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """What is to be said of one observer's run; nothing where it diverged."""
     if run.diverged_at is not None:
         return []
     if run.observer.covariance is not None:
         return [_claim_in_words(run), _consistency_in_words(run)]
-    if run.recording.truth is None or not _can_be_linearised(structure):
+    if run.recording.truth is None or not _can_be_linearised(chosen):
         return []
-    return _error_in_words(structure, run, window)
+    return _error_in_words(chosen, run, window)
 
 
 def _claim_in_words(run: Run) -> str:
@@ -64,16 +64,16 @@ def _consistency_in_words(run: Run) -> str:
     return f"{run.observer.name}: it is {found.summary}."
 
 
-def _can_be_linearised(structure: Structure) -> bool:
+def _can_be_linearised(chosen: Chosen) -> bool:
     """Whether the estimate is a part of the state, and the flow smooth where the error is zero."""
-    observer = observer_of(*structure)
-    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and structure[-1] != "sign"
+    observer = observer_of(*chosen)
+    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and chosen[-1] != "sign"
 
 
 @lru_cache
-def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
+def _at_the_truth(chosen: Chosen) -> Callable[..., list[np.ndarray]]:
     """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
-    observer = observer_of(*structure)
+    observer = observer_of(*chosen)
     form, equations = observer.form, observer.equations
     truth = (*form.x1, *form.x2)
     estimate = equations.state[: len(truth)]
@@ -85,7 +85,7 @@ def _at_the_truth(structure: Structure) -> Callable[..., list[np.ndarray]]:
     return vectorised(symbols, [entry.subs(there, simultaneous=True) for entry in found])
 
 
-def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
+def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """How a small error grows or shrinks, and where noise pushes it, from the flow linearised at the truth."""
     observer, recording = run.observer, run.recording
     assert recording.truth is not None
@@ -98,7 +98,7 @@ def _error_in_words(structure: Structure, run: Run, window: float) -> list[str]:
     shape = [recording.view.values[s] for s in recording.view.parameters]
     gains = {gain.name: gain.value for gain in observer.gains}
     others = run.state[part, size:]
-    entries = _at_the_truth(structure)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
+    entries = _at_the_truth(chosen)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
     J = np.stack(entries[: size**2], axis=-1).reshape(-1, size, size)
     with np.errstate(all="ignore"):  # what grows beyond all numbers is said so below
         steps = expm(J[:-1] * np.diff(run.time[part])[:, None, None])

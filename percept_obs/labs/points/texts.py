@@ -12,13 +12,12 @@ import sympy as sp
 
 from percept_obs.compile import function_source
 from percept_obs.labs.shared.markup import dotted, formula, markup, row
+from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.points import PointsForm, body_with_origin, independent_points, point_block, rigid_body
 from percept_obs.points.kernel import arrays
 from percept_obs.points.manoeuvre import PATH, SHARES, SPIN, TURNING, Manoeuvre, velocities
 from percept_obs.system.motion import TIME, rigid
 from percept_obs.system.surfaces import pinhole
-
-Texts = dict[str, Any]
 
 MOST_POINTS = 8
 LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("spin", "beta"), ("input", "gamma"))}
@@ -69,6 +68,11 @@ def model_for_the_page() -> Texts:
         "letters": {symbol.name: markup(LETTERS.get(symbol.name, symbol)) for symbol in SHARES},
         "mostPoints": MOST_POINTS,
     }
+
+
+def texts_for_the_page() -> Parts:
+    """Everything that the lab offers."""
+    yield "", model_for_the_page()
 
 
 def _state_for_the_page(name: str) -> Texts:

@@ -1,4 +1,4 @@
-"""Observers' equations in the letters of the lecture, for w, phi and g of any system, as MathML."""
+"""Observers' equations in the letters of the papers, for w, phi and g of any system, as MathML."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
         observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
         lines = partial(IN_MATRICES[make], {gain.name: gain.symbol for gain in observer.gains})
     else:
-        observer = make(lecture_form(), **switch)
+        observer = make(abstract_form(), **switch)
         lines = partial(in_scalars, observer)
     optional = {gain.name: gain.symbol for gain in observer.gains if gain.value == 0}
     subsets = [names for size in range(len(optional), -1, -1) for names in combinations(optional, size)]
     return [{"zero": list(names), "lines": lines(zero=[optional[name] for name in names])} for names in subsets]
 
 
-def lecture_form() -> CanonicalForm:
+def abstract_form() -> CanonicalForm:
     """One measured and one hidden coordinate, with functions that stand for any system's w, phi and g."""
     x1, x2 = sp.symbols("x1 x2", real=True)
     blocks = (("w", (x1,)), ("phi", (x1,)), ("g", (x1, x2)))

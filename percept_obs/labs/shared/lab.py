@@ -1,26 +1,37 @@
-"""What every lab shares: the page's bundle, state in traitlets, errors that show, one lab a cell.
+"""What every lab shares: the page's bundle and texts, state in traitlets, errors that show, one lab a cell.
 
-To add a lab: a subclass of `Lab` in a file of its own, with the settings that define what is shown, `check`, `analyse`,
-and a model of what the page needs to open; larger parts follow from a `Printing` of the lab's own.  Beside it a folder
-in ``front/src`` with a subclass of ``Live``, named in ``front/src/main.js``.
+To add a lab: a folder with a subclass of `Lab`, a `Schema` of its settings, and the texts that ``printing.py`` prints
+for its page.  Beside it a folder in ``front/src`` with a subclass of ``Live``, named in ``front/src/main.js``.
 """
 
 from __future__ import annotations
 
 import weakref
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 import anywidget
 import traitlets
 
-from percept_obs.labs.shared.printing import Printing
+from percept_obs.labs.shared.printed import FRONT, file_of
+from percept_obs.labs.shared.schema import Schema, Settings
+from percept_obs.recording import Gaussian, Uniform
 
-BUNDLE = Path(__file__).parents[1] / "front" / "lab.js"
+BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""
 
-Settings = dict[str, Any]
+FROM_THE_PAGE = ("settings", "summary")
+"""What the page may set."""
+
+REFUSES = """
+
+    Raises
+    ------
+    ValueError
+        If a setting is unknown or makes no sense."""
+"""The end of every lab's docstring."""
+
+NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
 
 class BadSettings(traitlets.TraitError, ValueError):
@@ -28,81 +39,66 @@ class BadSettings(traitlets.TraitError, ValueError):
 
 
 class Lab(anywidget.AnyWidget):
-    """A widget whose page computes by itself from a model that it is handed once.
+    """A widget whose page computes by itself, from texts that were printed for it and a model that Python adds.
 
-    What the model leaves out follows in parts, each a state under its own name, once it is printed.  The page sends
-    `settings` and `summary` together when the hand rests; Python answers with `analysis`.  Nothing is sent as a message
-    of its own, so that a busy kernel skips to the latest state.
+    The page sends `settings` and `summary` together when the hand rests; Python answers with `analysis`, which carries
+    the summary's serial.  Nothing is sent as a message of its own, so that a busy kernel skips to the latest state.
+    A lab of its own has a `schema`, and says more in `refuse` and `analyse`.
 
     Parameters
     ----------
-    kind : str
-        Which of the bundle's labs the page is to show.
-    model : dict
-        What the page needs to open, handed over once.
     settings : dict
-        Everything that defines what is shown.
-    printing : Printing, optional
-        Where the parts come from.
-    parts : sequence of str
-        Their names, in the order in which they are likely to be needed.
+        Settings to open with, as far as they differ from the next.
+    opening : dict
+        Settings to open with otherwise.
+    standard : dict
+        What every preset begins with.
+    **model
+        What the page needs besides.
     """
 
     _esm = BUNDLE
-    kind = traitlets.Unicode().tag(sync=True)
-    model = traitlets.Dict().tag(sync=True)
-    settings = traitlets.Dict().tag(sync=True)
+    schema: Schema
+    kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
+    texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
+    model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
+    settings: Any = traitlets.TraitType({}, help="Everything that defines what is shown.").tag(sync=True)
     summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
     error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
-    parts = traitlets.List(traitlets.Unicode(), help="Names of the parts that follow.").tag(sync=True)
-    missed = traitlets.Bool(help="Whether the page has found that parts are missing.").tag(sync=True)
-    unprinted = traitlets.Unicode(help="Why parts will not come, if so.").tag(sync=True)
 
-    def __init__(
-        self,
-        kind: str,
-        model: Settings,
-        settings: Settings,
-        printing: Printing | None = None,
-        parts: Sequence[str] = (),
-    ) -> None:
-        self.add_traits(**{name: traitlets.Dict().tag(sync=True) for name in parts})
-        there = {name: printing.texts[name] for name in parts if name in printing.texts} if printing else {}
-        super().__init__(kind=kind, model=model, settings=settings, parts=list(parts), **there)
-        self._printing = printing
-        _, run = _running_cell()
+    def __init__(self, kind: str, settings: Settings, opening: Settings, standard: Settings, **model: Any) -> None:
+        self._opening = opening
+        self._opening = self.check(settings)
+        model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
+        super().__init__(kind=kind, texts=file_of(kind).read_bytes(), model=model, settings=self._opening)
         _close_those_of_an_earlier_run(self)
-        if run:
-            self._ask_for_parts()
+
+    def __init_subclass__(cls) -> None:
+        """Let the docstring list the settings."""
+        super().__init_subclass__()
+        if cls.__doc__:  # anywidget makes subclasses without one
+            cls.__doc__ = cls.__doc__.replace("{settings}", cls.schema.listed() + REFUSES)
 
     def check(self, settings: Settings) -> Settings:
-        """Complete settings, or a ValueError that says what is wrong; a lab overrides it."""
-        return settings
+        """Complete settings, or a ValueError that says what is wrong."""
+        whole = self.schema.read(settings, self._opening)
+        self.refuse(whole)
+        if whole["kept"] is not None:
+            whole["kept"] = self.check({**whole["kept"], "kept": None})
+        return whole
 
-    def analyse(self, summary: Settings) -> Settings:
-        """Look deeper at the settings that the page has come to rest on; a lab overrides it."""
+    def refuse(self, settings: Settings) -> None:
+        """Raise a ValueError for settings that do not go together."""
+
+    def analyse(self) -> Settings:
+        """Look deeper at the settings that the page has come to rest on."""
         return {}
-
-    @traitlets.observe("missed")
-    def _ask_for_parts(self, _: object = None) -> None:
-        """Have the missing parts printed; a lab that is gone when they come gets none."""
-        printing, self._printing = self._printing, None
-        if printing is None:
-            return
-        reference = weakref.ref(self)
-
-        def put(name: str, value: object) -> None:
-            lab = reference()
-            if lab is not None:
-                setattr(lab, name, value)
-
-        printing.ask(self.parts, put, lambda reason: put("unprinted", reason))
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Take the page's state; what goes wrong is shown in the lab and raised for the log."""
         try:
-            super().set_state(sync_data)
+            super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
         except Exception as error:
             self.error = f"{type(error).__name__}: {error}"
             raise
@@ -119,7 +115,7 @@ class Lab(anywidget.AnyWidget):
     @traitlets.observe("summary")
     def _deepen(self, change: Mapping[str, Any]) -> None:
         if change["new"]:
-            self.analysis = {"of": change["new"].get("serial"), **self.analyse(change["new"])}
+            self.analysis = {**self.analyse(), "serial": change["new"].get("serial")}
 
 
 _open: dict[str, tuple[str, list[weakref.ref[Lab]]]] = {}

@@ -33,12 +33,7 @@ def markup(expression: object, letters: Mapping[str, sp.Symbol] | None = None) -
     """MathML of an expression, with hats, and with the letters marked by name."""
     text = _mathml(expression)
     text = re.sub(r"<mi>(\w+?)hat</mi>", r'<mover accent="true"><mi>\1</mi><mo>^</mo></mover>', text)
-    for found, better in (
-        ("<mi>phi</mi>", "<mi>φ</mi>"),
-        ("<mi>xi</mi>", "<mi>ξ</mi>"),
-        ("&#x1D540;", "I"),
-        ("<mo>&dd;</mo>", "<mi>d</mi>"),
-    ):
+    for found, better in BETTER:
         text = text.replace(found, better)
     # Browsers stretch brackets only with a mathematical font, so the page draws those of a matrix as borders.
     text = text.replace("<mo>[</mo><mtable>", '<mtable class="matrix">').replace("</mtable><mo>]</mo>", "</mtable>")

@@ -1,8 +1,7 @@
 """What the page needs for any choice of unknowns: what it stands for, why it is refused, and its observers' loops.
 
 Omega_g is Omega3 times a matrix of known signals, whatever the choice.  The loops are printed with that matrix as
-parameters, so that one for each number of unknowns serves every choice.  Kept apart from the widgets, so that another
-process can print it: see printing.py.
+parameters, so that one for each number of unknowns serves every choice.  Printed when the package is built.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 from itertools import combinations, permutations
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 
@@ -18,8 +18,10 @@ from percept_obs import observers
 from percept_obs.compile import function_source, source
 from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
-from percept_obs.labs.shared.kernels import Texts, kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.markup import formula, markup
+from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
+from percept_obs.labs.shared.printed import Parts, Texts
+from percept_obs.labs.structure.cases import case_of
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.observers.integral_sliding_mode import IDEAL
 from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
@@ -43,20 +45,22 @@ OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
 )
 """Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
 
-SWING = constant, amplitude, rate, phase, time = sp.symbols("constant amplitude rate phase t", real=True)
-SWINGING = constant + amplitude * sp.sin(rate * time + phase)
-"""A component of a velocity that swings around a constant."""
+SWING = sp.symbols("constant amplitude rate phase t", real=True)
+
+
+def swinging(
+    constant: Any, amplitude: Any, rate: Any, phase: Any, time: Any, sin: Callable[[Any], Any] = sp.sin
+) -> Any:
+    """A component of a velocity that swings around a constant."""
+    return constant + amplitude * sin(rate * time + phase)
+
 
 PHASES = {"v_c": (sp.pi / 2, 0, 0), "v_p": (0, sp.pi / 2, 0)}
 """Where each component begins to swing, so that the camera circles and the object wanders."""
 
-CHOICES = "choices"
-PARTS = (CHOICES, *(f"{n} unknown" for n in range(LARGEST, 0, -1)))
-"""Names of the parts that are printed beside."""
-
 
 def key_of(unknown: tuple[str, ...] | list[str], earlier: bool) -> str:
-    """Name of a choice: its unknowns, and whether d_s is known from an earlier stage only."""
+    """Name of what is unknown: its quantities, and whether d_s is known from an earlier stage only."""
     kept = ["earlier"] if earlier and "d_s" not in unknown else []
     return " ".join([*(name for name in QUANTITIES if name in unknown), *kept])
 
@@ -88,7 +92,7 @@ def model_for_the_page() -> Texts:
     return {
         "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
         "project": function_source(POINT, (*surface.image, surface.distance)),
-        "swinging": function_source(SWING, (SWINGING,)),
+        "swinging": function_source(SWING, (swinging(*SWING),)),
         "phases": {name: [float(phase) for phase in phases] for name, phases in PHASES.items()},
         "observers": {
             name: {**observer_for_the_page({"": observer_of(name)}, {"": equations_of(make)}), "title": title}
@@ -97,7 +101,10 @@ def model_for_the_page() -> Texts:
         "quantities": QUANTITIES,
         "refused": refused(),
         "corollaries": [
-            {"number": c.number, "section": c.section, "camera": c.camera, "object": c.object, "words": str(c)}
+            {
+                **{"number": c.number, "section": c.section, "camera": c.camera, "object": c.object},
+                **{"words": str(c), "settings": case_of(c.number)},
+            }
             for c in COROLLARIES
         ],
     }
@@ -122,7 +129,7 @@ def corollaries() -> dict[str, tuple[int, tuple[str, ...]]]:
     return {key_of(case.unknown, "d_s" in case.earlier): (number, case.zero) for number, case in cases}
 
 
-def choice_for_the_page(unknown: tuple[str, ...], earlier: bool) -> Texts:
+def unknowns_for_the_page(unknown: tuple[str, ...], earlier: bool) -> Texts:
     """A choice in formulas, and as a function that turns velocities into the parameters of the general form."""
     choice = StructureAndMotion(unknown, earlier=("d_s",) if earlier else ())
     M, m = choice.translation
@@ -177,26 +184,26 @@ def _determinant(choice: StructureAndMotion, letters: dict[str, sp.Symbol]) -> s
     return formula(left, sp.factor(determinant.xreplace(shifted).expand()), letters)
 
 
-def kernels_for_the_page(count: int, observers: tuple[str, ...] = tuple(OBSERVERS)) -> Texts:
+def form_for_the_page(count: int) -> Texts:
     """The loops of observers for so many unknowns, and what guards the inversion that gives theta."""
     form = general_form(count)
     numerator, determinant = form.cramer
     size = sp.sqrt(sum(entry**2 for entry in numerator))
     return {
         "guard": function_source((*form.x1, *form.parameters), (size, determinant)),
-        "observers": {name: kernel_for_the_page(observer_of(name, count)) for name in observers},
+        "observers": {name: kernel_for_the_page(observer_of(name, count)) for name in OBSERVERS},
     }
 
 
-def texts_of(part: str) -> Texts:
-    """Texts of the part with this name."""
-    if part != CHOICES:
-        return kernels_for_the_page(int(part.split()[0]))
-    found: Texts = {}
+def texts_for_the_page() -> Parts:
+    """Everything that the lab offers: the model's own texts, every choice of unknowns, and each number of them."""
+    yield "", model_for_the_page()
+    done: set[str] = set(refused())
     for count in range(1, LARGEST + 1):
+        yield f"forms/{count}", form_for_the_page(count)
         for unknown in combinations(QUANTITIES, count):
             for earlier in (False, True):
                 key = key_of(unknown, earlier)
-                if key not in refused() and key not in found:
-                    found[key] = choice_for_the_page(unknown, earlier)
-    return found
+                if key not in done:
+                    done.add(key)
+                    yield f"unknowns/{key}", unknowns_for_the_page(unknown, earlier)

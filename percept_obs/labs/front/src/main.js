@@ -5,6 +5,7 @@
 // class that extends Live (common/page/live.js) and draws them; name it below, as its Python side names it in `kind`.
 // What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
 
+import { modelOf } from "./common/model/texts.js";
 import { element } from "./common/page/controls.js";
 import style from "./common/page/style.css";
 import { ObserverLab } from "./observer/lab.js";
@@ -14,12 +15,12 @@ import { StructureLab } from "./structure/lab.js";
 const LABS = { observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 export default {
-  render({ model, el }) {
+  async render({ model, el }) {
     const place = element("div", {}, element("style", {}, style));
     el.append(place);
     let lab;
     try {
-      lab = new LABS[model.get("kind")](model, place);
+      lab = new LABS[model.get("kind")](model, place, await modelOf(model.get("texts"), model.get("model")));
     } catch (error) {
       place.textContent = `The lab could not be opened: ${error.message}`;
       throw error;

@@ -91,7 +91,7 @@
 
 /**
  * @typedef {object} SettingSchema  what a setting may be, as a lab's schema has it by the setting's name
- * @property {"number" | "choice" | "names" | "matrix" | "list" | "group" | "points" | "spans"} kind
+ * @property {"number" | "choice" | "names" | "matrix" | "list" | "group" | "several"} kind
  * @property {string} [label]      what the panel calls it
  * @property {string} [name]       what its control is called, if not as its place in the settings
  * @property {string} [unit]

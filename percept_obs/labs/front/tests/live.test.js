@@ -37,7 +37,7 @@ class SmallKernels {
 
 /** A model of the kernel's side: traits with listeners, as anywidget hands them over. */
 function fakeWidget() {
-  const state = { settings: structuredClone(OPENING), parts: [], model: { pictures: [], observers: {}, opening: OPENING } };
+  const state = { settings: structuredClone(OPENING), model: { pictures: [], observers: {}, opening: OPENING } };
   const listeners = {};
   return {
     get: (name) => state[name],
@@ -57,7 +57,7 @@ function fakeWidget() {
 class SmallLab extends Live {
   constructor(widget) {
     const words = { reasons: () => [], readingAt: () => "", summaryOf: (_, serial) => ({ serial }) };
-    super(widget, { Kernels: SmallKernels, Engine: CountingEngine, ...words });
+    super(widget, { schema: {}, ...widget.get("model") }, { words: {}, Kernels: SmallKernels, Engine: CountingEngine, ...words });
     this.drawings = [];
     const plane = { draw: (shown, ghost, cursor) => this.drawings.push([shown.value, ghost?.value ?? null, cursor]) };
     this.planes = [{ ...plane, describe: () => {} }];
@@ -66,7 +66,7 @@ class SmallLab extends Live {
     this.formulas = { show: () => {} };
     const told = (name) => [name, (value) => (this.told[name] = value)];
     this.told = {};
-    const names = ["problem", "waiting", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence"];
+    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence"];
     this.follow({ root: { classList: { toggle() {} } }, ...Object.fromEntries(names.map(told)) });
   }
 
@@ -161,19 +161,19 @@ test("what is read off a result is computed when words or a picture need it, and
 test("an answer of Python to other settings than those that are shown is not shown", async () => {
   const { lab, widget } = await opened();
   const first = lab.serial;
-  widget.tell("analysis", { of: first, sentences: ["of the opening"], bound: 1 });
+  widget.tell("analysis", { serial: first, sentences: ["of the opening"], bound: 1 });
   assert.equal(lab.answered().bound, 1);
   lab.change({ gain: 5 });
   frame();
   assert.equal(lab.answered(), null);
   assert.equal(lab.told.answered, null);
-  widget.tell("analysis", { of: first, sentences: ["late"], bound: 2 });
+  widget.tell("analysis", { serial: first, sentences: ["late"], bound: 2 });
   assert.equal(lab.answered(), null);
   await lab.rest();
-  widget.tell("analysis", { of: first, sentences: ["later still"], bound: 3 });
+  widget.tell("analysis", { serial: first, sentences: ["later still"], bound: 3 });
   assert.equal(lab.answered(), null);
   assert.notEqual(lab.link.waitingFor, null);
-  widget.tell("analysis", { of: lab.serial, sentences: ["of gain 5"], bound: 4 });
+  widget.tell("analysis", { serial: lab.serial, sentences: ["of gain 5"], bound: 4 });
   assert.equal(lab.answered().bound, 4);
   const before = lab.told.words;
   frame(10);
@@ -186,16 +186,16 @@ test("the line to Python hears answers to its latest message only, and says of w
   const heard = [];
   const widget = fakeWidget();
   const nothing = () => {};
-  const link = new Link(widget, { onAnalysis: (...answer) => heard.push(answer), onSilence: nothing, onUnprinted: nothing });
-  widget.tell("analysis", { of: 7 });
+  const link = new Link(widget, { onAnalysis: (...answer) => heard.push(answer), onSilence: nothing });
+  widget.tell("analysis", { serial: 7 });
   const settings = { gain: 1 };
   link.send(settings, { serial: 7 });
-  widget.tell("analysis", { of: 6 });
+  widget.tell("analysis", { serial: 6 });
   assert.deepEqual(heard, []);
-  widget.tell("analysis", { of: 7 });
+  widget.tell("analysis", { serial: 7 });
   link.send({ gain: 2 }, { serial: 8 });
-  widget.tell("analysis", { of: 7 });
-  assert.deepEqual(heard, [[{ of: 7 }, settings]]);
+  widget.tell("analysis", { serial: 7 });
+  assert.deepEqual(heard, [[{ serial: 7 }, settings]]);
   link.close();
 });
 

@@ -1,5 +1,6 @@
 // The parts of the page that need no browser: random numbers, tables, scales, measures, words.
 import assert from "node:assert/strict";
+import { schemaAt, schemaOf } from "../src/common/model/schema.js";
 import { test } from "node:test";
 import { columnOf, distancesOf } from "../src/common/model/derived.js";
 import { changeAt, same, valueAt } from "../src/common/model/settings.js";
@@ -13,9 +14,6 @@ import { held, interpolate, lastSamples, stepGrid } from "../src/common/model/ta
 import { inWords, mainly } from "../src/points/model/directions.js";
 import { spansOf } from "../src/points/model/measures.js";
 import { eigen, pseudoInverse, spectrum } from "../src/points/model/symmetric.js";
-import { SCHEMA as OBSERVER } from "../src/observer/schema.js";
-import { SCHEMA as POINTS } from "../src/points/schema.js";
-import { SCHEMA as STRUCTURE } from "../src/structure/schema.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {
@@ -146,12 +144,22 @@ test("what follows from a result's rows is made once for them", () => {
   assert.equal(columnOf(rows, 2, 1), columnOf(rows, 2, 1));
 });
 
-test("every schema is plain data that a link may carry", () => {
-  for (const schema of [OBSERVER, STRUCTURE, POINTS]) {
-    assert.deepEqual(JSON.parse(JSON.stringify(schema)), schema);
-    const numbers = Object.values(schema).filter(({ kind }) => kind === "number");
-    for (const { low, high, least, most } of numbers) assert.ok(least <= low && low < high && high <= most);
-  }
+test("a schema takes ranges from Python and words from the page", () => {
+  const told = {
+    size: { kind: "number", low: 0, high: 9, usual: [1, 2], step: 0.5, unit: "m" },
+    hold: { kind: "choice", names: ["zero", "first"] },
+    b: { kind: "row", entries: [{ kind: "number", low: -5, high: 5, label: "b1", zero: false }] },
+    start: { kind: "optional", of: { kind: "group", of: { mode: { kind: "choice", names: ["own"] } } } },
+  };
+  const words = { hold: { choices: { zero: "held", first: "a line" } }, b: { name: "true {}" }, start: { mode: { name: "start" } } };
+  const schema = schemaOf(told, words);
+  const { low, high, least, most, log, label, unit } = schema.size;
+  assert.deepEqual([low, high, least, most, log, label, unit], [1, 2, 0, 9, false, "size", "m"]);
+  assert.deepEqual(schema.hold.choices, { zero: "held", first: "a line" });
+  assert.equal(schema.hold.label, "Hold");
+  const entry = schemaAt(schema, "b.0");
+  assert.deepEqual([entry.name, entry.label, entry.nonzero, entry.log, entry.low], ["true b1", "b1", true, true, -5]);
+  assert.equal(schemaAt(schema, "start.mode").name, "start");
 });
 
 test("no gain is allowed before it is known which are, and functions come once all of them are there", async () => {

@@ -1,6 +1,7 @@
 // @ts-check
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
+import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
@@ -13,14 +14,14 @@ import { imagePlaneInWords, reasons } from "./model/text.js";
 import { numbersOf, systemOf } from "./page/formula.js";
 import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
-import { SCHEMA } from "./schema.js";
+import { WORDS } from "./schema.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
 export class ObserverLab extends Live {
-  constructor(widget, place) {
-    super(widget, {
-      ...{ schema: SCHEMA, Kernels, Engine, presets: PRESETS, settingsOf },
+  constructor(widget, place, model) {
+    super(widget, model, {
+      ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
       ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
     });
     const plane = new ImagePlane({
@@ -55,7 +56,10 @@ export class ObserverLab extends Live {
   }
 
   fitted(asked) {
-    const settings = withOutputsOf(this.model.surfaces[asked.surface], asked);
+    const { outputs } = this.model.surfaces[asked.surface];
+    const allowed = outputs.some((names) => same(names, asked.outputs));
+    const settings = allowed ? asked : { ...asked, outputs: [...outputs[0]] };
+    if (!allowed) this.view.notice(`The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`);
     const refused = this.kernels.refused(settings);
     const lost = settings.observers.filter((name) => refused[name]);
     if (!lost.length) return settings;
@@ -64,10 +68,4 @@ export class ObserverLab extends Live {
     this.view.notice(why.join(" "));
     return { ...settings, observers: left.length ? left : [ALWAYS_POSSIBLE] };
   }
-}
-
-/** The settings, with all outputs where the surface does not allow those that were chosen. */
-function withOutputsOf({ outputs }, settings) {
-  const allowed = outputs.some((names) => names.join() === settings.outputs.join());
-  return allowed ? settings : { ...settings, outputs: [...outputs[0]] };
 }

@@ -11,12 +11,12 @@ import { Formulas } from "./page/formula.js";
 import { ImagePlane } from "./page/image_plane.js";
 import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
-import { SCHEMA } from "./schema.js";
+import { WORDS } from "./schema.js";
 
 export class PointsLab extends Live {
-  constructor(widget, place) {
+  constructor(widget, place, model) {
     const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, { schema: SCHEMA, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
+    super(widget, model, { words: WORDS, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
     this.planes = [new ImagePlane(this, this.model.mostPoints)];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
@@ -31,7 +31,8 @@ export class PointsLab extends Live {
   }
 
   put(k, place) {
-    if (!place.every((value) => Math.abs(value) <= this.schema.points.most)) return;
+    const { most = Infinity } = this.schema.points;
+    if (!place.every((value) => Math.abs(value) <= most)) return;
     this.change({ points: this.settings.points.with(k, place) });
   }
 
@@ -81,10 +82,6 @@ export class PointsLab extends Live {
     const length = Math.hypot(...first) || 1;
     const velocity = first.map((value) => Number(((0.2 * value) / length).toPrecision(9)));
     this.change({ turning: 0, input: 0, velocity }, true);
-  }
-
-  progress() {
-    return { done: 0, of: 1, reason: "The page prepares these equations." };
   }
 
   // What is shown.

@@ -16,13 +16,13 @@ import { numbersOf, systemOf } from "./page/formula.js";
 import { StructurePanel } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { Scene } from "./page/scene.js";
-import { SCHEMA } from "./schema.js";
+import { WORDS } from "./schema.js";
 
 export class StructureLab extends Live {
-  constructor(widget, place) {
-    const computing = { schema: SCHEMA, Kernels: StructureKernels, Engine: StructureEngine };
+  constructor(widget, place, model) {
+    const computing = { words: WORDS, Kernels: StructureKernels, Engine: StructureEngine };
     const words = { reasons, readingAt, summaryOf, pythonOf };
-    super(widget, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
+    super(widget, model, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
     const plane = new ImagePlane({
       name: "ybar",
       label: "Start of the point",

@@ -1,17 +1,15 @@
 // @ts-check
-// The functions that settings need, made from texts of which some follow after a lab has been opened.
+// The functions that settings need, made from the texts that were printed for them.
 
 import { Modules } from "./modules.js";
 
 /** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean}} Module */
 
-/** Functions of a model; those of a lab say which modules settings need, and whether their texts have come. */
+/** Functions of a model; those of a lab say which modules settings need. */
 export class PrintedKernels {
   constructor(model, load) {
     this.model = model;
     this.modules = new Modules(load);
-    this.whole = new Set();
-    this.waiters = [];
     const allowed = Object.entries(model.observers ?? {}).flatMap(([observer, { gains }]) =>
       gains.map((gain) => [`${observer}_${gain.name}`, gain.allowed]),
     );
@@ -19,25 +17,13 @@ export class PrintedKernels {
     this.limits = allowed.length ? [{ key: "gains", texts: Object.fromEntries(allowed), aside: true }] : [];
   }
 
-  /** Whether the texts that settings need have come. */
-  has(_settings) {
-    return true;
-  }
-
   /** Names and texts of the modules that settings need, with the observer whose loop one is. */
   needed(_settings) {
     return /** @type {Module[]} */ ([]);
   }
 
-  /** Go on with what has waited for a part. */
-  came(part) {
-    this.whole.add(part);
-    for (const retry of this.waiters.splice(0)) retry();
-  }
-
-  /** The functions that settings need, those of observers by their names; undefined while one has to be waited for. */
+  /** The functions that settings need, those of observers by their names; undefined while one is not loaded. */
   of(settings) {
-    if (!this.has(settings)) return undefined;
     const found = { observers: {} };
     for (const { key, observer, aside } of [...this.limits, ...this.needed(settings)]) {
       const functions = this.modules.get(key);
@@ -48,9 +34,8 @@ export class PrintedKernels {
     return found;
   }
 
-  /** Wait for what settings need, and load it. */
+  /** Load what settings need. */
   async prepare(settings) {
-    while (!this.has(settings)) await new Promise((resolve) => this.waiters.push(resolve));
     await Promise.all([...this.limits, ...this.needed(settings)].map(({ key, texts }) => this.modules.prepare(key, texts)));
   }
 

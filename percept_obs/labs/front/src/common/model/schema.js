@@ -1,30 +1,58 @@
 // @ts-check
-// Kinds of settings, as the schemas of the labs have them; types.js says what each of them holds.
-
-export const SEED = { kind: "number", label: "seed", low: 0, high: 100, step: 1, whole: true, least: 0, most: 2 ** 32 - 1 };
-export const DROPOUT = { kind: "number", label: "lost samples", low: 0, high: 0.9, step: 0.01, least: 0, most: 0.95 };
+// What may be set: the kinds and ranges that Python's schema says, in the words of the page; types.js says what each holds.
 
 /** What observers may take for the outputs between samples. */
-export const HOLDS = { zero: "the last sample", first: "a line, a sample ahead", exact: "the exact signal" };
+export const HOLD = { choices: { zero: "the last sample", first: "a line, a sample ahead", exact: "the exact signal" } };
+export const NOISE = { kind: { choices: { uniform: "uniform", gaussian: "Gaussian" } } };
 
-/** How large something is that may be 0 and never exceeds 1. */
-export function amount(label, high, step) {
-  return { kind: "number", label, low: 0, high, step, least: 0, most: 1 };
-}
-
-/** A camera's noise: its kind, and how large it is in what is measured. */
-export function noise(label, sizes) {
-  const kind = { kind: "choice", label, choices: { uniform: "uniform", gaussian: "Gaussian" } };
-  return { kind: "group", entries: { kind, ...sizes } };
-}
-
-/** A list with a number of each name; what differs is told by the functions of a name. */
-export function listOf(names, labelOf, number) {
-  return { kind: "list", entries: names.map((name) => ({ kind: "number", ...number, name, label: labelOf(name) })) };
+/**
+ * A lab's schema for its controls.
+ *
+ * @param {Record<string, any>} told   Python's kinds, by the settings' names
+ * @param {Record<string, any>} words  what the page calls them, where that is not their name or Python's label
+ * @returns {Record<string, import("../../types.js").SettingSchema>}
+ */
+export function schemaOf(told, words) {
+  return mapped(told, (kind, name) => MAKE[kind.kind]?.(kind, words[name] ?? {}, name) ?? kind);
 }
 
 /** The schema of the value at a place in the settings. */
 export function schemaAt(schema, place) {
   const [key, ...rest] = place.split(".");
   return rest.reduce((part, name) => part.entries[name], schema[key]);
+}
+
+const MAKE = {
+  number: ({ label, unit, low: least, high: most, usual, step, whole, zero }, words, name) => {
+    const [low, high] = usual ?? [least, most];
+    const said = { label: label ?? name, unit, low, high, step, log: step === undefined };
+    return { kind: "number", ...said, least, most, whole, nonzero: zero === false, ...words };
+  },
+  choice: ({ label, names }, words, name) => ({
+    kind: "choice",
+    label: label ?? name[0].toUpperCase() + name.slice(1),
+    choices: Object.fromEntries((names ?? []).map((each) => [each, each])),
+    ...words,
+  }),
+  names: (kind, words, name) => ({ ...MAKE.choice(kind, words, name), kind: words.kind ?? "names" }),
+  row: ({ entries, label }, words) => {
+    const [first] = entries;
+    if (first.kind === "row") {
+      const [{ step, low: least, high: most }] = first.entries;
+      return { kind: "matrix", label, rows: entries.length, columns: first.entries.length, step, least, most, ...words };
+    }
+    const called = (text, entry) => text?.replace("{}", entry.label) ?? entry.label;
+    const named = (entry) => ({ name: called(words.name, entry), label: called(words.label, entry) });
+    return { kind: "list", entries: entries.map((entry) => MAKE.number(entry, named(entry), "")) };
+  },
+  group: ({ of }, words) => ({ kind: "group", entries: schemaOf(of, words) }),
+  optional: ({ of }, words, name) => MAKE[of.kind]?.(of, words, name) ?? of,
+  several: ({ of }, words) => {
+    const { entries } = MAKE.optional({ of }, {}, "");
+    return { kind: "several", most: entries.at(-1).most, ...words };
+  },
+};
+
+function mapped(object, change) {
+  return Object.fromEntries(Object.entries(object).map(([name, value]) => [name, change(value, name)]));
 }

@@ -12,9 +12,6 @@ export function build(lab, place, presets) {
   const pythonError = paragraph("problem percept-obs-error", "alert");
   const silence = paragraph("silence", "status");
   const notice = paragraph("notice", "status");
-  const progress = element("progress", { "aria-label": "Equations that have come from Python" });
-  const awaited = element("span");
-  const waiting = element("div", { class: "waiting", role: "status", hidden: true }, progress, awaited);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
   const verdicts = element("ul", { class: "verdicts" });
   const why = element("ul", { class: "why" });
@@ -102,7 +99,6 @@ export function build(lab, place, presets) {
     problem,
     pythonError,
     notice,
-    waiting,
     lab.head ?? "",
     element(
       "div",
@@ -167,14 +163,6 @@ export function build(lab, place, presets) {
     pythonError: (text) => show(pythonError, text && `Python says: ${text}`),
     silence(error) {
       show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it.");
-    },
-    waiting(found) {
-      waiting.hidden = !found;
-      if (!found) return;
-      const { done, of, reason } = found;
-      progress.max = of;
-      progress.value = done;
-      put(awaited, reason || `Python is still printing these equations: ${done} of ${of} parts are here.`);
     },
     analysis(sentences) {
       fill(analysis, sentences);

@@ -3,9 +3,9 @@
 
 const PATIENCE = 4000;
 
-/** Sends settings and summary, hears of parts and analyses, and tells when Python does not answer. */
+/** Sends settings and summary, hears what Python adds to them, and tells when Python does not answer. */
 export class Link {
-  constructor(widget, { onSettings, onAnalysis, onError, onSilence, onPart, onUnprinted }) {
+  constructor(widget, { onSettings, onAnalysis, onError, onSilence }) {
     this.widget = widget;
     /** @type {{settings: any, serial: number} | null} */
     this.sent = null;
@@ -15,23 +15,8 @@ export class Link {
       "change:settings": () => onSettings(widget.get("settings")),
       "change:error": () => onError(widget.get("error")),
       "change:analysis": () => this.heard(widget.get("analysis"), onAnalysis),
-      "change:unprinted": onUnprinted,
     };
-    const missing = [];
-    for (const part of widget.get("parts")) {
-      const there = () => Object.keys(widget.get(part) ?? {}).length > 0;
-      this.listeners[`change:${part}`] = () => there() && onPart(part, widget.get(part));
-      if (there()) onPart(part, widget.get(part));
-      else missing.push(part);
-    }
     for (const [event, listener] of Object.entries(this.listeners)) widget.on(event, listener);
-    if (missing.length) this.ask();
-  }
-
-  /** Python begins to print the parts by itself in a notebook; elsewhere it waits to be asked. */
-  ask() {
-    this.widget.set("missed", true);
-    this.save();
   }
 
   /** Hand the latest state over. */
@@ -55,7 +40,7 @@ export class Link {
 
   /** An answer is about the settings that were sent with its serial; one to others is too late. */
   heard(analysis, onAnalysis) {
-    if (!this.sent || analysis.of !== this.sent.serial) return;
+    if (!this.sent || analysis.serial !== this.sent.serial) return;
     this.waitingFor = null;
     clearTimeout(this.timer);
     this.onSilence(undefined);

@@ -3,6 +3,7 @@
 
 import { Results } from "../model/results.js";
 import { linearScale } from "../model/scales.js";
+import { schemaOf } from "../model/schema.js";
 import { same } from "../model/settings.js";
 import { State } from "../model/state.js";
 import { verdict } from "../model/words.js";
@@ -22,19 +23,19 @@ const BETWEEN_WORDS = 250;
 /**
  * A lab that follows the hand and tells Python when the hand rests.  A lab of its own gives it `planes`, `formulas` and
  * `panel` before open(), and says what is its own in these parts:
- *   schema                      what settings may be
  *   Kernels, Engine             functions of settings, and what makes results of them
+ *   words                       what the page calls the settings
  *   presets, settingsOf         points worth seeing, and the settings of an act
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
 export class Live {
-  constructor(widget, { Kernels, Engine, ...parts }) {
+  constructor(widget, model, { Kernels, Engine, ...parts }) {
     this.widget = widget;
-    this.model = widget.get("model");
+    this.model = model;
     this.parts = parts;
-    this.schema = parts.schema;
+    this.schema = schemaOf(model.schema, parts.words);
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
     this.state = new State(structuredClone(widget.get("settings")));
@@ -88,8 +89,6 @@ export class Live {
       onAnalysis: (analysis, settings) => this.analysed({ ...analysis, settings }),
       onError: (text) => this.view.pythonError(text),
       onSilence: (silence) => this.view.silence(silence),
-      onPart: (part, value) => this.arrived(part, value),
-      onUnprinted: () => this.schedule(),
     });
     this.leave = surround(this.view.root, {
       figures: this.figures.map(({ figure }) => figure),
@@ -202,11 +201,6 @@ export class Live {
     return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
   }
 
-  /** How much of what follows is there, for those who have to wait. */
-  progress() {
-    return { done: this.kernels.whole.size, of: this.widget.get("parts").length, reason: this.widget.get("unprinted") };
-  }
-
   allows(observer, gain, value) {
     return this.kernels.allows(observer, gain, value);
   }
@@ -214,16 +208,6 @@ export class Live {
   /** The settings, or those that take their place where they are impossible. */
   fitted(settings) {
     return settings;
-  }
-
-  /** Take a part of the model that Python hands over after opening. */
-  arrived(part, value) {
-    this.kernels.arrive(part, value);
-    if (!this.link) return;
-    this.panel.shownFor = null;
-    this.state.amend(this.fitted(this.settings));
-    this.panel.show();
-    if (this.shown?.settings !== this.settings) this.settle();
   }
 
   /** The hand lets go. */
@@ -268,7 +252,6 @@ export class Live {
       this.wait(settings);
       return;
     }
-    this.view.waiting(null);
     // Nobody reads sixty texts a second, and the page would lay itself out for each of them.
     const speaking = performance.now() - this.spoken > BETWEEN_WORDS;
     try {
@@ -283,7 +266,6 @@ export class Live {
   }
 
   wait(settings) {
-    this.view.waiting(this.progress());
     if (this.awaited === settings) return;
     this.awaited = settings;
     this.prepare(settings).then(

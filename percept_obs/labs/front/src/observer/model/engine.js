@@ -26,12 +26,12 @@ export class Engine extends Runner {
    */
   run(settings, functions, whole = true) {
     const { coordinates: names } = this.model.surfaces[settings.surface];
-    const structure = this.model.structures[keyOf(settings)];
-    const { measured, hidden } = structure;
+    const form = this.model.forms[keyOf(settings)];
+    const { measured, hidden } = form;
     const result = {
       settings,
       ...this.camera.record(settings, functions),
-      ...this.geometry(settings, functions, structure),
+      ...this.geometry(settings, functions, form),
       ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
       tolerance: TOLERANCE,
       runs: [],
@@ -42,7 +42,7 @@ export class Engine extends Runner {
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
     result.runs = settings.observers.map((name) => {
-      const kernel = structure.observers[name][switchOf(settings, name)];
+      const kernel = form.observers[name][switchOf(settings, name)];
       return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
     });
     return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
@@ -95,13 +95,13 @@ export class Engine extends Runner {
   }
 
   /** Where the translation points in the image, and where an instant tells too little. */
-  geometry(settings, functions, structure) {
+  geometry(settings, functions, form) {
     const nowhere = { foe: null, circle: null };
     if (settings.scenario in this.model.recordings) return nowhere;
     const parameters = [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
     const foe = Array.from(functions.foe(parameters, [0, 0]));
     if (!foe.every((v) => Math.abs(v) < 1e6)) return nowhere;
-    if (!structure.circle) return { foe, circle: null };
+    if (!form.circle) return { foe, circle: null };
     return { foe, circle: Array.from(functions.circle([...parameters, settings.threshold], [0, 0, 0])) };
   }
 }

@@ -4,7 +4,7 @@
 import { keyOf } from "../model/kernels.js";
 
 export function systemOf(settings, model) {
-  return { title: "What is measured and what is hidden", lines: model.structures[keyOf(settings)].formulas };
+  return { title: "What is measured and what is hidden", lines: model.forms[keyOf(settings)].formulas };
 }
 
 export function numbersOf({ A, b, normal }) {

@@ -6,7 +6,7 @@ import { readable } from "../../common/model/scales.js";
 import { KEPT, SOLID } from "../../common/page/lines.js";
 import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
 
-const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal" };
+const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range" };
 
 export const LABELS = {
   outputs: "Image coordinates over time",

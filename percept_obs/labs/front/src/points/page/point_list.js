@@ -21,6 +21,7 @@ export class PointList {
     const depth = slider({
       name: `depth ${k + 1}`,
       ...panel.schema.points.depth,
+      most: panel.schema.points.most,
       get: () => (there() ? lab.depthOf(k) : undefined),
       set: (value) => lab.moveDepth(k, value),
       rest: () => lab.rest(),

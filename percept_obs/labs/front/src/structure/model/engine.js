@@ -31,7 +31,7 @@ export class StructureEngine extends Runner {
       const nothing = { hidden: [], hiddenNames: [], runs: [], choice: null, guard: null, limits: [], whole: true };
       return { ...seen, ...nothing, width: 3, names: OUTPUTS };
     }
-    const { unknown, scaled, square } = this.model.choices[keyOf(settings)];
+    const { unknown, scaled, square } = this.model.unknowns[keyOf(settings)];
     const hidden = unknown.map((_, i) => 3 + i);
     const hiddenNames = unknown.map((_, i) => `theta${i + 1}`);
     const width = 3 + hidden.length;
@@ -45,7 +45,7 @@ export class StructureEngine extends Runner {
     const asked = OUTPUTS.map((_, c) => (settings.start === "own" ? inputs.columns[c][0] : 0));
     asked.push(...hidden.map(() => 0));
     result.runs = settings.observers.map((name) => {
-      const kernel = this.model.kernels[hidden.length].observers[name];
+      const kernel = this.model.forms[hidden.length].observers[name];
       return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
     });
     if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
@@ -140,7 +140,7 @@ export class StructureEngine extends Runner {
     return settings.observers.flatMap((name) => {
       const { fastest } = functions.observers[name];
       if (!fastest) return [];
-      const kernel = this.model.kernels[settings.unknown.length].observers[name];
+      const kernel = this.model.forms[settings.unknown.length].observers[name];
       const x = Float64Array.from([0, ...kernel.gains.map((gain) => settings.gains[name][gain])]);
       const out = new Float64Array(1);
       const rateAt = (k) => {

@@ -123,7 +123,7 @@ export class ChoiceOfUnknowns {
       this.told.replaceChildren(head, element("p", { class: "refused" }, `${refusal[0].toUpperCase()}${refusal.slice(1)}.`));
       return;
     }
-    const choice = this.model.choices[keyOf(settings)];
+    const choice = this.model.unknowns[keyOf(settings)];
     const theta = element("div", { class: "line" });
     const column = choice.theta.map((entry) => `<mtr><mtd>${entry}</mtd></mtr>`).join("");
     theta.innerHTML = `<math><mi>θ</mi><mo>=</mo><mtable class="matrix">${column}</mtable></math>`;

@@ -4,7 +4,7 @@
 import { keyOf } from "../model/kernels.js";
 
 export function systemOf(settings, model) {
-  const { formulas } = model.choices[keyOf(settings)] ?? { formulas: [] };
+  const { formulas } = model.unknowns[keyOf(settings)] ?? { formulas: [] };
   return { title: "What multiplies the unknowns, and what is known", lines: formulas };
 }
 

@@ -9,15 +9,14 @@ import sympy as sp
 
 from percept_obs.compile import function_source, source
 from percept_obs.labs.shared.markup import markup
+from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Gain, Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.observers.parts import hats
 
-Texts = dict[str, Any]
-
 
 def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:
-    """What is known about an observer, its gains, and its equations in the lecture's letters.
+    """What is known about an observer, its gains, and its equations in the letters of the paper.
 
     Parameters
     ----------

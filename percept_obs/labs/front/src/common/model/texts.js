@@ -1,0 +1,26 @@
+// @ts-check
+// What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
+
+/**
+ * A lab's model: the parts that were printed for it, compressed, and what Python hands over besides.
+ *
+ * @returns {Promise<Record<string, any>>}
+ */
+export async function modelOf(texts, given) {
+  const unpacked = new Blob([texts]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const model = {};
+  for (const line of (await new Response(unpacked).text()).split("\n")) {
+    const tab = line.indexOf("\t");
+    const [group, name] = line.slice(0, tab).split("/");
+    const read = () => JSON.parse(line.slice(tab + 1));
+    if (name === undefined) Object.assign(model, read());
+    else lazily((model[group] ??= {}), name, read);
+  }
+  return Object.assign(model, given);
+}
+
+/** A property that is made when it is first asked for. */
+function lazily(object, name, make) {
+  const set = (value) => Object.defineProperty(object, name, { value, enumerable: true });
+  Object.defineProperty(object, name, { get: () => set(make())[name], enumerable: true, configurable: true });
+}

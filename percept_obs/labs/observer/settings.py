@@ -1,0 +1,106 @@
+"""What may be set in the observer lab."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS
+from percept_obs.labs.shared.schema import (
+    DROPOUT,
+    KEPT,
+    SEED,
+    Choice,
+    Group,
+    Names,
+    Number,
+    Optional,
+    Row,
+    Schema,
+    Settings,
+    noise,
+    vector,
+)
+from percept_obs.recording import Scenario, scenarios
+
+SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
+HOLDS = ("zero", "first", "exact")
+PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
+_ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
+
+
+def _matrix(about: str = "") -> Row:
+    return Row([vector(row, step=0.05) for row in _ROWS], label="Motion A", unit="1/s", about=about)
+
+
+def _translation(about: str = "") -> Row:
+    return vector(("b1", "b2", "b3"), about, "m/s", usual=(-1, 1), step=0.01)
+
+
+def as_settings(scenario: Scenario) -> Settings:
+    """A scenario's motion, point, surface and duration.
+
+    Raises
+    ------
+    ValueError
+        If the motion varies.
+    """
+    values = scenario.motion.values
+    if not values:
+        raise ValueError(
+            f"the motion of the scenario {scenario.name!r} varies over time; record() it and open the lab with the "
+            "recording"
+        )
+    A, b = (np.array(block.subs(values), dtype=float) for block in (scenario.motion.A, scenario.motion.b))
+    normal = list(scenario.surface.values.values())
+    surface = {"surface": scenario.surface.name, **({"normal": normal} if normal else {})}
+    X0, duration = list(map(float, scenario.position)), scenario.duration
+    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **surface}
+
+
+_TILT: Settings = {"usual": (-1, 1), "step": 0.05}
+_NOT_ALONG = "the plane must not hold the optical axis"
+_WINDOW = "over which w w^T is gathered"
+_THRESHOLD = "|w| below which an instant tells too little"
+
+SCHEMA = Schema(
+    scenario=Choice("ma2005_eq35", tuple(SCENARIOS), about="a name"),
+    A=_matrix("of the true motion X' = A X + b"),
+    b=_translation("of the true motion"),
+    X0=vector(("X", "Y", "Z"), "the point at time 0", "m", usual=(-5, 10), step=0.05),
+    duration=Number(80.0, 0.1, 200, (2, 120), 1, unit="s"),
+    surface=Choice("pinhole", tuple(SURFACES), label="Imaging surface"),
+    normal=Row(
+        [
+            *(Number(label=label, **_TILT) for label in ("n1", "n2")),
+            Number(1.0, label="n3", zero=False, reason=_NOT_ALONG, **_TILT),
+        ],
+        about="the normal vector of a plane",
+    ),
+    outputs=Names(["y1", "y2"], ("y1", "y2"), label="Measured outputs", about="names of what is measured"),
+    observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
+    gains=Group({}, about="for each observer, its gains by name"),
+    switches=Group({n: Choice(own, WAYS[n]) for n, own in OWN_SWITCH.items()}, partial=True, about="by observers"),
+    believed=Optional(Group({"A": _matrix(), "b": _translation()}), about="None, or the motion that observers believe"),
+    noise=noise(size=Number(0.0, 0, 1, (0, 0.05), 0.0005, label="bound or σ")),
+    dropout=DROPOUT,
+    seed=SEED,
+    period=Number(0.01, 1e-3, 1, (0.002, 0.2), unit="s"),
+    hold=Choice("zero", HOLDS),
+    start=Group(
+        {
+            "mode": Choice("own", ("own", "zero", "chosen"), label="x̂ starts at"),
+            "values": vector(("y1", "y2", "y3"), usual=(-2, 2), step=0.01),
+        },
+        about='a mapping of mode, "own", "zero" or "chosen", and the chosen values',
+    ),
+    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW),
+    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD),
+    pictures=Names(["distance", "error", "excitation"], PICTURES, label="Time charts", about="those that are shown"),
+    kept=KEPT,
+)
+"""The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
+
+STANDARD: dict[str, Any] = SCHEMA.opening | as_settings(scenarios.ma2005_eq35())
+"""What every preset begins with."""

@@ -1,0 +1,64 @@
+"""What may be set in the lab of many points."""
+
+from __future__ import annotations
+
+from percept_obs.labs.points.texts import MOST_POINTS, STATES
+from percept_obs.labs.shared.schema import (
+    DROPOUT,
+    KEPT,
+    SEED,
+    Choice,
+    Names,
+    Number,
+    Optional,
+    Row,
+    Schema,
+    Settings,
+    Several,
+    noise,
+    vector,
+)
+
+PICTURES = ("error", "depth", "points", "gramian")
+WEIGHTS = ("constant", "scheduled", "lyapunov", "riccati")
+_SHARE: Settings = {"low": -10, "high": 10, "usual": (-2, 2), "step": 0.05}
+_SIZE = (1.0, 1e-4, 1e4, (0.001, 100))
+_PLACES = [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9], [-0.5, 0.8, 2.7]]
+_TIMES = [Number(label=label, low=0, unit="s") for label in ("from", "to")]
+
+SCHEMA = Schema(
+    state=Choice(
+        "body", tuple(STATES), about='"body" (r, d_2, ...), "independent" (X_1, ...) or "origin" (o, d_1, ...)'
+    ),
+    points=Several(_PLACES, vector(("X", "Y", "Z")), MOST_POINTS, unit="m", about="places of the points at time 0"),
+    hidden=Several(
+        [None] * 3, Optional(Row(_TIMES)), MOST_POINTS, unit="s", about="None for each, or from when to when"
+    ),
+    turning=Number(
+        1.0, label="camera turns", about="share of the manoeuvre's turning, as `Manoeuvre` takes it", **_SHARE
+    ),
+    spin=Number(label="body turns", about="share of the body's turning", **_SHARE),
+    input=Number(1.0, about="share of the input", **_SHARE),
+    velocity=vector(("X", "Y", "Z"), "constant part of v", "m/s", usual=(-1, 1), step=0.02),
+    weight=Choice("constant", WEIGHTS, label="P is"),
+    size=Number(*_SIZE, label="P", about="P, or P at the beginning, times the identity"),
+    final=Number(*_SIZE, label="P at the end"),
+    decrease=Number(0.0, 0, 100, (0, 0.5), 0.005, unit="1/s", about="of a Lyapunov P"),
+    forgetting=Number(0.3, 0, 100, (0, 2), 0.02, unit="1/s", about="of a Riccati P"),
+    start=Choice(
+        "rays", ("rays", "error", "zero"), label="it starts", about='on "rays", with an "error", or at "zero"'
+    ),
+    depth=Number(1.5, 0.01, 100, (0.5, 6), 0.05, unit="m", label="at the depth", about="where rays start"),
+    error=Number(1.0, -100, 100, (-3, 3), 0.05, label="error, times the given", about="share of a given error"),
+    noise=noise(size=Number(0.0, 0, 1, (0, 0.05), 0.0005, label="bound or σ")),
+    dropout=DROPOUT,
+    seed=SEED,
+    period=Number(0.05, 5e-3, 1, (0.01, 0.2), unit="s"),
+    view=Number(2.0, 0.1, 100, (0.2, 4), 0.05, label="sees |y| up to"),
+    hold=Choice("exact", ("exact", "zero", "first")),
+    step=Number(0.05, 1e-3, 0.1, (0.002, 0.1), unit="s", label="longest step", about="the observer's longest step"),
+    duration=Number(30.0, 1, 120, (4, 60), 1, unit="s"),
+    window=Number(8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about="window of the Gramian"),
+    pictures=Names(["error", "depth", "gramian"], PICTURES, label="Time charts", about="those that are shown"),
+    kept=KEPT,
+)

@@ -1,0 +1,41 @@
+"""Print what the page needs for all that the labs offer: ``python -m percept_obs.labs.printing``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from percept_obs.labs.observer import texts as observer
+from percept_obs.labs.points import texts as points
+from percept_obs.labs.shared.printed import Parts, file_of, packed, unpacked
+from percept_obs.labs.structure import texts as structure
+
+LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
+    {
+        "observer_lab": observer.texts_for_the_page,
+        "structure_lab": structure.texts_for_the_page,
+        "points_lab": points.texts_for_the_page,
+    }
+)
+"""For each lab, what is printed for its page."""
+
+
+def changed(kind: str) -> list[str]:
+    """Places at which the shipped file of a lab is not what this package prints."""
+    file = file_of(kind)
+    there = unpacked(file.read_bytes()) if file.exists() else {}
+    now = {place: json.dumps(texts) for place, texts in LABS[kind]()}
+    return [place for place in {**there, **now} if there.get(place) != now.get(place)]
+
+
+def main() -> None:
+    """Write the files of all labs."""
+    for kind, print_texts in LABS.items():
+        file = file_of(kind)
+        file.write_bytes(packed(print_texts()))
+        print(f"{file}: {file.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,341 @@
+"""What may be set in a lab, said once: Python checks with it, the page reads it, the docstring lists it.
+
+A kind reads a value: what it gives back is plain data of that kind, and whatever else comes is a ValueError with the
+setting's name and what is expected.  Dataclasses say this in less than a library's validators and their sentences.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field, fields
+from functools import partial
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+
+from percept_obs.labs.shared.printed import part
+from percept_obs.observers import Observer
+
+Settings = dict[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of setting.
+
+    Parameters
+    ----------
+    opening : object
+        The value to open with.
+    label, unit : str
+        What the page calls it.
+    about : str
+        What it is, for the docstring of the lab.
+    """
+
+    opening: Any = None
+    label: str = ""
+    unit: str = ""
+    about: str = ""
+
+    @property
+    def expected(self) -> str:
+        """What a value must be, in words."""
+        return self._expected()
+
+    def read(self, name: str, value: object) -> Any:
+        """The value as plain data, or a ValueError that says what is expected of the setting with this name."""
+        return self._read(name, value)
+
+    def for_the_page(self) -> Settings:
+        """Plain data: the kind's name, and its fields that say something."""
+        told = {part.name: _plain(getattr(self, part.name)) for part in fields(self) if part.repr}
+        return {"kind": type(self).__name__.lower(), **{k: v for k, v in told.items() if v is not None and v != ""}}
+
+    def _expected(self) -> str:
+        raise NotImplementedError
+
+    def _read(self, name: str, value: object) -> Any:
+        raise NotImplementedError
+
+    def _refusal(self, name: str, value: object) -> ValueError:
+        return ValueError(f"{name} is {reprlib.repr(value)}; it must be {self.expected}")
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A number that opens with a value and may be anything from `low` to `high`.
+
+    Parameters
+    ----------
+    opening, low, high : float
+    usual : two floats, optional
+        The part of the range that a slider has.
+    step : float, optional
+        A slider's; it is logarithmic without one.
+    whole, zero : bool
+        Whether only whole numbers are allowed, and whether 0 is.
+    reason : str
+        Why it is bounded, where that is not plain.
+    """
+
+    opening: float = 0.0
+    low: float = -1e3
+    high: float = 1e3
+    usual: tuple[float, float] | None = None
+    step: float | None = None
+    whole: bool = False
+    zero: bool = True
+    reason: str = ""
+
+    def _expected(self) -> str:
+        kind = "a whole number" if self.whole else "a number"
+        bounds = [f"{bound:g}" if bound < 1e6 else str(bound) for bound in (self.low, self.high)]
+        return f"{kind} from {' to '.join(bounds)}{'' if self.zero else ', not 0'}{self.reason and f'; {self.reason}'}"
+
+    def _read(self, name: str, value: Any) -> float:
+        kind: Any = Integral if self.whole else Real
+        if isinstance(value, bool) or not isinstance(value, kind):
+            raise self._refusal(name, value)
+        if not self.low <= value <= self.high or not (self.zero or value):
+            raise self._refusal(name, value)
+        return int(value) if self.whole else float(value)
+
+
+@dataclass(frozen=True)
+class Choice(Kind):
+    """One of several names."""
+
+    opening: str = ""
+    names: Sequence[str] = ()
+
+    def _expected(self) -> str:
+        return f"one of {', '.join(self.names)}"
+
+    def _read(self, name: str, value: object) -> str:
+        if not isinstance(value, str) or value not in self.names:
+            raise self._refusal(name, value)
+        return value
+
+
+@dataclass(frozen=True)
+class Names(Kind):
+    """Some of several names, each once; `least` says how many at least."""
+
+    opening: Sequence[str] = ()
+    names: Sequence[str] = ()
+    least: int = 1
+
+    def _expected(self) -> str:
+        return f"a list with {'at least one' if self.least else 'some'} of {', '.join(self.names)}, each once"
+
+    def _read(self, name: str, value: object) -> list[str]:
+        if not isinstance(value, list | tuple) or not all(isinstance(v, str) and v in self.names for v in value):
+            raise self._refusal(name, value)
+        if len(value) < self.least or len(set(value)) < len(value):
+            raise self._refusal(name, value)
+        return list(value)
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """Yes or no."""
+
+    opening: bool = False
+
+    def _expected(self) -> str:
+        return "True or False"
+
+    def _read(self, name: str, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise self._refusal(name, value)
+        return value
+
+
+@dataclass(frozen=True)
+class Row(Kind):
+    """A list with an entry of each of some kinds, such as a vector, or a matrix, which is a row of rows."""
+
+    entries: Sequence[Kind]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "opening", [entry.opening for entry in self.entries])
+
+    def _expected(self) -> str:
+        kinds = list(dict.fromkeys(entry.expected for entry in self.entries))
+        return f"a list of {len(self.entries)}, {f'each {kinds[0]}' if len(kinds) == 1 else '; '.join(kinds)}"
+
+    def _read(self, name: str, value: object) -> list[Any]:
+        values = _listed(value)
+        if values is None or len(values) != len(self.entries):
+            raise self._refusal(name, value)
+        named = [f"{name} {entry.label or k}" for k, entry in enumerate(self.entries, 1)]
+        return [entry.read(n, v) for entry, n, v in zip(self.entries, named, values, strict=True)]
+
+
+@dataclass(frozen=True)
+class Several(Kind):
+    """A list of one to `most` entries of one kind."""
+
+    opening: Sequence[Any] = ()
+    of: Kind = field(default_factory=Number)
+    most: int = 1
+
+    def _expected(self) -> str:
+        return f"a list of 1 to {self.most}, each {self.of.expected}"
+
+    def _read(self, name: str, value: object) -> list[Any]:
+        values = _listed(value)
+        if values is None or not 1 <= len(values) <= self.most:
+            raise self._refusal(name, value)
+        return [self.of.read(f"{name} {k}", entry) for k, entry in enumerate(values, 1)]
+
+
+@dataclass(frozen=True)
+class Group(Kind):
+    """Settings of their own by their names; where it is `partial`, those that are left out stay as they open."""
+
+    of: Mapping[str, Kind]
+    partial: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "opening", {name: kind.opening for name, kind in self.of.items()})
+
+    def _expected(self) -> str:
+        return f"a mapping of {', '.join(self.of)}"
+
+    def _read(self, name: str, value: object) -> Settings:
+        if not isinstance(value, Mapping):
+            raise self._refusal(name, value)
+        unknown = ", ".join(sorted(str(key) for key in value if key not in self.of))
+        if unknown:
+            raise ValueError(f"{name} has no {unknown}; there are {', '.join(self.of)}")
+        left = self.opening if self.partial else {}
+        return {key: kind.read(f"{name} {key}", value.get(key, left.get(key))) for key, kind in self.of.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class GainsOf(Group):
+    """Gains of an observer, which decides what is allowed; it is made only for gains other than its own."""
+
+    observer: Callable[[], Observer] = field(repr=False)
+
+    def _read(self, name: str, value: object) -> Settings:
+        found = super()._read(name, value)
+        if found != self.opening:
+            self.observer().with_gains(**found)
+        return found
+
+
+@dataclass(frozen=True)
+class Optional(Kind):
+    """None, or a value of another kind."""
+
+    of: Kind
+
+    def _expected(self) -> str:
+        return f"None or {self.of.expected}"
+
+    def _read(self, name: str, value: object) -> Any:
+        return None if value is None else self.of.read(name, value)
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """Settings of the same lab, which the lab itself reads."""
+
+    def _expected(self) -> str:
+        return "a mapping of settings"
+
+    def _read(self, name: str, value: object) -> Settings:
+        if not isinstance(value, Mapping):
+            raise self._refusal(name, value)
+        return dict(value)
+
+
+class Schema(dict[str, Kind]):
+    """The settings of a lab: a kind for each, by its name."""
+
+    @property
+    def opening(self) -> Settings:
+        """What every setting opens with."""
+        return deepcopy({name: kind.opening for name, kind in self.items()})
+
+    def read(self, settings: object, opening: Settings) -> Settings:
+        """Settings as plain data, completed by those to open with.
+
+        Raises
+        ------
+        ValueError
+            If there is no such setting, or a value is not of its kind.
+        """
+        if not isinstance(settings, Mapping):
+            raise ValueError(f"settings are {reprlib.repr(settings)}; they must be a mapping of {', '.join(self)}")
+        unknown = ", ".join(sorted(str(name) for name in settings if name not in self))
+        if unknown:
+            raise ValueError(f"there is no setting {unknown}; there are {', '.join(self)}")
+        return {name: kind.read(name, settings.get(name, opening[name])) for name, kind in self.items()}
+
+    def for_the_page(self) -> Settings:
+        """The kinds as plain data."""
+        return {name: kind.for_the_page() for name, kind in self.items()}
+
+    def listed(self) -> str:
+        """A line for each setting, for a docstring."""
+        told = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
+        units = {name: f", in {kind.unit}" if kind.unit else "" for name, kind in self.items()}
+        return "\n    ".join(f"{name} : {told[name]}{units[name]}" for name in self)
+
+
+def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:
+    """A row of numbers of one kind, with their labels; it opens with zeros."""
+    return Row([Number(label=label, unit=unit, **kind) for label in entries], about=about, unit=unit)
+
+
+def gains(standard: Mapping[str, Mapping[str, float]], observer_of: Callable[[str], Observer]) -> Group:
+    """Gains by the observers' names and their own, with the values that they open with."""
+    groups = {
+        name: GainsOf(
+            {gain: Number(value, -1e300, 1e300) for gain, value in values.items()},
+            partial=True,
+            observer=partial(observer_of, name),
+        )
+        for name, values in standard.items()
+    }
+    return Group(groups, partial=True, about="for each observer, its gains by name")
+
+
+def standard_gains(kind: str) -> dict[str, dict[str, float]]:
+    """The gains that the observers of a lab have of their own, as they were printed for its page."""
+    printed = part(kind)["observers"].items()
+    return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
+
+
+def noise(**sizes: Number) -> Group:
+    """The noise of a camera: its kind, and its sizes by their names."""
+    kind = Choice("uniform", ("uniform", "gaussian"), label="Noise")
+    return Group({"kind": kind, **sizes}, about=f"of the camera: a mapping of kind, {', '.join(sizes)}")
+
+
+SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random")
+DROPOUT = Number(0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost")
+KEPT = Optional(Whole(), about="None, or the settings of the run that is kept to compare with")
+
+
+def _listed(value: object) -> list[Any] | None:
+    if isinstance(value, np.ndarray) and value.ndim:
+        return list(value.tolist())
+    return list(value) if isinstance(value, list | tuple) else None
+
+
+def _plain(value: object) -> Any:
+    if isinstance(value, Kind):
+        return value.for_the_page()
+    if isinstance(value, Mapping):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    return value

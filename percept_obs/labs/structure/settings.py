@@ -1,0 +1,75 @@
+"""What may be set in the lab of structure and motion."""
+
+from __future__ import annotations
+
+from percept_obs.labs.shared.schema import (
+    KEPT,
+    SEED,
+    Choice,
+    Flag,
+    Group,
+    Names,
+    Number,
+    Row,
+    Schema,
+    Settings,
+    noise,
+    vector,
+)
+from percept_obs.labs.structure.cases import case_of
+from percept_obs.labs.structure.texts import OBSERVERS
+from percept_obs.structure import QUANTITIES
+
+PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
+VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
+STANDARD_GAINS: dict[str, dict[str, float]] = {
+    "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
+    "identifier_based": {"bound": 1e3},
+}
+"""Gains that fit an unknown d_s, which is larger than what the observers were made for."""
+
+
+_IN_FRONT = "it must be positive, for the point is in front"
+_SPEED: Settings = {"unit": "m/s", "usual": (-1, 1), "step": 0.01}
+_SWING: Settings = {"unit": "m/s", "usual": (-0.5, 0.5), "step": 0.01}
+_PLACE: Settings = {"usual": (-1, 1), "step": 0.01}
+_CAMERA, _OBJECT = ([f"{letter}{axis}" for axis in (1, 2, 3)] for letter in ("v_c", "v_p"))
+
+SCHEMA = Schema(
+    unknown=Names([], QUANTITIES, 0, about=f"names of what is not known, of {', '.join(QUANTITIES)}"),
+    earlier=Flag(about="whether a known d_s was estimated in an earlier stage, so that theta holds d_s v"),
+    observers=Names(["ideal"], tuple(OBSERVERS), about="names"),
+    gains=Group({}, about="for each observer, its gains by name"),
+    ybar=Row(
+        [
+            *(Number(label=label, **_PLACE) for label in ("y1", "y2")),
+            Number(0.05, 1e-9, 1e3, (0.005, 1), label="ȳ3", reason=_IN_FRONT),
+        ],
+        about="the start (y1, y2, ybar3)",
+    ),
+    scale=Number(1.0, 1e-3, 1e3, (0.5, 50), unit="1/m", label="true d_s"),
+    v_c=vector(_CAMERA, "true velocity of the camera", **_SPEED),
+    v_p=vector(_OBJECT, "true velocity of the object", **_SPEED),
+    v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
+    v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
+    w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
+    rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),
+    noise=noise(
+        size=Number(0.0, 0, 1, (0, 1e-3), 5e-6, label="in y1, y2"),
+        depth=Number(0.0, 0, 1, (0, 1e-4), 5e-7, label="in ȳ3"),
+    ),
+    bias=Number(0.0, -1, 1, (-0.01, 0.01), 1e-4, label="bias of ȳ3"),
+    drift=Number(0.0, -1, 1, (-0.001, 0.001), 1e-5, unit="1/s", label="drift of ȳ3"),
+    seed=SEED,
+    period=Number(1e-3, 1e-4, 1, (1e-4, 0.1), unit="s"),
+    duration=Number(3.0, 0.1, 100, (1, 60), 0.5, unit="s"),
+    hold=Choice("first", ("zero", "first", "exact")),
+    step=Number(1e-3, 1e-5, 0.1, (1e-4, 0.01), unit="s", label="longest step", about="the observers' longest step"),
+    start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),
+    tolerance=Number(0.05, 1e-6, 10, (1e-4, 1), about="the error of theta that counts as settled"),
+    pictures=Names(["unknowns", "error", "determinant"], PICTURES, label="Time charts", about="those that are shown"),
+    kept=KEPT,
+)
+
+STANDARD: Settings = SCHEMA.opening | case_of(1)
+"""What every preset begins with."""

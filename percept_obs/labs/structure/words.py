@@ -1,0 +1,26 @@
+"""What Python adds to a run of structure and motion in words: how far the unknown quantities are off in the end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from percept_obs.structure import StructureAndMotion
+from percept_obs.tracking.run import SETTLED_PART, Run
+
+
+def late_errors(title: str, run: Run) -> list[str]:
+    """How far the estimates of the unknown quantities lie from the truth over the last tenth of the run."""
+    unknowns = run.recording.view
+    assert isinstance(unknowns, StructureAndMotion)
+    late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
+    found, true = (unknowns.quantities(values[late, 3:]) for values in (run.estimate, run.truth))
+    lines = []
+    for name, values in found.items():
+        error = (values - true[name])[np.isfinite(values)]
+        unit = "1/m" if name == "d_s" else "m/s"
+        if len(error):
+            told = f"{error.mean():+.2g} {unit} on average and scatters by {error.std():.2g}"
+            lines.append(f"{title}, last tenth of the run: {name} is off by {told}.")
+        else:
+            lines.append(f"{title}, last tenth of the run: no estimate of {name}.")
+    return lines
