@@ -32,7 +32,8 @@ export class Camera {
         const at = k * points + p;
         const [y1, y2] = [images[2 * at], images[2 * at + 1]];
         const away = hidden[p] && time[k] >= hidden[p][0] && time[k] < hidden[p][1];
-        const lost = away || drawn.loss[at] < dropout || !(Math.max(Math.abs(y1), Math.abs(y2)) <= view);
+        const chance = k > 0 && drawn.loss[at] < dropout; // the first sample is never lost
+        const lost = away || chance || !(Math.max(Math.abs(y1), Math.abs(y2)) <= view);
         for (let m = 0; m < 2; m++) {
           const error = errorOf(noise.kind, noise.size, drawn.shape[2 * at + m]);
           outputs[2 * at + m] = lost ? NaN : images[2 * at + m] + error;
