@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import shutil
+import urllib.error
+import urllib.request
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pooch
+import platformdirs
 import pytest
 import utias_folder as lookup
 from numpy.typing import NDArray
@@ -34,10 +37,10 @@ RATE_TOLERANCE = 0.2
 
 @pytest.fixture(autouse=True)
 def no_network(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: Any, **__: Any) -> str:
+    def refuse(*_: Any, **__: Any) -> None:
         raise AssertionError("a test reached for the network")
 
-    monkeypatch.setattr(pooch, "retrieve", refuse)
+    monkeypatch.setattr(urllib.request, "urlopen", refuse)
 
 
 @pytest.fixture
@@ -203,33 +206,50 @@ def test_a_corrupted_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyP
         utias_tables()
 
 
-@pytest.mark.usefixtures("unset")
-@pytest.mark.parametrize("reason", [ConnectionError("unreachable"), ValueError("hash differs")])
-def test_a_failed_download_says_what_to_do(reason: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: Any, **__: Any) -> str:
-        raise reason
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where the fetched recording is kept; nothing is there yet."""
+    folder = tmp_path / "cache"
+    monkeypatch.setattr(platformdirs, "user_cache_path", lambda name: folder / name)
+    return folder / "percept_obs"
 
-    monkeypatch.setattr(pooch, "retrieve", fail)
+
+@pytest.mark.usefixtures("unset", "cache")
+def test_a_failed_download_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any, **__: Any) -> None:
+        raise urllib.error.URLError("unreachable")
+
+    monkeypatch.setattr(urllib.request, "urlopen", fail)
     with pytest.raises(DatasetUnavailable) as caught:
         find_utias()
-    for part in (str(reason), ADDRESS, "by hand", "path=", "PERCEPT_OBS_UTIAS"):
+    for part in ("unreachable", ADDRESS, "by hand", "path=", "PERCEPT_OBS_UTIAS"):
         assert part in str(caught.value)
     assert isinstance(caught.value, OSError)
 
 
 @pytest.mark.usefixtures("unset")
-def test_the_download_is_pinned(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: dict[str, Any] = {}
+def test_another_file_is_not_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(urllib.request, "urlopen", lambda *_, **__: io.BytesIO(b"please log in"))
+    with pytest.raises(DatasetUnavailable, match=r"login page .* its SHA-256 is \w+\); .* by hand"):
+        find_utias()
+    assert not cache.exists()
 
-    def retrieve(url: str, known_hash: str, **rest: Any) -> str:
-        asked.update(url=url, known_hash=known_hash, **rest)
-        return "cached/dataset3.mat"
 
-    monkeypatch.setattr(pooch, "retrieve", retrieve)
-    assert find_utias() == Path("cached/dataset3.mat")
-    assert asked["url"] == ADDRESS
-    assert asked["known_hash"] == f"sha256:{SHA256}"
-    assert asked["path"] == pooch.os_cache("percept_obs")
+@pytest.mark.usefixtures("unset")
+def test_the_recording_is_fetched_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    content, asked = (utias_folder() / "dataset3.mat").read_bytes(), []
+
+    def answer(address: str, timeout: float) -> io.BytesIO:
+        asked.append(address)
+        return io.BytesIO(content)
+
+    monkeypatch.setattr(urllib.request, "urlopen", answer)
+    kept = cache / "dataset3.mat"
+    assert find_utias() == find_utias() == kept
+    assert asked == [ADDRESS]
+    kept.write_bytes(content[:-1])
+    assert find_utias().read_bytes() == content
+    assert [file.name for file in cache.iterdir()] == ["dataset3.mat"]
 
 
 @pytest.mark.usefixtures("unset")

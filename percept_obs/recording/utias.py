@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -279,7 +280,7 @@ def _checked(place: Path, origin: str) -> Path:
             f"{origin} names '{place}', which is {problem}; name {UTIAS_FILE} or a folder that holds it, "
             f"or name nothing and it is fetched from {UTIAS_ADDRESS}"
         )
-    found = hashlib.sha256(file.read_bytes()).hexdigest()
+    found = _digest(file.read_bytes())
     if found != UTIAS_SHA256:
         raise ValueError(
             f"{origin} names '{file}', which is another file or a damaged one: its SHA-256 is {found}, "
@@ -289,23 +290,33 @@ def _checked(place: Path, origin: str) -> Path:
 
 
 def _fetched() -> Path:
-    import pooch
+    """The recording in the system's cache, which it enters only if it is the one."""
+    from platformdirs import user_cache_path
 
+    file = user_cache_path("percept_obs") / UTIAS_FILE
+    if file.is_file() and _digest(file.read_bytes()) == UTIAS_SHA256:
+        return file
     try:
-        file = pooch.retrieve(
-            UTIAS_ADDRESS,
-            known_hash=f"sha256:{UTIAS_SHA256}",
-            fname=UTIAS_FILE,
-            path=pooch.os_cache("percept_obs"),
-        )
-    # pooch raises ValueError when what it was sent, such as a login page of the network, has another hash.
-    except (OSError, ValueError) as error:
+        with urllib.request.urlopen(UTIAS_ADDRESS, timeout=60) as answer:
+            content = answer.read()
+        found = _digest(content)
+        if found != UTIAS_SHA256:
+            raise ConnectionError(f"another file came, such as a login page of the network: its SHA-256 is {found}")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        new = file.with_suffix(f".{os.getpid()}")
+        new.write_bytes(content)
+        new.replace(file)  # at once, so that half a file is never found here
+    except OSError as error:
         raise DatasetUnavailable(
             f"the UTIAS recording could not be fetched ({error}); is there no network?  Download "
             f"{UTIAS_ADDRESS} by hand and give its place as path= or in the environment variable "
             f"{UTIAS_VARIABLE}"
         ) from error
-    return Path(file)
+    return file
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
 
 def _camera_path(recorded: dict[str, Any]) -> CameraPath:
