@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
@@ -147,6 +146,8 @@ def windowed(
     ValueError
         If the window is not positive or longer than the recording.
     """
+    from scipy.integrate import cumulative_trapezoid
+
     form, time = form.canonical_form(), recording.time
     if not 0 < window <= time[-1] - time[0] + 1e-9:
         raise ValueError(f"the window is {window} s; it must be positive and at most {time[-1] - time[0]:.4g} s")

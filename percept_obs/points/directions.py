@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import null_space
 
 Array = NDArray[np.float64]
 
@@ -30,6 +29,8 @@ def unobservable(A: Array, C: Array) -> Array:
     array of shape (n, number of directions)
         Orthonormal columns.
     """
+    from scipy.linalg import null_space
+
     basis = null_space(C, rcond=NEGLIGIBLE)
     tolerance = NEGLIGIBLE * max(1.0, float(np.abs(A).max(initial=0.0)))
     while basis.shape[1]:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import Language, advance, arrays, choose
@@ -114,6 +113,8 @@ class _Task:
 
 def _independent(form: PointsForm, weight: Weight) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
     """States, and the points that they make, that nothing couples with the others: neither A, nor C, nor P."""
+    from scipy.sparse.csgraph import connected_components
+
     layout, n = form.layout, form.states
     coupled = weight.couples.copy()
     within = layout.columns < n
