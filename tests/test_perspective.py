@@ -1,5 +1,7 @@
 """The derived rate is the motion of the image, for every motion on every surface."""
 
+import re
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -80,6 +82,8 @@ def test_the_derivation_ends_at_the_rate_and_shows_every_part():
     assert sp.latex(AFFINE.foe) in derivation.steps[-1].formula
     assert derivation._repr_markdown_().count("$$") == 2 * len(derivation.steps)
     assert str(derivation).startswith("1. The point moves")
+    formulas = [line for line in derivation._repr_markdown_().split("\n\n") if "$$" in line]
+    assert all(re.fullmatch(r"\$\$ .* \$\$", formula) for formula in formulas), "each alone, at the edge"
     assert r"\frac{d}{dt}" in AFFINE._repr_latex_()
 
 
@@ -88,7 +92,7 @@ def test_a_part_of_a_derivation_is_one_too():
     part = derivation[1:3]
     assert list(part) == [derivation[1], derivation[2]]
     assert len(part) == 2
-    assert part._repr_markdown_().startswith(f"1. {derivation[1].reason}")
+    assert part._repr_markdown_().startswith(f"**1.** {derivation[1].reason}")
     assert derivation[-1] is derivation.steps[-1]
     with pytest.raises(IndexError):
         derivation[len(derivation)]
