@@ -5,6 +5,7 @@ from itertools import chain, combinations
 import numpy as np
 import pytest
 import sympy as sp
+from corollaries import corollary_of
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -17,7 +18,6 @@ from percept_obs.structure import (
     ImpossibleChoice,
     LinearView,
     StructureAndMotion,
-    corollary_of,
     scaled_dynamics,
 )
 

@@ -8,11 +8,15 @@ from examples import BOTH
 
 from percept_obs import figures, record, scenarios, track
 from percept_obs.observers import ekf, ismo
-from percept_obs.structure import linear_view, seen_as
+from percept_obs.structure import StructureAndMotion, linear_view, seen_as
 from percept_obs.structure.scenarios import chwa2019_experiment
 
 ZERO = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0}
 fine = {"hold": "first", "step": 1e-3, "language": "python"}
+
+
+def sliding(recording):
+    return track(recording, ismo(recording.view.form), ZERO, **fine)
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +26,7 @@ def recording():
 
 @pytest.fixture(scope="module")
 def run(recording):
-    return track(recording, ismo(recording.view.form), ZERO, **fine)
+    return sliding(recording)
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +60,39 @@ def test_a_scale_that_is_not_positive_is_a_gap(unguarded):
     assert f"({np.isnan(shown).sum()} of 1501 estimates are missing)" in figure.text
 
 
+def test_the_image_has_rows_of_its_own(recording, run):
+    straight = linear_view(recording)
+    kalman = track(straight, ekf(straight.view.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
+    figure = figures.quantities([run, kalman], image=True)
+    assert [ax.get_ylabel() for ax in figure.axes[:4]] == ["$y_{1}$", "$y_{2}$", "$y_{3}$ (1/m)", "$d_{s}$ (1/m)"]
+    for ax, true in zip(figure.axes, (*recording.truth[-1, :2], 0.52), strict=False):
+        for line in ax.lines:
+            assert line.get_ydata()[-1] == pytest.approx(true, rel=2e-3)
+    assert figure.text.startswith("Image coordinates, inverse depth and unknown quantities from 0 to 1.5 s")
+    assert "y1: the truth, from 0.32 to" in figure.text
+
+
+def test_cases_stand_side_by_side_with_one_legend(run):
+    other = record(chwa2019_experiment("V.B"), 1.5)
+    figure = figures.cases({"IV.A": run, "V.B": [sliding(other)]}, ["sliding"])
+    left, right = figure.axes[::2], figure.axes[1::2]
+    assert [ax.get_title() for ax in (left[0], right[0])] == ["IV.A", "V.B"]
+    assert [ax.get_ylabel() for ax in right] == ["$d_{s}$ (1/m)", "$v_{c3}$ (m/s)", "$v_{p1}$ (m/s)"]
+    assert all(ax.get_legend() is None for ax in figure.axes)
+    assert [text.get_text() for text in figure.figure.legends[0].get_texts()] == ["truth", "sliding"]
+    for name, column in (("IV.A", left), ("V.B", right)):
+        alone = figures.quantities(run if column is left else sliding(other), ["sliding"])
+        assert f"{name}: {alone.text}" in figure.text
+
+
+def test_cases_of_different_heights_are_refused(run):
+    one = StructureAndMotion(("v_p3",), zero=("v_p1", "v_p2"), scale=10.4)
+    recording = seen_as(run.recording, one, chwa2019_experiment("IV.A").motion, 10.4)
+    for columns in ({}, {"no run": []}, {"three": run, "one": sliding(recording)}):
+        with pytest.raises(ValueError, match="equally many unknown quantities are needed"):
+            figures.cases(columns)
+
+
 def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run):
     straight = linear_view(recording)
     kalman = track(straight, ekf(straight.view.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
@@ -66,14 +103,14 @@ def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run)
 
 def test_what_does_not_belong_together_is_refused(recording, run):
     other = record(chwa2019_experiment("V.B"), 1.5)
-    elsewhere = track(other, ismo(other.view.form), ZERO, **fine)
+    elsewhere = sliding(other)
     blind = seen_as(recording, recording.view, chwa2019_experiment("IV.A").motion)
     point = track(record(scenarios.ma2005_eq35(), 1), ismo(BOTH))
     for runs, labels, message in (
         ([], None, "there are no runs"),
         ([run], ["a", "b"], "2 labels for 1 runs"),
         ([run, elsewhere], None, "different unknowns or times"),
-        (track(blind, ismo(blind.view.form), ZERO, **fine), None, "no truth to compare with"),
+        (sliding(blind), None, "no truth to compare with"),
         (point, None, "not of structure and motion"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import sympy as sp
+from corollaries import corollary_of
 from lab_settings import FRONT, whole_model
 from structure_settings import (
     CASES,
@@ -19,7 +20,7 @@ from structure_settings import (
 
 from percept_obs.labs.structure.lab import runs, structure_lab, unknowns_of
 from percept_obs.labs.structure.texts import general_form, key_of, refused
-from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion, corollary_of
+from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.tracking.following import StepTooLong
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::percept_obs.tracking.following.StepTooLong")]

@@ -27,7 +27,6 @@ from percept_obs.structure import (
     LinearView,
     PatchDepth,
     ScaledDepthCamera,
-    SizeDepth,
     StructureAndMotion,
     grid_patch,
     linear_view,
@@ -82,14 +81,6 @@ def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, normal)
     setup = chwa2019_simulation("V.A", angular_velocity)
     recording = record(setup, 2, ScaledDepthCamera(depth=PatchDepth(grid_patch(0.4, 3, normal))))
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
-
-
-def test_the_size_gives_it_to_a_camera_that_does_not_turn():
-    size = SizeDepth(grid_patch(0.4))
-    recording = record(chwa2019_simulation("V.A"), 2, ScaledDepthCamera(depth=size))
-    np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
-    turned = record(chwa2019_simulation("V.A", W), 2, ScaledDepthCamera(depth=size))
-    assert np.abs(turned.outputs[:, 2] / turned.truth[:, 2] - 1).max() > 0.01
 
 
 def test_noise_in_pixels_and_as_a_ratio():

@@ -8,11 +8,12 @@ from percept_obs.figures.many_points import depth_errors, error_norm, gramian, p
 from percept_obs.figures.over_time import compare, distance
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
-from percept_obs.figures.structure import quantities
+from percept_obs.figures.structure import cases, quantities
 from percept_obs.figures.windows import consistency, excitation
 
 __all__ = [
     "Figure",
+    "cases",
     "chatter",
     "compare",
     "comparison",

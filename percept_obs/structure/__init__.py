@@ -7,14 +7,13 @@ from percept_obs.structure.choice import (
     StructureAndMotion,
     scaled_dynamics,
 )
-from percept_obs.structure.corollaries import COROLLARIES, Corollary, corollary_of
+from percept_obs.structure.corollaries import COROLLARIES, Corollary
 from percept_obs.structure.linear import LinearView
 from percept_obs.structure.simulation import (
     DepthSource,
     GivenDepth,
     PatchDepth,
     ScaledDepthCamera,
-    SizeDepth,
     StructureScenario,
     grid_patch,
     linear_view,
@@ -32,10 +31,8 @@ __all__ = [
     "PatchDepth",
     "ScaledDepthCamera",
     "ScaledDynamics",
-    "SizeDepth",
     "StructureAndMotion",
     "StructureScenario",
-    "corollary_of",
     "grid_patch",
     "linear_view",
     "scaled_dynamics",

@@ -1,9 +1,8 @@
-"""The cases that Chwa (2019) states, as choices of what is known, and which case a choice is."""
+"""The cases that Chwa (2019) states, as choices of what is known."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from itertools import permutations
+from dataclasses import dataclass
 
 from percept_obs.structure.choice import StructureAndMotion
 
@@ -64,19 +63,3 @@ COROLLARIES = (
     Corollary(7, "VI.C", _GENERAL, _GENERAL, ("v_cj", "v_ck", "v_pi"), zero=("v_pj", "v_pk")),
 )
 """The seven corollaries, in the paper's order."""
-
-
-def corollary_of(choice: StructureAndMotion) -> Corollary | None:
-    """The corollary that states a choice, with its axes in any order; None for a choice that the paper does not state.
-
-    Whether the known camera's velocity was estimated earlier makes no difference, unlike d_s.
-    """
-
-    def pattern(case: StructureAndMotion) -> StructureAndMotion:
-        return replace(case, earlier=tuple(n for n in case.earlier if n == "d_s"), scale=None)
-
-    asked = pattern(choice)
-    for corollary in COROLLARIES:
-        if any(pattern(corollary.choice("".join(axes))) == asked for axes in permutations("123")):
-            return corollary
-    return None

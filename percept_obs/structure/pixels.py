@@ -68,6 +68,9 @@ class PixelCamera:
 CHWA_CAMERA = PixelCamera((720, 720), (320, 240))
 """The camera of Chwa 2019, section VII.A; the paper states no size of the image."""
 
+CHWA_EXPERIMENT_CAMERA = PixelCamera((150, 150), (320, 240), (640, 480))
+"""A camera that keeps the paper's experiment in view for ten seconds; that of the simulations would not."""
+
 
 @dataclass(frozen=True)
 class SignalToNoise:

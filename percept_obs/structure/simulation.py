@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
 from percept_obs.structure.linear import LinearView
-from percept_obs.structure.pixels import PixelCamera, SignalToNoise, apparent_size, homography
+from percept_obs.structure.pixels import PixelCamera, SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
@@ -89,26 +89,6 @@ class PatchDepth:
         """See `DepthSource`."""
         first = np.append(images[0, 0], 1.0)
         return exact[0] / (homography(images[0], images)[:, 2] @ first)
-
-
-@dataclass(frozen=True, eq=False)
-class SizeDepth:
-    """The scaled inverse depth from the apparent size of an object whose size is constant and unknown.
-
-    Exact if the object's points share one depth and neither it nor the camera turns, as `apparent_size` says.
-
-    Parameters
-    ----------
-    offsets : array of shape (n, 3)
-        As from `grid_patch`.
-    """
-
-    offsets: Array
-
-    def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
-        """See `DepthSource`."""
-        size = apparent_size(images)
-        return exact[0] * size / size[0]
 
 
 def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:

@@ -40,7 +40,7 @@ class Derivation(Sequence[Step]):
         return "\n".join(f"{k}. {step}" for k, step in enumerate(self, 1))
 
     def _repr_markdown_(self) -> str:
-        # No list and nothing indented: four spaces make code of a formula, and how a list goes on depends on the front end.
+        # No list and nothing indented: four spaces make code of a formula, and front ends differ in how a list goes on.
         return "\n\n".join(f"**{k}.** {s.reason}\n\n$$ {s.formula} $$" for k, s in enumerate(self, 1))
 
 

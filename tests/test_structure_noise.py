@@ -1,11 +1,11 @@
-"""Noise makes every observer of structure and motion scatter as was measured; the paper's figures have their runs."""
+"""Noise makes every observer of structure and motion scatter as was measured."""
 
 import numpy as np
 import pytest
 
 from percept_obs import record
 from percept_obs.structure import PatchDepth, grid_patch
-from percept_obs.structure.competitors import FIGURES, PROPOSED, STAND_IN, competitors, figure_runs, scale_spread
+from percept_obs.structure.competitors import competitors, scale_spread
 from percept_obs.structure.scenarios import chwa2019_experiment
 
 pytestmark = pytest.mark.slow
@@ -58,18 +58,3 @@ def test_scatter_grows_with_time_unless_the_slope_stays():
 def test_filters_need_to_know_the_noise():
     with pytest.raises(ValueError, match="the recording has none; record it with noise"):
         competitors(record(chwa2019_experiment("IV.A"), 1))
-
-
-@pytest.mark.parametrize("number", FIGURES)
-def test_the_runs_of_a_figure(number):
-    for curves in figure_runs(number, 4.0):
-        late = curves.time >= curves.time[0] + 1.5
-        assert set(curves.estimated) == {PROPOSED, STAND_IN}
-        for name, true in curves.true.items():
-            found = curves.estimated[PROPOSED][name]
-            assert np.abs(found - true)[late].max() < {"d_s": 0.06 * true[0], "y3": 0.06}.get(name, 0.03)
-
-
-def test_there_are_no_other_figures():
-    with pytest.raises(ValueError, match="there is no figure 8 of runs; there are 5, 6, 7, 9, 10, 11"):
-        figure_runs(8)

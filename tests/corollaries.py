@@ -1,0 +1,22 @@
+"""Which of the cases that Chwa (2019) states a choice is; the laws of choices and the page are held against it."""
+
+from dataclasses import replace
+from itertools import permutations
+
+from percept_obs.structure import COROLLARIES
+
+
+def corollary_of(choice):
+    """The corollary that states a choice, with its axes in any order; None for a choice that the paper does not state.
+
+    Whether the known camera's velocity was estimated earlier makes no difference, unlike d_s.
+    """
+    asked = pattern(choice)
+    for corollary in COROLLARIES:
+        if any(pattern(corollary.choice("".join(axes))) == asked for axes in permutations("123")):
+            return corollary
+    return None
+
+
+def pattern(case):
+    return replace(case, earlier=tuple(n for n in case.earlier if n == "d_s"), scale=None)
