@@ -130,7 +130,7 @@ def cases(
         figure.align_ylabels(column)
     handles, names = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
-    return drawn(grid.ravel(), parts)
+    return drawn(list(grid.ravel()), parts)
 
 
 UNITS = {"d_s": "1/m", "y1": "", "y2": "", "y3": "1/m"}

@@ -245,7 +245,10 @@ class SmallestEigenvalue(_Scalar):
 
 def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
     """An expression with values put in and matrices multiplied out."""
-    result = expression.xreplace(values or {}).doit()
+    result = expression.xreplace(values or {})
+    known = [inverse for inverse in result.atoms(sp.Inverse) if isinstance(inverse.arg, sp.MatrixBase)]
+    # In the field of rational functions, for elimination of expressions simplifies at each step.
+    result = result.xreplace({i: i.arg.to_DM(field=True).inv().to_Matrix() for i in known}).doit()
     return result.as_explicit() if isinstance(result, sp.MatrixExpr) else result
 
 
