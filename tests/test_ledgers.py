@@ -106,7 +106,7 @@ def test_what_cannot_be_checked_says_why(entry):
 @pytest.mark.parametrize(
     ("entry", "letters"),
     [
-        pytest.param(entry, letters, id=f"{name} {entry.place}")
+        pytest.param(entry, letters, id=f"{name} {entry.place}", marks=[pytest.mark.slow] * runs_observers(entry))
         for name, known in PAPERS.items()
         for letters in [known.letters]
         for entry in known.formulas_that_hold

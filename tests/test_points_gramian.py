@@ -33,6 +33,7 @@ def test_the_smallest_eigenvalue(points, at_start, least, when):
     assert "(14) holds" in found.verdict()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 2])
 def test_the_decay_rates(points):
     """Fitted to log|rho| from 20 to 60 s; too much gain, a small P, slows the decay as too little does."""

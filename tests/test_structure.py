@@ -193,6 +193,7 @@ def values_of(choice, draws):
 draws = st.lists(numbers, min_size=13, max_size=13)
 
 
+@pytest.mark.slow
 @given(choices, draws)
 def test_every_form_is_the_rate_of_the_dynamics(choice, drawn):
     at = values_of(choice, drawn)
@@ -203,6 +204,7 @@ def test_every_form_is_the_rate_of_the_dynamics(choice, drawn):
     np.testing.assert_allclose(np.array(rate, dtype=float).ravel(), np.array(expected, dtype=float), atol=1e-9)
 
 
+@pytest.mark.slow
 @given(choices, draws)
 def test_the_determinant_vanishes_exactly_where_the_condition_fails(choice, drawn):
     at = values_of(choice, drawn)
@@ -266,6 +268,7 @@ def test_which_choices_fit_each_other():
     assert COROLLARIES[4].choice(scale=3.0).values == {d_s: 3.0}
 
 
+@pytest.mark.slow
 @given(choices, draws)
 def test_the_linear_view_is_linear_and_moves_as_the_points_do(choice, drawn):
     at = values_of(choice, drawn)
