@@ -14,9 +14,9 @@ import platformdirs
 import pytest
 import utias_folder as lookup
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 from utias_folder import utias_folder
 
+from percept_obs.recording import Sighting
 from percept_obs.recording.utias import DatasetUnavailable, UtiasTables, find_utias, utias_tables
 
 Values = NDArray[np.float64]
@@ -62,50 +62,59 @@ def assert_columns_agree(converted: dict[str, Values], file: Path) -> None:
         np.testing.assert_allclose(values, reference[name], rtol=0, atol=tolerance, err_msg=name)
 
 
+def along(track: Sighting) -> Values:
+    """Samples and landmarks of a track, a column for each of its measurements."""
+    samples = np.arange(track.first, track.last + 1)
+    return np.array([samples, np.full_like(samples, track.point)])
+
+
 def test_camera_agrees_with_its_table(tables: UtiasTables) -> None:
     file = utias_folder("camera.csv") / "camera.csv"
     reference = np.genfromtxt(file, delimiter=",", names=True)
-    camera = tables.camera
-    assert len(camera.time) == 1900
+    orientation = tables.orientation.as_quat()
+    assert len(tables.time) == 1900
 
     quaternion = np.column_stack([reference[name] for name in ("qx", "qy", "qz", "qw")])
-    same_sign = np.sign((camera.orientation * quaternion).sum(axis=1, keepdims=True))
+    same_sign = np.sign((orientation * quaternion).sum(axis=1, keepdims=True))
     converted = {
-        "time_s": camera.time,
-        **dict(zip(("px_m", "py_m", "pz_m"), camera.position.T, strict=True)),
-        **dict(zip(("qx", "qy", "qz", "qw"), (same_sign * camera.orientation).T, strict=True)),
-        **dict(zip(("vx_mps", "vy_mps", "vz_mps"), camera.velocity.T, strict=True)),
-        **dict(zip(("wx_radps", "wy_radps", "wz_radps"), camera.angular_velocity.T, strict=True)),
+        "time_s": tables.time,
+        **dict(zip(("px_m", "py_m", "pz_m"), tables.position.T, strict=True)),
+        **dict(zip(("qx", "qy", "qz", "qw"), (same_sign * orientation).T, strict=True)),
+        **dict(zip(("vx_mps", "vy_mps", "vz_mps"), tables.velocity.T, strict=True)),
+        **dict(zip(("wx_radps", "wy_radps", "wz_radps"), tables.angular_velocity.T, strict=True)),
     }
     assert_columns_agree(converted, file)
 
 
 def test_tracks_agree_with_their_table(tables: UtiasTables) -> None:
-    tracks = tables.tracks
-    assert (len(tracks), sum(len(track.time) for track in tracks)) == (44, 2739)
+    places = [along(track) for track in tables.tracks]
+    assert (len(places), sum(len(samples) for samples, _ in places)) == (44, 2739)
 
-    u, v = np.vstack([track.pixels for track in tracks]).T
+    samples, landmark = np.hstack(places)
+    u, v = tables.pixels[samples, landmark].T
     converted = {
-        "time_s": np.concatenate([track.time for track in tracks]),
-        "point_id": np.concatenate([np.full(len(track.time), track.point_id) for track in tracks]),
+        "time_s": tables.time[samples],
+        "point_id": np.concatenate([np.full(len(samples), k) for k, (samples, _) in enumerate(places)]),
         "u_px": u,
         "v_px": v,
-        "depth_m_truth": np.concatenate([track.depth for track in tracks]),
-        "depth_stereo_m": np.concatenate([track.stereo_depth for track in tracks]),
-        "landmark_id": np.concatenate([np.full(len(track.time), track.landmark_id) for track in tracks]),
+        "depth_m_truth": tables.points[samples, landmark, 2],
+        "depth_stereo_m": tables.stereo_depth[samples, landmark],
+        "landmark_id": landmark,
     }
     assert_columns_agree(converted, utias_folder("tracks.csv") / "tracks.csv")
 
 
-def test_tracks_point_into_the_camera_path(tables: UtiasTables) -> None:
-    for track in tables.tracks:
-        np.testing.assert_array_equal(tables.camera.time[track.sample], track.time)
+def test_nothing_is_left_outside_the_tracks(tables: UtiasTables) -> None:
+    samples, landmark = np.hstack([along(track) for track in tables.tracks])
+    outside = np.ones(tables.stereo_depth.shape, dtype=bool)
+    outside[samples, landmark] = False
+    assert np.isnan(tables.pixels[outside]).all()
+    assert np.isnan(tables.stereo_depth[outside]).all()
 
 
 def test_intrinsics_are_the_recorded_ones(tables: UtiasTables) -> None:
-    known = tables.intrinsics
     expected = (484.49984741211, 484.4998474121, 321.68048095703, 247.4814453125, 0.23997700214386)
-    assert (known.fx, known.fy, known.cx, known.cy, known.baseline) == pytest.approx(expected, rel=1e-12)
+    assert (*tables.focal, *tables.centre, tables.baseline) == pytest.approx(expected, rel=1e-12)
 
 
 def predicted_rate(y: Values, velocity: Values, angular_velocity: Values) -> Values:
@@ -124,16 +133,14 @@ def predicted_rate(y: Values, velocity: Values, angular_velocity: Values) -> Val
 
 def rate_errors(tables: UtiasTables, sign_of_v: int, sign_of_w: int) -> Values:
     """Relative root mean square error of each predicted rate against differences of the true projections."""
-    camera = tables.camera
     errors, rates = [], []
     for track in tables.tracks:
-        path = slice(track.sample[0], track.sample[-1] + 1)
-        camera_from_world = Rotation.from_quat(camera.orientation[path]).inv()
-        point = camera_from_world.apply(tables.landmarks[track.landmark_id] - camera.position[path])
+        path = slice(track.first, track.last + 1)
+        point = tables.points[path, track.point]
         y = np.column_stack([point[:, :2], np.ones(len(point))]) / point[:, 2:]
         # At the ends of a track only a one-sided difference is to be had.
-        rate = np.gradient(y, camera.time[path], axis=0)[1:-1]
-        v, w = sign_of_v * camera.velocity[path], sign_of_w * camera.angular_velocity[path]
+        rate = np.gradient(y, tables.time[path], axis=0)[1:-1]
+        v, w = sign_of_v * tables.velocity[path], sign_of_w * tables.angular_velocity[path]
         errors.append(predicted_rate(y, v, w)[1:-1] - rate)
         rates.append(rate)
     error, rate = np.vstack(errors), np.vstack(rates)
@@ -151,15 +158,15 @@ def test_a_wrong_sign_of_the_motion_is_noticed(tables: UtiasTables, sign_of_v: i
 
 
 def test_the_pixels_are_those_of_the_landmark(tables: UtiasTables) -> None:
-    known, camera = tables.intrinsics, tables.camera
     for track in tables.tracks:
-        camera_from_world = Rotation.from_quat(camera.orientation[track.sample]).inv()
-        point = camera_from_world.apply(tables.landmarks[track.landmark_id] - camera.position[track.sample])
-        projected = (known.cx, known.cy) + point[:, :2] / point[:, 2:] * (known.fx, known.fy)
+        samples, landmark = along(track)
+        camera_from_world = tables.orientation[samples].inv()
+        point = camera_from_world.apply(tables.landmarks[track.point] - tables.position[samples])
+        projected = tables.centre + point[:, :2] / point[:, 2:] * tables.focal
         # Tracks 14 and 15 are missed by 22 and 19 px, all others by 4 to 13 px; a mirrored axis or another
         # landmark would cost at least 46 px.
-        assert np.median(np.linalg.norm(projected - track.pixels, axis=1)) < 25
-        assert np.median(np.abs(track.stereo_depth / track.depth - 1)) < 0.05
+        assert np.median(np.linalg.norm(projected - tables.pixels[samples, landmark], axis=1)) < 25
+        assert np.median(np.abs(tables.stereo_depth[samples, landmark] / point[:, 2] - 1)) < 0.05
 
 
 @pytest.mark.parametrize("inside", ["", "dataset3.mat"])

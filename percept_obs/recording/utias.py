@@ -6,6 +6,8 @@ The data were recorded for the course AER1513 of the University of Toronto Insti
 
 The camera's frame has x to the right, y down and z forward; a point's places in the world and in that frame
 are related by X_world = R X_camera + p.  A point at rest in the world then obeys X' = -v - w x X.
+
+Another dataset is another file like this one, with a function that reads it and returns recordings.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import hashlib
 import os
 import urllib.request
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +25,10 @@ from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.spatial.transform import Rotation
 
-from percept_obs.recording import Recording
-from percept_obs.system.motion import rigid
+from percept_obs.recording import Recording, Sighting
+from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.surfaces import pinhole
+from percept_obs.system.view import View
 
 UTIAS_ADDRESS = (
     "https://raw.githubusercontent.com/utiasSTARS/msckf-swf-comparison/"
@@ -43,111 +47,77 @@ FEWEST_POSES = 5  # in a fit
 PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 Values = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 
 class DatasetUnavailable(ConnectionError):
     """The recording is not on this machine and could not be fetched."""
 
 
-@dataclass(frozen=True)
-class Intrinsics:
-    """Constants of the rectified stereo camera, which has no distortion.
-
-    Parameters
-    ----------
-    fx, fy : float
-        Focal lengths in pixels.
-    cx, cy : float
-        Principal point in pixels.
-    baseline : float
-        Distance from the left to the right camera in metres.
-    """
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    baseline: float
-
-
 @dataclass(frozen=True, eq=False)
-class CameraPath:
-    """Pose and motion of the left camera at K times.
+class UtiasTables:
+    """The recording, converted: K samples of the left camera, which follows L landmarks.
 
     Parameters
     ----------
     time : array of shape (K,)
-        Times in seconds, increasing, not evenly spaced.
+        Seconds, increasing, not evenly spaced.
     position : array of shape (K, 3)
         The camera's place p in the world, in metres.
-    orientation : array of shape (K, 4)
-        Unit quaternion (x, y, z, w) of the rotation R from the camera's frame to the world.  Its sign means
-        nothing.
-    velocity : array of shape (K, 3)
-        Linear velocity v in the camera's frame, in m/s.
-    angular_velocity : array of shape (K, 3)
-        Angular velocity w in the camera's frame, in rad/s.
+    orientation : Rotation
+        K rotations R from the camera's frame to the world.
+    velocity, angular_velocity : arrays of shape (K, 3)
+        v in m/s and w in rad/s, in the camera's frame.
+    landmarks : array of shape (L, 3)
+        Places in the world, in metres.
+    tracks : tuple of Sighting
+        When a landmark is seen without interruption, in the order in which they begin and end.
+    pixels : array of shape (K, L, 2)
+        Measured (u, v) in the left image; NaN outside the tracks.
+    stereo_depth : array of shape (K, L)
+        Depth fx baseline / (u_left - u_right) in metres; no pose enters, so it is an independent check.
+    focal, centre : arrays of shape (2,)
+        Focal lengths fx, fy and principal point cx, cy in pixels; the images are rectified, without distortion.
+    baseline : float
+        Distance from the left to the right camera in metres.
     """
 
     time: Values
     position: Values
-    orientation: Values
+    orientation: Rotation
     velocity: Values
     angular_velocity: Values
-
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """One landmark while the camera sees it without interruption, at k times.
-
-    Parameters
-    ----------
-    point_id : int
-        Number of the track.
-    landmark_id : int
-        Which landmark it is; the same landmark may have several tracks.
-    sample : integer array of shape (k,)
-        Rows of the camera's path at which the landmark is seen.
-    time : array of shape (k,)
-        Times in seconds.
-    pixels : array of shape (k, 2)
-        Measured (u, v) in the left image, in pixels.
-    depth : array of shape (k,)
-        True depth Z in metres, from the known landmark and the camera's pose.
-    stereo_depth : array of shape (k,)
-        Depth fx baseline / (u_left - u_right) in metres; no pose enters, so it is an independent check.
-    """
-
-    point_id: int
-    landmark_id: int
-    sample: Indices
-    time: Values
-    pixels: Values
-    depth: Values
-    stereo_depth: Values
-
-
-@dataclass(frozen=True, eq=False)
-class UtiasTables:
-    """The recording, converted.
-
-    Parameters
-    ----------
-    camera : CameraPath
-        Pose and motion of the left camera.
-    tracks : tuple of Track
-        Uninterrupted views of single landmarks, in the order in which they begin and end.
-    landmarks : array of shape (20, 3)
-        The landmarks' places in the world, in metres; a track's `landmark_id` is a row.
-    intrinsics : Intrinsics
-        Constants of the stereo camera.
-    """
-
-    camera: CameraPath
-    tracks: tuple[Track, ...]
     landmarks: Values
-    intrinsics: Intrinsics
+    tracks: tuple[Sighting, ...]
+    pixels: Values
+    stereo_depth: Values
+    focal: Values
+    centre: Values
+    baseline: float
+
+    @cached_property
+    def points(self) -> Values:
+        """The landmarks in the camera's frame, in metres, from the fitted poses, shape (K, L, 3)."""
+        to_camera = self.orientation.inv()
+        return np.stack([to_camera.apply(landmark - self.position) for landmark in self.landmarks], axis=1)
+
+    def recording(self, rows: slice, columns: int | list[int], view: View, truth: Values, source: str) -> Recording:
+        """Some samples of one landmark or of several, with what is known of them in all cases."""
+        return Recording(
+            self.time[rows],
+            ((self.pixels - self.centre) / self.focal)[rows, columns],
+            ("y1", "y2"),
+            view,
+            self.motion,
+            truth=truth,
+            noise_variance=float(np.mean((PIXEL_SIGMA / self.focal) ** 2)),
+            distances={"stereo": self.stereo_depth[rows, columns]},
+            source=source,
+        )
+
+    @cached_property
+    def motion(self) -> Motion:
+        """That of a point at rest in the camera's frame: X' = -v - w x X."""
+        return rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
 
 
 def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
@@ -203,28 +173,13 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
     FileNotFoundError, DatasetUnavailable, ValueError
         See `find_utias`.
     """
-    tables = utias_tables(path)
-    camera, lens = tables.camera, tables.intrinsics
-    focal, centre = np.array([lens.fx, lens.fy]), np.array([lens.cx, lens.cy])
-    motion = rigid(-camera.angular_velocity, camera.velocity, np.zeros(3), times=camera.time)
-    surface = pinhole()
+    tables, surface = utias_tables(path), pinhole()
     recordings = []
-    for track in tables.tracks:
-        pose = Rotation.from_quat(camera.orientation[track.sample])
-        points = pose.inv().apply(tables.landmarks[track.landmark_id] - camera.position[track.sample])
-        recordings.append(
-            Recording(
-                track.time,
-                (track.pixels - centre) / focal,
-                ("y1", "y2"),
-                surface,
-                motion,
-                truth=surface.project(points),
-                noise_variance=float(np.mean((PIXEL_SIGMA / focal) ** 2)),
-                distances={"stereo": track.stereo_depth},
-                source=f"UTIAS track {track.point_id}, landmark {track.landmark_id}",
-            )
-        )
+    for number, track in enumerate(tables.tracks):
+        rows = slice(track.first, track.last + 1)
+        truth = surface.project(tables.points[rows, track.point])
+        source = f"UTIAS track {number}, landmark {track.point}"
+        recordings.append(tables.recording(rows, track.point, surface, truth, source))
     return tuple(recordings)
 
 
@@ -244,7 +199,7 @@ def utias_tables(path: str | os.PathLike[str] | None = None) -> UtiasTables:
     Returns
     -------
     UtiasTables
-        1900 samples of the camera and 44 tracks with 2739 measurements.
+        1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
 
     Raises
     ------
@@ -256,19 +211,26 @@ def utias_tables(path: str | os.PathLike[str] | None = None) -> UtiasTables:
     The recorded poses miss the measured pixels by slowly varying offsets: in the median 4 to 13 px, about one
     degree of attitude, in 42 tracks, but 22 and 19 px in tracks 14 and 15.  Treat a pixel as known to about
     4 px.
-
-    References
-    ----------
-    STARS Laboratory, University of Toronto Institute for Aerospace Studies (UTIAS), recorded for the course
-    AER1513; https://github.com/utiasSTARS/msckf-swf-comparison, datasets/dataset3.mat, MIT licence,
-    (c) 2017 STARS Laboratory.
     """
     recorded = loadmat(find_utias(path), squeeze_me=True)
-    intrinsics = Intrinsics(*(float(recorded[name]) for name in ("fu", "fv", "cu", "cv", "b")))
-    landmarks = recorded["rho_i_pj_i"].T
-    camera = _camera_path(recorded)
-    tracks = _tracks(recorded["y_k_j"], landmarks, camera, intrinsics)
-    return UtiasTables(camera, tracks, landmarks, intrinsics)
+    time, images = recorded["t"], np.moveaxis(recorded["y_k_j"], 0, -1)
+    tracks = _tracks(time, (images != NOT_SEEN).all(axis=-1))
+    followed = np.zeros(images.shape[:2], dtype=bool)
+    for track in tracks:
+        followed[track.first : track.last + 1, track.point] = True
+    images = np.where(followed[..., None], images, np.nan)  # u and v on the left, then on the right
+    fx, fy, cx, cy, baseline = (float(recorded[name]) for name in ("fu", "fv", "cu", "cv", "b"))
+    return UtiasTables(
+        time,
+        *_camera_path(recorded),
+        landmarks=recorded["rho_i_pj_i"].T,
+        tracks=tracks,
+        pixels=images[..., :2],
+        stereo_depth=fx * baseline / (images[..., 0] - images[..., 2]),
+        focal=np.array([fx, fy]),
+        centre=np.array([cx, cy]),
+        baseline=baseline,
+    )
 
 
 def _checked(place: Path, origin: str) -> Path:
@@ -319,26 +281,21 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _camera_path(recorded: dict[str, Any]) -> CameraPath:
-    time = recorded["t"]
+def _camera_path(recorded: dict[str, Any]) -> tuple[Values, Rotation, Values, Values]:
+    """Position, orientation, velocity and angular velocity of the left camera."""
     world_from_body = Rotation.from_rotvec(recorded["theta_vk_i"].T)
     # from_matrix() takes the nearest rotation, so C_c_v need not be orthonormal to the last digit.
     world_from_camera = world_from_body * Rotation.from_matrix(recorded["C_c_v"]).inv()
     camera_in_world = recorded["r_i_vk_i"].T + world_from_body.apply(recorded["rho_v_c_v"])
 
+    time = recorded["t"]
     fit = np.array([_local_fit(time, camera_in_world, world_from_camera, k) for k in range(time.size)])
     (position, rotation), (position_rate, rotation_rate) = (np.split(fit[:, i], 2, axis=1) for i in (0, 1))
     orientation = world_from_camera * Rotation.from_rotvec(rotation)
     # The first two terms of the series for w in the fit's correction phi.  The others change w by less than
     # 1e-4 rad/s in every track, and by up to 0.007 rad/s only outside them, at an outlying attitude at 10 s.
     angular_velocity = rotation_rate - np.cross(rotation, rotation_rate) / 2
-    return CameraPath(
-        time=time,
-        position=position,
-        orientation=orientation.as_quat(),
-        velocity=orientation.inv().apply(position_rate),
-        angular_velocity=angular_velocity,
-    )
+    return position, orientation, orientation.inv().apply(position_rate), angular_velocity
 
 
 def _local_fit(time: Values, position: Values, attitude: Rotation, k: int) -> Values:
@@ -353,30 +310,13 @@ def _local_fit(time: Values, position: Values, attitude: Rotation, k: int) -> Va
     return coefficients[:2]
 
 
-def _tracks(images: Values, landmarks: Values, camera: CameraPath, intrinsics: Intrinsics) -> tuple[Track, ...]:
-    seen = (images != NOT_SEEN).all(axis=0)
-    runs = [(run, landmark) for landmark, column in enumerate(seen.T) for run in _runs(camera.time, column)]
-    runs.sort(key=lambda item: (item[0][0], item[0][-1], item[1]))
-
+def _tracks(time: Values, seen: NDArray[np.bool_]) -> tuple[Sighting, ...]:
+    """Landmarks seen at consecutive samples, long enough and without a gap; `seen` has the shape (K, L)."""
     tracks = []
-    for point_id, (run, landmark) in enumerate(runs):
-        u_left, v_left, u_right, _ = images[:, run, landmark]
-        camera_from_world = Rotation.from_quat(camera.orientation[run]).inv()
-        track = Track(
-            point_id=point_id,
-            landmark_id=landmark,
-            sample=run,
-            time=camera.time[run],
-            pixels=np.column_stack([u_left, v_left]),
-            depth=camera_from_world.apply(landmarks[landmark] - camera.position[run])[:, 2],
-            stereo_depth=intrinsics.fx * intrinsics.baseline / (u_left - u_right),
-        )
-        tracks.append(track)
-    return tuple(tracks)
-
-
-def _runs(time: Values, seen: NDArray[np.bool_]) -> list[Indices]:
-    samples = np.flatnonzero(seen)
-    interrupted = (np.diff(samples) > 1) | (np.diff(time[samples]) > LONGEST_GAP)
-    runs = np.split(samples, np.flatnonzero(interrupted) + 1)
-    return [run for run in runs if run.size and time[run[-1]] - time[run[0]] >= SHORTEST_TRACK]
+    for landmark, column in enumerate(seen.T):
+        samples = np.flatnonzero(column)
+        interrupted = (np.diff(samples) > 1) | (np.diff(time[samples]) > LONGEST_GAP)
+        for run in np.split(samples, np.flatnonzero(interrupted) + 1):
+            if run.size and time[run[-1]] - time[run[0]] >= SHORTEST_TRACK:
+                tracks.append(Sighting(landmark, int(run[0]), int(run[-1])))
+    return tuple(sorted(tracks, key=lambda track: (track.first, track.last, track.point)))
