@@ -26,6 +26,7 @@ from percept_obs import (
 from percept_obs.points import constant, independent_points, kernel, lyapunov, riccati, rigid_body, scheduled
 from percept_obs.points.scenarios import moving_body
 from percept_obs.points.simulation import LeavesEveryBound
+from percept_obs.studies.comparison import relative_distance_errors
 from percept_obs.tracking.following import DoesNotFit
 
 ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])
@@ -263,7 +264,7 @@ def test_verdicts():
     with pytest.raises(ValueError, match="needs two finite positive ones"):
         good.decay_rate(50, 60)
     with pytest.raises(ValueError, match="no distance 'sonar'; it has truth"):
-        good.depth_errors(1, 0.3, [0], "sonar")
+        relative_distance_errors([good], 1, "sonar", 0.3, [0])
     with pytest.raises(ValueError, match="above 0 and at most 2"):
         good.conditions(0.0)
 

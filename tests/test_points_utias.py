@@ -43,7 +43,7 @@ def follow(P, absence):
 
 
 def median(run, after, points, reference="truth"):
-    return float(np.median(run.depth_errors(after, OUT_OF_SIGHT, points, reference)))
+    return float(np.median(relative_distance_errors([run], after, reference, OUT_OF_SIGHT, points)))
 
 
 @lru_cache

@@ -129,7 +129,7 @@ def test_why_immersion_and_invariance_refuses_a_motion_that_varies():
 
 def test_questions_that_a_run_cannot_answer_are_refused():
     run = track(recordings()[0], ibo(FORM))
-    with pytest.raises(ValueError, match=r"lasts .* s, not 60 s"):
+    with pytest.raises(ValueError, match=r"no sighting in the recording .* lasts 60 s"):
         relative_distance_errors([run], 60)
     with pytest.raises(ValueError, match="no distance 'sonar'; it has truth, stereo"):
         relative_distance_errors([run], 1, "sonar")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -100,42 +99,6 @@ class PointsRun(Run):
                 f"{size.min(initial=0):.3g} to {size.max(initial=0):.3g}; an exponential needs two finite positive ones"
             )
         return float(-np.polyfit(self.time[part], np.log(size), 1)[0])
-
-    def depth_errors(self, after: float, absence: float, points: Sequence[int], reference: str = "truth") -> Array:
-        """Relative errors of the depth, a given time after points came into sight.
-
-        Parameters
-        ----------
-        after : float
-            Seconds since the beginning of a sighting; the first sample from then on counts.
-        absence : float
-            Seconds without a sample after which it is another sighting.
-        points : sequence of int
-            Whose sightings count.
-        reference : str
-            "truth", or the name of a measured distance of the recording.
-
-        Returns
-        -------
-        array of shape (number of sightings that last as long,)
-            |estimate - reference| / reference; infinite where the estimate is behind the camera.
-
-        Raises
-        ------
-        ValueError
-            If the recording has no such reference.
-        """
-        recording = self.recording
-        depths = recording.reference(reference)
-        errors = []
-        for sighting in recording.sightings(absence):
-            samples = np.flatnonzero(recording.seen[: sighting.last + 1, sighting.point])
-            since = self.time[samples] - self.time[sighting.first]
-            later = samples[since >= after - 1e-9]
-            if sighting.point in points and len(later):
-                place = (later[0], sighting.point)
-                errors.append(abs(self.distance[place] / depths[place] - 1))
-        return np.array(errors)
 
     def conditions(self, epsilon: float = 1.0) -> Conditions:
         """The inequality (15) and the weaker sufficient one along the run, apart.

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from functools import partial
 from importlib.util import find_spec
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +16,6 @@ from numpy.typing import NDArray
 from percept_obs.compile import WORTH_COMPILING
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
-from percept_obs.studies.least_squares import WindowEstimate
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+
+
+MEASURES = ("settling_time", "final", "rms", "worst", "cost")
+"""Columns of `compare` of which a summary has the median and quantiles."""
 
 
 def compare(
@@ -72,17 +77,12 @@ def compare(
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
     if sum(len(recording.time) for recording in recordings) >= WORTH_COMPILING and find_spec("numba"):
         settings = {"language": "numba"} | settings
-    for observer in tqdm(observers.values(), desc="compiling", delay=2, leave=False):
-        # so that compiling is no part of the cost
-        track(recordings[0], observer, start, **settings)
-    pairs = [(label, number) for number in range(len(recordings)) for label in observers]
+    follow = {name: partial(track, observer=each, start=start, **settings) for name, each in observers.items()}
+    for run in tqdm(follow.values(), desc="compiling", delay=2, leave=False):
+        run(recordings[0])  # so that compiling is no part of the cost
     rows = []
-    for label, number in tqdm(pairs, desc="runs", delay=2, leave=False):
-        recording = recordings[number]
-        begin = time.perf_counter()
-        run = track(recording, observers[label], start, **settings)
-        cost = (time.perf_counter() - begin) / (recording.time[-1] - recording.time[0])
-        inverse = recording.imaging_surface.inverse_distance.name
+    for recording, label in tqdm([*product(recordings, follow)], desc="runs", delay=2, leave=False):
+        (run,), cost = timed(follow[label], [recording])
         error = np.abs(run.error[:, -1])
         late = error[recording.time - recording.time[0] >= after - 1e-9]
         if not len(late):
@@ -91,7 +91,7 @@ def compare(
             {
                 "observer": label,
                 "recording": recording.source,
-                "settling_time": run.settling_time(tolerance, inverse),
+                "settling_time": run.settling_time(tolerance, recording.imaging_surface.inverse_distance.name),
                 "final": _known(error[-1]),
                 "rms": _known(math.sqrt(np.mean(late**2))),
                 "worst": _known(late.max()),
@@ -120,34 +120,29 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     """
     import pandas as pd
 
-    rows = {}
-    for label, runs in table.groupby("observer", sort=False):
-        row: dict[str, float] = {
-            "runs": len(runs),
-            "failed": int(np.isinf(runs["settling_time"]).sum()),
-            "reset": int((runs["resets"] > 0).sum()),
-            "diverged": int(np.isfinite(runs["diverged_at"]).sum()),
-        }
-        for column in ("settling_time", "final", "rms", "worst", "cost"):
-            # by rank, for infinite values have no mean
-            for name, share in (("", 0.5), ("_low", 0.16), ("_high", 0.84)):
-                row[column + name] = float(np.quantile(runs[column], share, method="nearest"))
-        rows[label] = row
-    return pd.DataFrame.from_dict(rows, orient="index")
+    observers = table.groupby("observer", sort=False)
+    found = {
+        "runs": observers.size(),
+        "failed": observers["settling_time"].agg(lambda times: np.isinf(times).sum()),
+        "reset": observers["resets"].agg(lambda counts: (counts > 0).sum()),
+        "diverged": observers["diverged_at"].agg(lambda times: np.isfinite(times).sum()),
+    }
+    for column, (end, share) in product(MEASURES, (("", 0.5), ("_low", 0.16), ("_high", 0.84))):
+        # by rank, for infinite values have no mean
+        found[column + end] = observers[column].agg(np.quantile, share, method="nearest")
+    return pd.DataFrame(found).rename_axis(None)
 
 
 def described(found: pd.DataFrame) -> str:
     """A summary as text: counts, and medians with their quantiles."""
     import pandas as pd
 
-    lines = {}
-    for label, row in found.iterrows():
-        line = {name: f"{row[name]:.0f}" for name in ("runs", "failed", "reset", "diverged")}
-        for name in ("settling_time", "final", "rms", "worst"):
-            line[name] = f"{row[name]:.2g} ({row[name + '_low']:.2g} to {row[name + '_high']:.2g})"
-        line["cost"] = f"{1e6 * row['cost']:.0f} us/s"
-        lines[label] = line
-    return str(pd.DataFrame.from_dict(lines, orient="index").to_string())
+    columns = {name: found[name].map("{:.0f}".format) for name in ("runs", "failed", "reset", "diverged")}
+    for name in MEASURES[:-1]:
+        ends = zip(found[name], found[name + "_low"], found[name + "_high"], strict=True)
+        columns[name] = [f"{median:.2g} ({low:.2g} to {high:.2g})" for median, low, high in ends]
+    columns["cost"] = (1e6 * found["cost"]).map("{:.0f} us/s".format)
+    return str(pd.DataFrame(columns).to_string())
 
 
 def _known(value: float) -> float:
@@ -155,43 +150,61 @@ def _known(value: float) -> float:
     return float(value) if math.isfinite(value) else math.inf
 
 
-def relative_distance_errors(runs: Iterable[Run | WindowEstimate], after: float, reference: str = "truth") -> Array:
-    """Relative errors of the estimated distance, a given time after the start of each run.
+def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -> tuple[list[Run], float]:
+    """Runs on recordings, and how many seconds of computing a second of data takes."""
+    begin = time.perf_counter()
+    runs = [follow(recording) for recording in recordings]
+    taken = time.perf_counter() - begin
+    return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
+
+
+def relative_distance_errors(
+    runs: Iterable[Run],
+    after: float,
+    reference: str = "truth",
+    absence: float = math.inf,
+    points: Container[int] | None = None,
+) -> Array:
+    """Relative errors of the estimated distance, a given time after points came into sight.
 
     Parameters
     ----------
-    runs : iterable of Run or WindowEstimate
-        On recordings with a truth, or with measured distances.
+    runs : iterable of Run
+        Of one point or of several, on recordings with a truth or with measured distances.
     after : float
-        Seconds since the first sample; the first sample from then on counts.
+        Seconds since the first sample of a sighting; the first sample from then on counts.
     reference : str
         "truth", or the name of a measured distance of the recordings, such as "stereo".
+    absence : float
+        Seconds without a sample after which it is another sighting.
+    points : container of int, optional
+        Whose sightings count, if there are several; all of them when left out.
 
     Returns
     -------
-    array of shape (number of runs,)
+    array of shape (number of sightings that last as long,)
         |estimate - reference| / reference; infinite where the estimate is not in front of the camera.
 
     Raises
     ------
     ValueError
-        If a recording is too short or has no such reference.
+        If the time is negative, no sighting of a run lasts as long, or a recording has no such reference.
     """
-    errors = []
+    if not after >= 0:
+        raise ValueError(f"after is {after} s; it must not be negative")
+    errors: list[float] = []
     for run in runs:
-        recording = run.recording
-        since = run.time - run.time[0]
-        if not 0 <= after <= since[-1] + 1e-9:
-            raise ValueError(f"the recording {recording.source!r} lasts {since[-1]:.4g} s, not {after} s")
-        k = min(int(np.searchsorted(since, after - 1e-9)), len(since) - 1)
-        if reference == "truth":
-            distance = 1 / float(recording.view.inverse(run.truth[k]))
-        elif reference in recording.distances:
-            distance = recording.distances[reference][k]
-        else:
-            known = ", ".join(["truth", *recording.distances])
-            raise ValueError(f"the recording {recording.source!r} has no distance {reference!r}; it has {known}")
-        errors.append(abs(run.distance[k] / distance - 1))
+        recording, count = run.recording, len(errors)
+        shape = (len(recording.time), -1)
+        known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
+        for sighting in recording.sightings(absence):
+            samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
+            later = samples[run.time[samples] - run.time[sighting.first] >= after - 1e-9]
+            if len(later) and (points is None or sighting.point in points):
+                place = (later[0], sighting.point)
+                errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
+        if len(errors) == count:
+            raise ValueError(f"no sighting in the recording {recording.source!r} lasts {after} s")
     return np.array(errors)
 
 

@@ -12,8 +12,10 @@ from scipy.linalg import expm
 
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
-from percept_obs.system.motion import Motion
+from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
+from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
 
@@ -22,63 +24,35 @@ LARGEST_CONDITION = 1e6
 
 
 @dataclass(frozen=True, eq=False)
-class WindowEstimate:
-    """Positions estimated from the samples of a window that ends at each sample.
+class LeastSquares:
+    """Least squares where a run asks for its observer: what they are called, and what they estimate.
 
     Parameters
     ----------
     recording : Recording
-    points : array of shape (K, 3)
-        Positions in metres; infinite where the window determines none in front of the camera.
     window : float
-        Length of the window in seconds.
+        Seconds.
     """
 
     recording: Recording
-    points: Array
     window: float
+    covariance = None
+    gains = ()
+    unobservable = ()
 
     @property
-    def time(self) -> Array:
-        """Times of the samples in seconds, shape (K,)."""
-        return self.recording.time
-
-    @property
-    def determined(self) -> NDArray[np.bool_]:
-        """Where the window determines a point in front of the camera, shape (K,)."""
-        found: NDArray[np.bool_] = np.all(np.isfinite(self.points), axis=1)
-        return found
+    def name(self) -> str:
+        """With the length of the window."""
+        return f"least squares on {self.window:g} s"
 
     @cached_property
-    def estimate(self) -> Array:
-        """Image coordinates and inverse distance, shape (K, n); all 0 where no point is determined."""
-        estimate = np.zeros((len(self.points), len(self.recording.view.coordinates)))
-        estimate[self.determined] = self.recording.imaging_surface.project(self.points[self.determined])
-        return estimate
-
-    @cached_property
-    def distance(self) -> Array:
-        """Estimated depth or range in metres, shape (K,); infinite where no point is determined."""
-        inverse = self.estimate[:, -1]
-        return np.divide(1, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0)
-
-    @property
-    def truth(self) -> Array:
-        """True coordinates, shape (K, n).
-
-        Raises
-        ------
-        ValueError
-            If the recording has none.
-        """
-        if self.recording.truth is None:
-            raise ValueError("the recording has no truth to compare with")
-        return self.recording.truth
+    def form(self) -> PartitionedSystem:
+        """With all image coordinates measured."""
+        recording = self.recording
+        return PerspectiveSystem(recording.motion, recording.imaging_surface).measure(*recording.names)
 
 
-def moving_window_least_squares(
-    recording: Recording, window: float = 2.0, believed: Motion | None = None
-) -> WindowEstimate:
+def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Run:
     """Least-squares position at the end of a window, from all samples in it.
 
     The point of each sample lies on its ray: the cross product of the ray and the position is zero.  With the known
@@ -90,12 +64,11 @@ def moving_window_least_squares(
         With all image coordinates of its surface.
     window : float
         Seconds.
-    believed : Motion, optional
-        The motion that is believed in; the recording's own when left out.
 
     Returns
     -------
-    WindowEstimate
+    Run
+        Its estimates are 0, so that they have no distance, where the window determines no point in front of the camera.
 
     Raises
     ------
@@ -116,7 +89,7 @@ def moving_window_least_squares(
     rays = np.stack(vectorised(surface.image_coordinates, surface.ray, surface.values)(*recording.outputs.T), axis=-1)
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     on_ray = np.eye(3) - rays[:, :, None] * rays[:, None, :]
-    back = _back(recording, believed or recording.motion)
+    back = _back(recording)
 
     matrix, right = np.zeros((count, 3, 3)), np.zeros((count, 3))
     # from the position at the window's end to that of the sample some places before it
@@ -131,18 +104,19 @@ def moving_window_least_squares(
         rows = on_ray[seen - lag] @ to_earlier[seen, :3, :3]
         matrix[seen] += np.swapaxes(rows, 1, 2) @ rows
         right[seen] -= (np.swapaxes(rows, 1, 2) @ (on_ray[seen - lag] @ to_earlier[seen, :3, 3:]))[:, :, 0]
-    points = np.full((count, 3), np.inf)
     values = np.linalg.eigvalsh(matrix)
-    good = values[:, 0] * LARGEST_CONDITION > values[:, -1]
-    points[good] = np.linalg.solve(matrix[good], right[good][:, :, None])[:, :, 0]
-    (distance,) = vectorised(POINT, (surface.distance,), surface.values)(*np.where(np.isfinite(points), points, -1).T)
-    points[distance <= 0] = np.inf
-    return WindowEstimate(recording, points, window)
+    good = np.flatnonzero(values[:, 0] * LARGEST_CONDITION > values[:, -1])
+    points = np.linalg.solve(matrix[good], right[good][:, :, None])[:, :, 0]
+    (distance,) = vectorised(POINT, (surface.distance,), surface.values)(*points.T)
+    estimate = np.zeros((count, len(surface.coordinates)))
+    estimate[good[distance > 0]] = surface.project(points[distance > 0])
+    always = np.zeros(count, dtype=int)
+    return Run(recording, LeastSquares(recording, window), estimate, estimate, None, "zero", np.empty(0), always)
 
 
-def _back(recording: Recording, motion: Motion) -> Array:
+def _back(recording: Recording) -> Array:
     """Affine maps, shape (K - 1, 4, 4), from the position at a sample to that at the sample before it."""
-    time = recording.time
+    time, motion = recording.time, recording.motion
     middle = (time[:-1] + time[1:]) / 2
     known = motion.known(middle)
     together = list(sp.Matrix.hstack(sp.Matrix(motion.A), sp.Matrix(motion.b)))

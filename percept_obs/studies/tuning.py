@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import product
@@ -13,8 +12,7 @@ import numpy as np
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
-from percept_obs.studies.comparison import best_setting, relative_distance_errors
-from percept_obs.studies.least_squares import WindowEstimate
+from percept_obs.studies.comparison import best_setting, relative_distance_errors, timed
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.following import DoesNotFit
 from percept_obs.tracking.run import Run
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
 
 Gains = Mapping[str, float]
 Follow = Callable[[Recording, Observer], Run]
-Estimate = Callable[[Recording], WindowEstimate]
+Estimate = Callable[[Recording], Run]
 
 SHARE = 0.9
 """The share of recordings whose errors the table bounds, beside half of them."""
@@ -95,13 +93,11 @@ def choose_and_report(
     questions = list(product(references, after))
     rows: list[dict[str, Any]] = []
 
-    def answer(label: str, gains: str, estimate: Callable[[Recording], Run | WindowEstimate]) -> None:
-        begin = time.perf_counter()
-        runs = [estimate(recording) for recording in reporting]
-        cost = (time.perf_counter() - begin) / sum(float(r.time[-1] - r.time[0]) for r in reporting)
+    def answer(label: str, gains: str, estimate: Estimate) -> None:
+        runs, cost = timed(estimate, reporting)
         told = {"observer": label, "gains": gains, "cost": cost, "refusal": ""}
-        told["reset"] = sum(isinstance(run, Run) and len(run.resets) > 0 for run in runs)
-        told["diverged"] = sum(isinstance(run, Run) and run.diverged_at is not None for run in runs)
+        told["reset"] = sum(len(run.resets) > 0 for run in runs)
+        told["diverged"] = sum(run.diverged_at is not None for run in runs)
         for reference, seconds in questions:
             errors = relative_distance_errors(runs, seconds, reference)
             # the quantile by rank, for infinite errors have no mean
