@@ -1,6 +1,6 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
-from percept_obs.observability.pointwise import instantaneous, windowed
+from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import (
     Observer,
     ekf,

@@ -172,7 +172,7 @@ def test_signals_draws_the_innovation_where_there_is_no_truth(runs):
 
 def test_bold_errors_are_root_mean_squares():
     values = np.array([3.0, 4.0, np.nan, 0.0, 1e200])
-    root = figures.base._root_mean_square(values, 3)
+    root = figures.curves._root_mean_square(values, 3)
     np.testing.assert_allclose(root, [np.sqrt(12.5), np.sqrt(12.5), np.nan, 1e200 / np.sqrt(2), 1e200 / np.sqrt(2)])
 
 
@@ -221,7 +221,7 @@ def test_labels_have_symbols_letters_and_units(runs):
 def bands(ax):
     """Times, lower and upper ends of the bands of two claimed standard deviations, clipped at the top of the axes."""
     for collection in ax.collections:
-        if collection.get_label() in (figures.base.CLAIM, "_claim"):
+        if collection.get_label() in (figures.curves.CLAIM, "_claim"):
             ends = np.vstack([path.vertices for path in collection.get_paths()])
             time = np.unique(ends[:, 0])
             yield time, *(np.array([pick(ends[ends[:, 0] == t, 1]) for t in time]) for pick in (np.min, np.max))
@@ -247,11 +247,11 @@ def test_the_band_is_two_standard_deviations_of_the_covariance(runs, name):
 
 def test_compare_draws_the_band_of_those_that_claim_one(runs):
     run = runs("filter")
-    figure = figures.compare([eq35("y1"), run, run])
+    figure = figures.runs_over_time([eq35("y1"), run, run])
     (_, low, high), again = bands(figure.axes[0])
     np.testing.assert_allclose((high - low) / 4, np.sqrt(run.covariance[:, 2, 2]))
     np.testing.assert_array_equal(again[2], high)
-    assert sum(name == figures.base.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
+    assert sum(name == figures.curves.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
     assert figure.text.count("The band of two claimed standard deviations") == 2
     assert figure.text.index("extended Kalman") < figure.text.index("The band of")
 
@@ -273,7 +273,7 @@ def test_the_band_of_the_distance_is_open_where_the_inverse_reaches_zero(runs):
 
 
 def test_without_a_claim_there_is_no_band(runs):
-    for draw in (figures.signals, figures.distance, figures.compare):
+    for draw in (figures.signals, figures.distance, figures.runs_over_time):
         figure = draw(runs("(35), both outputs"))
         assert not list(bands(figure.axes[0]))
         assert "claimed" not in figure.text
@@ -456,7 +456,7 @@ def test_the_scene_has_one_scale(runs):
 def test_compare_draws_the_truth_once_and_every_estimate(runs):
     both = runs("(35), both outputs")
     some = [both, runs("(35), y1 alone"), track(both.recording, smo(form("y1", "y2")), ZERO)]
-    figure = figures.compare(some)
+    figure = figures.runs_over_time(some)
     upper, lower = figure.axes
     np.testing.assert_array_equal(line(upper, "truth"), [both.time, both.truth[:, 2]])
     names = ["identifier-based (y1, y2)", "identifier-based (y1)", "sliding mode (y1, y2)"]
@@ -468,22 +468,22 @@ def test_compare_draws_the_truth_once_and_every_estimate(runs):
 
 
 def test_curves_differ_in_line_marker_and_colour():
-    looks = [figures.base.style(number) for number in range(4)]
+    looks = [figures.look.style(number) for number in range(4)]
     for key in ("linestyle", "marker", "color"):
         assert len({str(look[key]) for look in looks}) == 4
-    every = [figures.base.style(number) for number in range(28)]
+    every = [figures.look.style(number) for number in range(28)]
     assert len({(str(look["linestyle"]), look["marker"]) for look in every}) == 28  # without any colour
 
 
 def test_colours_are_those_of_okabe_and_ito():
     palette = {"#000000", "#e69f00", "#56b4e9", "#009e73", "#0072b2", "#d55e00", "#cc79a7"}
-    base = figures.base
-    assert {to_hex(c) for c in (base.BLACK, base.SKY, *base.COLOURS)} <= palette
+    look = figures.look
+    assert {to_hex(c) for c in (look.BLACK, look.SKY, *look.COLOURS)} <= palette
 
 
 def test_compare_names_what_differs_and_when_a_run_diverged(runs):
     some = [eq35("y1", "y2"), eq35("y1", "y2", gain=3), runs("diverged")]
-    figure = figures.compare(some, coordinate="y1")
+    figure = figures.runs_over_time(some, coordinate="y1")
     labels = figure.axes[0].get_legend_handles_labels()[1]
     assert labels[1:] == [
         "identifier-based (y1, y2), gain 10, bound 10",
@@ -498,10 +498,10 @@ def test_compare_names_what_differs_and_when_a_run_diverged(runs):
 def test_compare_takes_runs_with_and_without_noise(runs):
     clean = record(scenarios.ma2005_eq35(), camera=Camera(), seed=1)
     some = [runs("(35), both outputs"), track(clean, ibo(form("y1", "y2")), ZERO)]
-    figure = figures.compare(some, ["noisy", "clean"])
+    figure = figures.runs_over_time(some, ["noisy", "clean"])
     assert figure.axes[0].get_legend_handles_labels()[1] == ["truth", "noisy", "clean"]
     assert "clean: Converged" in figure.text
-    numbered = figures.compare(some).axes[0].get_legend_handles_labels()[1]
+    numbered = figures.runs_over_time(some).axes[0].get_legend_handles_labels()[1]
     assert numbered[1:] == ["identifier-based (y1, y2) [1]", "identifier-based (y1, y2) [2]"]
 
 
@@ -630,7 +630,7 @@ def test_figures_draw_on_the_axes_they_are_given(runs):
     four = MatplotlibFigure().subplots(2, 2)
     assert figures.signals(run, axes=four).axes == tuple(four.ravel())
     two = MatplotlibFigure().subplots(2)
-    assert figures.compare(run, axes=two).axes == tuple(two)
+    assert figures.runs_over_time(run, axes=two).axes == tuple(two)
     assert figures.distance(run, axes=two).axes == tuple(two)
     solid = MatplotlibFigure().add_subplot(projection="3d")
     assert figures.scene(run, ax=solid).axes == (solid,)
@@ -642,23 +642,23 @@ def test_figures_draw_on_the_axes_they_are_given(runs):
 @pytest.mark.parametrize(
     ("draw", "complaint"),
     [
-        (lambda run: figures.signals(run("plane").recording), "one Run"),
-        (lambda run: figures.signals([run("plane"), run("plane")]), "one Run"),
+        (lambda run: figures.signals(run("plane").recording), "a Run is needed"),
+        (lambda run: figures.signals([run("plane"), run("plane")]), "a Run is needed"),
         (lambda run: figures.signals(run("plane"), tolerance=0), "tolerance is 0"),
         (lambda run: figures.signals(run("plane"), axes=MatplotlibFigure().subplots(2)), "has 2 axes; 4 are needed"),
         (lambda run: figures.image_plane(run("three outputs")), "has 3 image coordinates"),
         (lambda run: figures.image_plane(run("diverged, without truth").recording, -1), "threshold is -1"),
-        (lambda run: figures.image_plane("run"), "a Run or a Recording"),
+        (lambda run: figures.image_plane("run"), "a Run or a Recording is needed"),
         (lambda run: figures.scene(run("without truth").recording), "no truth"),
         (lambda run: figures.scene(run("plane"), far=1), "more than 1"),
         (lambda run: figures.scene(run("plane"), ax=MatplotlibFigure().add_subplot()), "flat"),
-        (lambda run: figures.compare([]), "no runs"),
-        (lambda run: figures.compare(run("plane").recording), "a Run is needed"),
-        (lambda run: figures.compare(run("without truth")), "no truth to compare"),
-        (lambda run: figures.compare(run("plane"), coordinate="y4"), "no coordinate 'y4'; there are y1, y2, y3"),
-        (lambda run: figures.compare(run("plane"), labels="one"), "a list of 1 is needed"),
-        (lambda run: figures.compare([run("plane"), run("chained")]), "their surfaces and truths differ"),
-        (lambda run: figures.compare([run("dropouts"), run("varying")]), "their times and truths differ"),
+        (lambda run: figures.runs_over_time([]), "a Run or several are needed"),
+        (lambda run: figures.runs_over_time(run("plane").recording), "a Run or several are needed"),
+        (lambda run: figures.runs_over_time(run("without truth")), "no truth to compare"),
+        (lambda run: figures.runs_over_time(run("plane"), coordinate="y4"), "no coordinate 'y4'; there are y1, y2, y3"),
+        (lambda run: figures.runs_over_time(run("plane"), labels="one"), "a list of 1 is needed"),
+        (lambda run: figures.runs_over_time([run("plane"), run("chained")]), "their surfaces and truths differ"),
+        (lambda run: figures.runs_over_time([run("dropouts"), run("varying")]), "their times and truths differ"),
         (lambda run: figures.distance([run("dropouts"), run("without truth")]), "their truths differ"),
         (lambda run: figures.distance(run("plane"), reference="stereo"), "no reference 'stereo'; there are truth"),
         (lambda run: figures.excitation([]), "an Excitation"),

@@ -19,7 +19,7 @@ from utias_folder import utias_folder
 from percept_obs.labs.observer.lab import observer_lab, runs
 from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS
 from percept_obs.labs.shared.printed import part
-from percept_obs.observability.pointwise import windowed
+from percept_obs.observability import windowed
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.surfaces import BehindCamera
 

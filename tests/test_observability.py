@@ -27,14 +27,14 @@ b1, b2, b3, y1, y2 = sp.symbols("b1 b2 b3 y1 y2", real=True)
 def test_both_outputs_suffice_off_the_focus_of_expansion():
     found = instantaneous(BOTH)
     assert found.suffices
-    assert sp.expand(found.measure - (b1 - b3 * y1) ** 2 - (b2 - b3 * y2) ** 2) == 0
+    assert sp.expand(found.determinant - (b1 - b3 * y1) ** 2 - (b2 - b3 * y2) ** 2) == 0
     assert found.zero_set == [{y1: b1 / b3, y2: b2 / b3}]
     assert "can suffice" in found._repr_latex_()
 
 
 def test_one_output_never_suffices():
     found = instantaneous(ONE)
-    assert (found.rank, found.suffices, found.measure) == (1, False, 0)
+    assert (found.rank, found.suffices, found.determinant) == (1, False, 0)
     assert sp.expand(found.information.det()) == 0
     assert "no instant suffices" in found._repr_latex_()
     with pytest.raises(ValueError, match="no circle"):

@@ -22,14 +22,14 @@ def run(recording):
 
 
 def test_paths_have_gaps_where_a_point_is_hidden(recording, run):
-    figure = figures.points_in_image(run)
+    figure = figures.image_plane(run)
     (ax,) = figure.axes
     second = np.transpose(ax.lines[3].get_data())
     np.testing.assert_array_equal(np.isnan(second[:, 0]), ~recording.seen[:, 1])
     assert np.isfinite(np.transpose(ax.lines[4].get_data())).all(), "the estimate goes on"
     assert "Out of sight: point 2 for 12% of the time." in figure.text
     assert run.verdict() in figure.text
-    alone = figures.points_in_image(recording.without(0, 9, 1)).text
+    alone = figures.image_plane(recording.without(0, 9, 1)).text
     assert "point 2 for 100% of the time" in alone
     assert "Estimates" not in alone
 
@@ -73,7 +73,7 @@ def test_depth_errors_have_medians_and_count_what_is_behind_the_camera():
 
 def test_figures_draw_on_the_axes_they_are_given(recording, run):
     draws = (
-        lambda ax: figures.points_in_image(recording, ax),
+        lambda ax: figures.image_plane(recording, ax=ax),
         lambda ax: figures.error_norm(run, ax=ax),
         lambda ax: figures.gramian(gramian(recording, 2), ax=ax),
         lambda ax: figures.depth_errors({"a": [0.1]}, 2, ax),
@@ -86,8 +86,8 @@ def test_figures_draw_on_the_axes_they_are_given(recording, run):
 
 def test_bad_input_is_refused_in_words(recording, run):
     for call, message in (
-        (lambda: figures.points_in_image(3), "a PointsRun or a Recording is needed"),
-        (lambda: figures.points_in_image(recording.without(0, 9).without(0, 9, 1)), "no point is seen"),
+        (lambda: figures.image_plane(3), "a Run or a Recording is needed"),
+        (lambda: figures.image_plane(recording.without(0, 9).without(0, 9, 1)), "no point is seen"),
         (lambda: figures.error_norm([]), "a PointsRun or several are needed"),
         (lambda: figures.error_norm(3), "a PointsRun or several are needed"),
         (lambda: figures.error_norm(run, ["a", "b"]), "one for each curve"),
@@ -102,6 +102,6 @@ def test_bad_input_is_refused_in_words(recording, run):
             call()
     bare = Recording(recording.time, recording.outputs, ("y1", "y2"), recording.view, recording.view.motion)
     blind = track(bare, luenberger(recording.view))
-    assert "True" not in figures.points_in_image(blind).text
+    assert "True" not in figures.image_plane(blind).text
     with pytest.raises(ValueError, match="no truth"):
         figures.error_norm(blind)

@@ -88,7 +88,7 @@ def test_determinants_of_the_seven_corollaries(corollary):
     assert choice.determinant == DETERMINANTS[corollary.number] * ybar3**4
     assert corollary_of(choice) == corollary
     assert instantaneous(choice.form).suffices
-    assert sp.expand(instantaneous(choice.form).measure - choice.determinant**2) == 0
+    assert sp.expand(instantaneous(choice.form).determinant - choice.determinant**2) == 0
 
 
 COLUMNS = {

@@ -107,8 +107,8 @@ def test_what_does_not_belong_together_is_refused(recording, run):
     blind = seen_as(recording, recording.view, chwa2019_experiment("IV.A").motion)
     point = track(record(scenarios.ma2005_eq35(), 1), ismo(BOTH))
     for runs, labels, message in (
-        ([], None, "there are no runs"),
-        ([run], ["a", "b"], "2 labels for 1 runs"),
+        ([], None, "a Run or several are needed"),
+        ([run], ["a", "b"], "a list of 1 is needed"),
         ([run, elsewhere], None, "different unknowns or times"),
         (sliding(blind), None, "no truth to compare with"),
         (point, None, "not of structure and motion"),
@@ -116,7 +116,7 @@ def test_what_does_not_belong_together_is_refused(recording, run):
         with pytest.raises(ValueError, match=message):
             figures.quantities(runs, labels)
     with pytest.raises(ValueError, match="3 are needed"):
-        figures.quantities(run, axes=figures.compare(run).axes)
+        figures.quantities(run, axes=figures.runs_over_time(run).axes)
 
 
 @pytest.mark.parametrize("observer", [ismo, ekf])

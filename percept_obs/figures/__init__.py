@@ -4,18 +4,17 @@ from percept_obs.figures.base import Figure
 from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
 from percept_obs.figures.image_plane import image_plane
-from percept_obs.figures.many_points import depth_errors, error_norm, gramian, points_in_image
-from percept_obs.figures.over_time import compare, distance
+from percept_obs.figures.many_points import depth_errors, error_norm
+from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
 from percept_obs.figures.structure import cases, quantities
-from percept_obs.figures.windows import consistency, excitation
+from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
     "Figure",
     "cases",
     "chatter",
-    "compare",
     "comparison",
     "consistency",
     "depth_errors",
@@ -24,8 +23,8 @@ __all__ = [
     "excitation",
     "gramian",
     "image_plane",
-    "points_in_image",
     "quantities",
+    "runs_over_time",
     "scene",
     "signals",
 ]

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from percept_obs.figures.base import BLACK, SKY, VERMILLION, WIDTH, Figure, drawn, finite, tidy
+from percept_obs.figures import look
+from percept_obs.figures.base import Drawing, canvases, figure
+from percept_obs.figures.words import finite
 from percept_obs.studies.comparison import summary
 
 if TYPE_CHECKING:
@@ -18,14 +19,15 @@ if TYPE_CHECKING:
 
 PANELS = {"settling_time": "settling time (s)", "rms": "rms error of 1/distance (1/m)"}
 
-RUN: dict[str, Any] = {"color": SKY, "linestyle": "", "marker": "|", "markersize": 12}
-SPREAD: dict[str, Any] = {"color": BLACK, "linewidth": 1.6, "marker": "|", "markersize": 6}
-MEDIAN: dict[str, Any] = {"color": BLACK, "linestyle": "", "marker": "o", "markersize": 5}
-NONE: dict[str, Any] = {"color": VERMILLION, "linestyle": "", "marker": "X", "markersize": 8}
+RUN: dict[str, Any] = {"color": look.SKY, "linestyle": "", "marker": "|", "markersize": 12}
+SPREAD: dict[str, Any] = {"color": look.BLACK, "linewidth": 1.6, "marker": "|", "markersize": 6}
+MEDIAN: dict[str, Any] = {"color": look.BLACK, "linestyle": "", "marker": "o", "markersize": 5}
+NONE: dict[str, Any] = {"color": look.VERMILLION, "linestyle": "", "marker": "X", "markersize": 8}
 KEY = {"a run": RUN, "median": MEDIAN, "16 to 84 % of the runs": SPREAD, "none: half of the runs fail, or more": NONE}
 
 
-def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Figure:
+@figure("the table is empty or not from `compare`, or there are not two axes")
+def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawing:
     """Settling time and root mean square error of every observer: each run, the median, and 16 to 84 % of the runs.
 
     A run that does not settle has no settling time, and one that diverged has no error: what they lack stands at the
@@ -35,45 +37,30 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Figur
     ----------
     table : pandas.DataFrame
         From `percept_obs.studies.comparison.compare`.
-    axes : two axes, optional
-        For settling time and error; new ones when left out.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    ValueError
-        If the table is empty or not from `compare`, or there are not two axes.
     """
     if not len(table) or not {"observer", *PANELS} <= set(table.columns):
         raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")
     found = summary(table)
-    if axes is None:
-        new = matplotlib.figure.Figure(figsize=(WIDTH, 1.3 + 0.42 * len(found)), layout="constrained")
-        axes = list(new.subplots(1, 2, sharey=True))
-    pair: list[Any] = list(np.ravel(np.asarray(axes, dtype=object)))
-    if len(pair) != 2:
-        raise ValueError(f"axes= has {len(pair)} axes; 2 are needed, for settling time and error")
+    pair = canvases(axes, ["settling time", "error"], 1.3 + 0.42 * len(found), ncols=2, sharey=True)
     for ax, (column, title) in zip(pair, PANELS.items(), strict=True):
         _draw(ax, table, found, column)
         ax.set_xlabel(title)
         ax.set_yticks(range(len(found)), [f"{label}\n{_counts(row)}" for label, row in found.iterrows()])
         ax.set_ylim(len(found) - 0.5, -0.5)
-    figure = pair[0].get_figure(root=True)
-    figure.legend(
-        handles=[Line2D([], [], label=name, **look) for name, look in KEY.items()],
-        loc="outside upper center" if figure.get_layout_engine() else "upper center",
+    whole: Any = pair[0].get_figure(root=True)
+    whole.legend(
+        handles=[Line2D([], [], label=name, **looks) for name, looks in KEY.items()],
+        loc="outside upper center" if whole.get_layout_engine() else "upper center",
         ncols=2,
         frameon=False,
     )
-    sentences = [f"{label}: {_counts(row)}; {_medians(row)}." for label, row in found.iterrows()]
-    return drawn(pair, ["Settling time and rms error of every observer, on logarithmic axes.", *sentences])
+    yield "Settling time and rms error of every observer, on logarithmic axes."
+    for label, row in found.iterrows():
+        yield f"{label}: {_counts(row)}; {_medians(row)}."
+    return pair
 
 
 def _draw(ax: Axes, table: pd.DataFrame, found: pd.DataFrame, column: str) -> None:
-    tidy(ax)
     ax.grid(False, axis="y")
     ax.set_xscale("log")
     seen = finite(table[column])
@@ -84,13 +71,8 @@ def _draw(ax: Axes, table: pd.DataFrame, found: pd.DataFrame, column: str) -> No
     ax.set_xlim(low / margin, edge * margin**0.7)
     for place, (label, row) in enumerate(found.iterrows()):
         # what is 0 has no logarithm, and what is infinite no place
-        own, low_end, middle, high_end = (
-            np.clip(values, low, edge)
-            for values in (
-                finite(table.loc[table["observer"] == label, column]),
-                *(row[column + end] for end in ("_low", "", "_high")),
-            )
-        )
+        own = np.clip(finite(table.loc[table["observer"] == label, column]), low, edge)
+        low_end, middle, high_end = (np.clip(row[column + end], low, edge) for end in ("_low", "", "_high"))
         ax.plot(own, np.full_like(own, place), **RUN)
         ax.plot([low_end, high_end], [place, place], **SPREAD)
         ax.plot(middle, place, **(MEDIAN if np.isfinite(row[column]) else NONE))
@@ -107,9 +89,7 @@ def _medians(row: pd.Series) -> str:
     """Medians and quantiles, in words."""
     told = []
     for column, what, unit in (("settling_time", "settling time", "s"), ("rms", "rms error", "1/m")):
-        middle, low, high = (
-            f"{value:.2g} {unit}" if np.isfinite(value) else "none"
-            for value in (row[column], row[f"{column}_low"], row[f"{column}_high"])
-        )
+        values = (row[column + end] for end in ("", "_low", "_high"))
+        middle, low, high = (f"{value:.2g} {unit}" if np.isfinite(value) else "none" for value in values)
         told.append(f"{what} {middle} in the median, {low} to {high} for 16 to 84 % of the runs")
     return "; ".join(told)

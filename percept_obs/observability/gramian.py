@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.observability.windowed import check_window
 from percept_obs.points.conditions import conditions
 from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
@@ -235,7 +237,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     form, weight = observer.form, observer.weight
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    _check_window(recording, window)
+    check_window(recording, window)
     time, images = recording.time, true_images(recording)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
@@ -249,13 +251,9 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         inside = np.flatnonzero((time >= begin - 1e-9) & (time <= begin + window + 1e-9))
         inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
         at = time[inside]
-        shares = np.zeros(len(at))
-        shares[:-1] += np.diff(at) / 2
-        shares[1:] += np.diff(at) / 2
-        step = _transitions(form, at)
-        Phi = np.concatenate([np.eye(form.states)[None], step])
-        for j in range(1, len(Phi)):
-            Phi[j] = step[j - 1] @ Phi[j - 1]
+        shares = np.convolve(np.diff(at), [0.5, 0.5])  # of the trapezoidal rule
+        steps = _transitions(form, at)
+        Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
         P = weight.at(at)
@@ -280,12 +278,6 @@ def true_images(recording: Recording) -> Array:
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
 
 
-def _check_window(recording: Recording, window: float) -> None:
-    length = recording.time[-1] - recording.time[0]
-    if not 0 < window <= length + 1e-9:
-        raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
-
-
 def _transitions(form: PointsForm, time: Array) -> Array:
     """Transition matrices from each time to the next, shape (K - 1, n, n), by the Runge-Kutta method."""
     h = np.diff(time)[:, None, None]
@@ -305,7 +297,7 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
     window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
     """
-    _check_window(recording, window)
+    check_window(recording, window)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     S, Phi = information(used), _transitions(form, time)

@@ -1,20 +1,13 @@
-"""Observability of a canonical form: at an instant, and over a window of its trajectory."""
+"""Observability of a canonical form at an instant."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
-from percept_obs.compile import vectorised
-from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
-from percept_obs.system.motion import Motion
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -44,7 +37,7 @@ class InstantaneousObservability:
         return self.rank == len(self.form.x2)
 
     @cached_property
-    def measure(self) -> sp.Expr:
+    def determinant(self) -> sp.Expr:
         """Determinant of the information, zero where an instant does not suffice."""
         return sp.factor(self.information.det()) if self.suffices else sp.S.Zero
 
@@ -52,6 +45,16 @@ class InstantaneousObservability:
     def zero_set(self) -> list[dict[sp.Symbol, sp.Expr]]:
         """Where all of w vanishes: solutions for the measured outputs, none if there is no such place."""
         return sp.solve(list(self.form.w), self.form.x1, dict=True)
+
+    @cached_property
+    def growth(self) -> sp.Expr | None:
+        """The factor c if |w|^2 = c |x1 - centre|^2, so that w is small in a circle; None if it is not."""
+        x1 = self.form.x1
+        curvature = sp.hessian(sum(entry**2 for entry in self.form.w), x1) / 2
+        growth = sp.factor(curvature[0, 0])
+        same_all_round = (curvature - growth * sp.eye(len(x1))).expand() == sp.zeros(len(x1))
+        one_centre = len(self.zero_set) == 1 and set(self.zero_set[0]) == set(x1)
+        return growth if len(x1) > 1 and same_all_round and one_centre else None
 
     def circle(self, threshold: sp.Expr | float) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
         """Centre and radius of the region where |w| is below a threshold.
@@ -61,20 +64,15 @@ class InstantaneousObservability:
         Raises
         ------
         ValueError
-            If the region is no circle, as with one output alone.
+            If the region is no circle, so that `growth` is None, as with one output alone.
         """
-        x1 = self.form.x1
-        squared = sum(entry**2 for entry in self.form.w)
-        curvature = sp.hessian(squared, x1) / 2
-        scale = sp.factor(curvature[0, 0])
-        round_ = (curvature - scale * sp.eye(len(x1))).expand() == sp.zeros(len(x1))
-        if len(x1) < 2 or not round_ or len(self.zero_set) != 1 or set(self.zero_set[0]) != set(x1):
+        if self.growth is None:
             raise ValueError(
                 f"measuring {', '.join(self.form.measured)}, the region where w is small is no circle; "
                 "look at the zero set and the window instead"
             )
-        centre = tuple(sp.cancel(self.zero_set[0][x]) for x in x1)
-        return centre, sp.Abs(threshold) / sp.sqrt(scale)
+        centre = tuple(sp.cancel(self.zero_set[0][x]) for x in self.form.x1)
+        return centre, sp.Abs(threshold) / sp.sqrt(self.growth)
 
     def _repr_latex_(self) -> str:
         verdict = (
@@ -97,78 +95,3 @@ def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
         If there is no canonical form, and so no w.
     """
     return InstantaneousObservability(form.canonical_form())
-
-
-@dataclass(frozen=True, eq=False)
-class Excitation:
-    """Smallest eigenvalue of the information gathered over a window.
-
-    Parameters
-    ----------
-    time : array of shape (T,)
-        Ends of the windows in seconds.
-    smallest : array of shape (T,)
-        Smallest eigenvalue of the integral of w w^T over the window that ends there.
-    window : float
-        Length of the window in seconds.
-    """
-
-    time: Array
-    smallest: Array
-    window: float
-
-    @property
-    def least(self) -> float:
-        """The smallest of all windows: the beta of persistency of excitation."""
-        return float(self.smallest.min())
-
-
-def windowed(
-    form: PartitionedSystem, recording: Recording, window: float = 10.0, motion: Motion | None = None
-) -> Excitation:
-    """Persistency of excitation along a recording.
-
-    Parameters
-    ----------
-    form : PartitionedSystem
-        With a canonical form.
-    recording : Recording
-        Its truth is used where there is one, else its outputs, with lost samples interpolated.
-    window : float
-        Seconds.
-    motion : Motion, optional
-        The recording's own when left out.
-
-    Raises
-    ------
-    NotAffine
-        If there is no canonical form, and so no w.
-    ValueError
-        If the window is not positive or longer than the recording.
-    """
-    from scipy.integrate import cumulative_trapezoid
-
-    form, time = form.canonical_form(), recording.time
-    if not 0 < window <= time[-1] - time[0] + 1e-9:
-        raise ValueError(f"the window is {window} s; it must be positive and at most {time[-1] - time[0]:.4g} s")
-    gathered = cumulative_trapezoid(_information(form, recording, motion or recording.motion), time, axis=0, initial=0)
-    ends = time[time >= time[0] + window - 1e-9]
-    begins = np.maximum(ends - window, time[0])
-    flat = gathered.reshape(len(time), -1)
-    at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in flat.T], axis=-1)
-    size = len(form.x2)
-    return Excitation(ends, np.linalg.eigvalsh(at.reshape(-1, size, size))[:, 0], window)
-
-
-def _information(form: CanonicalForm, recording: Recording, motion: Motion) -> Array:
-    """The matrix w w^T at the samples, shape (K, n2, n2)."""
-    source = recording.outputs if recording.truth is None else recording.truth
-    columns = [source[:, recording.names.index(name)] for name in form.measured]
-    seen = [np.isfinite(column) for column in columns]
-    time = recording.time
-    outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]
-    known = motion.known(recording.time)
-    surface = [recording.view.values[s] for s in recording.view.parameters]
-    entries = vectorised((*form.x1, *form.parameters), list(form.w))(*outputs, *known.T, *surface)
-    w = np.stack(entries, axis=-1).reshape(len(recording.time), *form.w.shape)
-    return w @ np.swapaxes(w, 1, 2)

@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.observability.pointwise import instantaneous, windowed
+from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import identifier_based
 from percept_obs.observers.parts import M, gamma
 from percept_obs.papers.base import (
@@ -145,7 +145,7 @@ def excitation(printed: Printed) -> Finding:
 def not_at_every_instant(printed: Printed) -> Finding:
     """Through the focus of expansion the printed bound fails at an instant, and every window is excited."""
     (line,) = printed
-    if not vanishes(line.lhs - instantaneous(BOTH).measure):
+    if not vanishes(line.lhs - instantaneous(BOTH).determinant):
         return judged(False)
     recording = through_the_foe()
     evaluate = vectorised(BOTH.x1, [line.lhs], recording.motion.values)
@@ -200,7 +200,7 @@ def an_instant_suffices(form: CanonicalForm) -> Check:
     def check(printed: Printed) -> Finding:
         line, positive = printed
         observability = instantaneous(form)
-        gap = explicit(line.lhs, {w: form.w}) - line.rhs - (observability.measure - epsilon)
+        gap = explicit(line.lhs, {w: form.w}) - line.rhs - (observability.determinant - epsilon)
         if not (isinstance(line, sp.StrictGreaterThan) and vanishes(gap) and positive.doit() == sp.true):
             return judged(False)
         numbers = {"rank of w w^T": observability.rank, "its size": len(form.x2)}
@@ -214,7 +214,10 @@ def smallest_of_rank_one(printed: Printed) -> Finding:
     both, first = printed
     entries = dict(zip((abar, bbar), FIRST.w, strict=True))
     (matrix,) = first.lhs.args
-    right = (*(explicit(matrix, entries) - instantaneous(FIRST).information), both.lhs - instantaneous(BOTH).measure)
+    right = (
+        *(explicit(matrix, entries) - instantaneous(FIRST).information),
+        both.lhs - instantaneous(BOTH).determinant,
+    )
     if not all(map(vanishes, right)):
         return judged(False)
     smallest = explicit(first.lhs, entries)
@@ -224,7 +227,7 @@ def smallest_of_rank_one(printed: Printed) -> Finding:
 def larger_of_rank_one(printed: Printed) -> Finding:
     """(20): the second sum is the larger eigenvalue; it is 2 where a direction is never seen."""
     both, first = printed
-    right = (first.lhs - instantaneous(FIRST).information.trace(), both.lhs - instantaneous(BOTH).measure)
+    right = (first.lhs - instantaneous(FIRST).information.trace(), both.lhs - instantaneous(BOTH).determinant)
     if not all(map(vanishes, right)):
         return judged(False)
     values = exactly(one_direction_seen().recording.motion.values)

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.observer.texts import observer_of
-from percept_obs.observability.pointwise import windowed
+from percept_obs.observability import windowed
 from percept_obs.observers.parts import hats
 from percept_obs.recording import Recording
 from percept_obs.studies.consistency import check_consistency

@@ -1,0 +1,76 @@
+"""Curves over time: estimates, errors with their root mean square, and the bands that an observer claims."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.lib.stride_tricks import sliding_window_view
+
+from percept_obs.figures.base import Array
+from percept_obs.figures.look import GREY
+from percept_obs.studies.consistency import claimed_interval
+from percept_obs.tracking.run import Run
+
+SMOOTHING = 160
+"""Noisy errors are averaged over the duration divided by this."""
+
+CLAIM = r"$\pm 2\sigma$ claimed"
+"""Name of the band that an observer's covariance claims."""
+
+
+def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+    """Curves with sparse markers, none of which lies on another."""
+    step = max(1, len(time) // 8)
+    for number, (curve, name, look) in enumerate(zip(curves, labels, looks, strict=True)):
+        every = (step * number // len(curves), step)
+        ax.plot(time, curve, label=name, linewidth=1.5, markersize=5, markevery=every, **look)
+    ax.set_xlim(time[0], time[-1])
+
+
+def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+    """Every error faintly, and over it the root mean square of its neighbourhood."""
+    width = 2 * (len(time) // (2 * SMOOTHING)) + 1
+    if width > 1:
+        for error, look in zip(errors, looks, strict=True):
+            ax.plot(time, error, color=look["color"], linewidth=0.5, alpha=0.25)
+        errors = np.array([_root_mean_square(error, width) for error in errors])
+        note = f"bold: root mean square over {(time[-1] - time[0]) * width / len(time):.1g} s"
+        ax.set_title(note, loc="right", fontsize="small", color=GREY)
+    draw(ax, time, errors, labels, looks)
+
+
+def _root_mean_square(values: Array, width: int) -> Array:
+    """Of the finite values in a window around each; NaN where the value itself is."""
+    windows = sliding_window_view(np.pad(values, width // 2, constant_values=np.nan), width)
+    largest = np.fmax(np.fmax.reduce(windows, axis=1), np.finfo(float).tiny)
+    parts = np.nan_to_num(windows / largest[:, None]) ** 2
+    count = np.maximum(np.isfinite(windows).sum(axis=1), 1)
+    return np.where(np.isnan(values), np.nan, largest * np.sqrt(parts.sum(axis=1) / count))
+
+
+def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
+    """Draw the interval that the observer claims for a coordinate, and say it; nothing if it claims none."""
+    if run.observer.covariance is None:
+        return ""
+    low, high = (end[:, column] for end in claimed_interval(run))
+    return draw_claim(ax, run, low, high, None if run.recording.truth is None else run.truth[:, column], colour)
+
+
+def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
+    """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
+    reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
+    named = CLAIM in ax.get_legend_handles_labels()[1]
+    name = "_claim" if named else CLAIM
+    ax.fill_between(run.time, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
+    claimed = ~np.isnan(low)
+    if not claimed.any():
+        return ""
+    last = np.flatnonzero(claimed)[-1]
+    told = f"The band of two claimed standard deviations is from {low[last]:.3g} to {high[last]:.3g} at the end"
+    if truth is None:
+        return f"{told}."
+    held = np.mean((low <= truth) & (truth <= high))
+    return f"{told} and holds the truth in {100 * held:.0f} % of the samples."
