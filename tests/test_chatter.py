@@ -26,6 +26,7 @@ def order(table, name):
     return np.polyfit(np.log(table["step"]), np.log(table[name]), 1)[0]
 
 
+@pytest.mark.slow
 def test_chatter_of_dixons_observer_at_the_stated_steps():
     table = chatter(record(EQ35, 10), range_identification(BOTH, switch="sign"), [1e-2, 1e-3, 1e-4], ZERO, after=5)
     np.testing.assert_allclose(table["y3"], [0.114, 0.030, 0.0076], rtol=0.02)
@@ -59,6 +60,7 @@ def test_chatter_is_proportional_to_the_switching_gain():
     assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2, rel=0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("make", [range_identification, sliding_mode], ids=["Dixon", "sliding mode"])
 def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make, method):

@@ -77,6 +77,7 @@ def test_python_and_numba_agree_without_a_canonical_form():
     np.testing.assert_allclose(compiled.state, python.state, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_javascript_agrees_without_a_canonical_form(monkeypatch, node):
     handed = table_of(monkeypatch, record(SPHERE, 5, NOISY, seed=3), WITHOUT_FORM, start=ZERO)

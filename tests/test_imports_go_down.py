@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -31,6 +32,7 @@ WIDGETS = {"anywidget", "ipywidgets"}
 CODE = {"lambdify", "printing", "codegen", "autowrap", "pycode", "jscode", "ccode", "fcode"}
 
 
+@cache
 def modules(package):
     """Every module of a package folder: dotted name inside the package -> path; a folder has its own name."""
     return {
@@ -39,11 +41,16 @@ def modules(package):
     }
 
 
+@cache
+def tree_of(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imports(package, module):
     """What a module imports, as absolute dotted names: `from a.b import c` gives a.b.c."""
     path = modules(package)[module]
     here = [package.name, *path.relative_to(package).parent.parts]
-    for statement in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for statement in ast.walk(tree_of(path)):
         if isinstance(statement, ast.Import):
             yield from (alias.name for alias in statement.names)
         elif isinstance(statement, ast.ImportFrom):
@@ -64,7 +71,7 @@ def imports_inside(package, module):
 
 def sympy_names(path):
     """Every dotted name under sympy that a file imports or reaches through an imported sympy."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = tree_of(path)
     aliases = {}
     for statement in ast.walk(tree):
         if isinstance(statement, ast.Import):

@@ -180,6 +180,7 @@ def _rigid(motion):
     return motion.A, motion.b, motion.parameters
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "words"),
     [

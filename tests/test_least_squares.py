@@ -50,6 +50,7 @@ def test_lost_samples_are_left_out():
     np.testing.assert_allclose(found.points[found.time > 1], recording.points[found.time > 1], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_longer_window_averages_noise():
     recording = record(scenarios.ma2005_eq35(), 10, NOISY, seed=1)
     errors = [

@@ -33,6 +33,7 @@ def test_the_gain_has_no_division(points):
     assert all(sp.cancel(entry) == 0 for entry in rest)
 
 
+@pytest.mark.slow
 def test_one_point_and_constant_coefficients_give_the_earlier_observer():
     """p = 1, A, v and P constant: xhat' = A xhat + v + P^-1 C^T B^T (xi3 y - xi12), and (15) is A^T P + P A <= 0."""
     observer = luenberger(generic(1, 3))

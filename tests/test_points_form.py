@@ -65,6 +65,7 @@ def test_curved_surfaces_are_refused():
         PointsForm(linear(np.eye(3), np.ones(3)), np.eye(3), sphere())
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(sorted(SURFACES)))
 def test_numbers_are_those_of_the_symbols(seed, name):

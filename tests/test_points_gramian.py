@@ -59,6 +59,7 @@ def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
     assert (np.diff([bound.feedback.max() for bound in bounds]) < 0).all()
 
 
+@pytest.mark.slow
 def test_the_bound_holds_window_by_window():
     whole, window = recording(1, 60.0, 0.05), 4.0
     run = track(whole, luenberger(whole.view, 1.0), whole.truth[0] - START_ERROR[:3], hold="exact", step=0.05)

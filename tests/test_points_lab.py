@@ -100,6 +100,7 @@ def assert_same_gramian(answer, settings, recording):
         assert said == found.verdict()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("points", [1, 3, MOST_POINTS])
 def test_the_layouts_are_those_of_the_form(lab, state, points):
@@ -175,6 +176,7 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
     assert lab.settings == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
@@ -196,6 +198,7 @@ def test_the_analysis_says_what_python_found(settings, words):
     assert (lab.analysis["bound"] is not None) == ("guarantees that errors decay" in text)
 
 
+@pytest.mark.slow
 def test_what_is_guaranteed_lies_below_what_is_measured(lab):
     lab.summary = {"serial": 1}
     assert 0 < lab.analysis["bound"] < lab.run().decay_rate(10, 30)

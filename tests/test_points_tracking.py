@@ -107,6 +107,7 @@ def test_numba_is_taken_where_it_pays(monkeypatch):
     assert kernel.choose(None, 1e9) == "python"
 
 
+@pytest.mark.slow
 def test_independent_points_are_followed_as_if_alone():
     """One state of three points, and each of them by itself: the same estimates, whether P is diagonal or computed."""
     whole = turning(3).without(1, 2, 1)
@@ -145,6 +146,7 @@ def test_without_any_image_the_error_moves_with_the_state():
     np.testing.assert_allclose(run.deviation, np.linalg.norm(ERROR[:3]), rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_lost_samples_hardly_matter():
     for seed in range(3):
         whole = turning(2, 10.0, camera=Camera(0.02, Gaussian(1e-3), dropout=0.3), seed=seed)
