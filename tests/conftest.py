@@ -1,5 +1,6 @@
 """What tests share: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
 
+import math
 import os
 import shutil
 from pathlib import Path
@@ -7,6 +8,8 @@ from pathlib import Path
 import hypothesis
 import matplotlib
 import pytest
+
+from percept_obs.points import kernel as points_kernel
 
 matplotlib.use("Agg")
 
@@ -31,6 +34,14 @@ def node():
         "Node.js is missing. Debian: sudo apt-get install nodejs. macOS: brew install node. "
         "Windows: winget install OpenJS.NodeJS."
     )
+
+
+@pytest.fixture(scope="module")
+def always_compiled():
+    """Many short runs of many points, which pay for compiling their loop together."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(points_kernel, "STATE_WORK", math.inf)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -12,9 +12,12 @@ from scipy.integrate import solve_ivp
 
 import percept_obs.tracking.following as tracking
 from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
-from percept_obs.compile import NotCompilable, Table, kernels, solve, source
+from percept_obs.compile import NotCompilable, Table, integrator, kernels, solve, source
 from percept_obs.compile.equations import Equations
+from percept_obs.compile.integrator import EACH
+from percept_obs.labs.printing import INTEGRATOR
 from percept_obs.observers import OBSERVERS, linear_approximation
+from percept_obs.points import kernel as points_kernel
 
 x, y, u, k, c = sp.symbols("x y u k c", real=True)
 FORMS = {"y1": ONE, "y1+y2": BOTH}
@@ -51,7 +54,7 @@ def table_of(monkeypatch, recording, observer, **settings):
 def steps(count, length=0.1, measured=0, parameters=0):
     return Table(
         np.full(count, length),
-        np.zeros((count, 3, measured)),
+        np.zeros((count, EACH + 1, measured)),
         np.zeros((1, parameters)),
         np.full((count + 1, measured), np.nan),
     )
@@ -110,7 +113,7 @@ def test_resets_updates_and_functions_agree_in_javascript(node):
     equations = Equations((x,), flow, (u,), (k,), (c,), ((x + c * (u - x),),), condition, (x / 2,))
     samples = np.full((41, 1), np.nan)
     samples[::7] = 1.5
-    table = Table(np.full(40, 0.05), np.ones((40, 3, 1)), np.linspace(0, 1, 81)[:, None], samples)
+    table = Table(np.full(40, 0.05), np.ones((40, EACH + 1, 1)), np.linspace(0, 1, 40 * EACH + 1)[:, None], samples)
     python, compiled = both_languages(equations, [1.0], table, [0.3])
     there = solve_in_node(node, equations, [1.0], table, [0.3])
     assert python.resets.any()
@@ -122,7 +125,7 @@ def test_resets_updates_and_functions_agree_in_javascript(node):
 def test_the_loop_is_the_classical_runge_kutta_method():
     equations = Equations((x, y), (y, -x - k * y), (), (k,), ())
     table = steps(50, 0.02, parameters=1)
-    varying = Table(table.steps, table.measured, np.linspace(0.1, 0.5, 101)[:, None], table.samples)
+    varying = Table(table.steps, table.measured, np.linspace(0.1, 0.5, 50 * EACH + 1)[:, None], table.samples)
     trace = solve(equations, [1.0, 0.0], varying, (), "python")
     reference = solve_ivp(
         lambda t, s: [s[1], -s[0] - (0.1 + 0.4 * t) * s[1]], (0, 1), [1, 0], rtol=1e-12, atol=1e-13
@@ -143,32 +146,60 @@ def test_numbers_compile_nothing(monkeypatch):
     recordings = [record(scenarios.ma2005_eq35(), 1, Camera(noise=Uniform(n)), seed=1) for n in (0.0, 0.02)]
     observer = ibo(ONE)
     track(recordings[0], observer, ZERO)
-    before = kernels._kernel.cache_info().misses, source.cache_info().misses
+    before = kernels._python.cache_info().misses, source.cache_info().misses
     monkeypatch.setattr(builtins, "exec", None)
     other = scenarios.ma2005_eq36()
     for recording in (*recordings, record(other, 1)):
         for gain in (3, 20):
             track(recording, observer.with_gains(gain=gain, noise_variance=1e-4), ZERO, believed=other.motion)
-    assert (kernels._kernel.cache_info().misses, source.cache_info().misses) == before
+    assert (kernels._python.cache_info().misses, source.cache_info().misses) == before
 
 
-def test_numba_takes_over_once_compiling_has_paid(monkeypatch):
-    monkeypatch.setattr(kernels, "WORTH_COMPILING", 1000)
-    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,)))
-    assert kernel.choose(None, 600) is kernel.python
-    assert kernel.choose(None, 600) is kernel.compiled
-    assert kernel.choose("python", 600) is kernel.python
-
-
-def test_what_was_compiled_on_request_is_used_from_then_on():
-    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 8),), (), (k,)))
-    assert kernel.choose("numba", 1) is kernel.choose(None, 1) is kernel.compiled
-
-
-def test_without_numba_python_runs(monkeypatch):
+def test_the_call_alone_says_in_which_language_it_runs(monkeypatch):
+    many = kernels.WORTH_COMPILING
+    for steps, asked, expected in (
+        (many - 1, None, "python"),
+        (many, None, "numba"),
+        (many, "python", "python"),
+        (1, "numba", "numba"),
+    ):
+        assert kernels.choose(asked, steps) == expected
+    assert points_kernel.choose(None, many / points_kernel.STATE_WORK) == "numba"
+    assert points_kernel.choose(None, 1) == "python"
     monkeypatch.setattr(kernels, "find_spec", lambda name: None)
-    kernel = kernels._kernel(Equations((x,), (-k * x + sp.Rational(1, 9),), (), (k,)))
-    assert kernel.choose(None, kernels.WORTH_COMPILING) is kernel.python
+    assert kernels.choose(None, many) == "python"
+
+
+def test_a_run_is_made_in_the_language_that_was_chosen(monkeypatch):
+    made = []
+    monkeypatch.setattr(kernels, "_compiled", lambda equations: lambda *given: made.append(equations) or -1)
+    equations = Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,))
+    for count in (10, kernels.WORTH_COMPILING):
+        solve(equations, [1.0], steps(count, parameters=1))
+    assert made == [equations]
+
+
+def test_the_page_steps_by_the_same_method():
+    there = INTEGRATOR.read_text(encoding="utf-8")
+    assert there == integrator.for_the_page(), "run python -m percept_obs.labs.printing and build the page"
+
+
+def test_the_classical_method_is_of_fourth_order():
+    """Butcher's conditions: eight sums over trees."""
+    A, b, _ = integrator.numbers()
+    c = A.sum(axis=1)
+    sums = {
+        1: [b.sum()],
+        2: [b @ c],
+        3: [b @ c**2],
+        6: [b @ A @ c],
+        4: [b @ c**3],
+        8: [b @ (c * (A @ c))],
+        12: [b @ A @ c**2],
+        24: [b @ A @ A @ c],
+    }
+    for parts, found in sums.items():
+        np.testing.assert_allclose(found, 1 / parts, rtol=1e-14)
 
 
 def test_an_unknown_language_is_refused():
@@ -213,7 +244,7 @@ def test_names_that_are_words_of_a_language_do_not_matter():
     names = sp.symbols("lambda function h k", real=True)
     equations = Equations(names[:2], (names[1], -names[0] * names[2]), (), names[2:])
     trace = solve(
-        equations, [1.0, 0.0], Table(np.full(9, 0.1), np.zeros((9, 3, 0)), np.ones((1, 2)), np.zeros((10, 0)))
+        equations, [1.0, 0.0], Table(np.full(9, 0.1), np.zeros((9, EACH + 1, 0)), np.ones((1, 2)), np.zeros((10, 0)))
     )
     np.testing.assert_allclose(trace.states[-1, 0], np.cos(0.9), atol=1e-5)
 

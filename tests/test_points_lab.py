@@ -12,13 +12,11 @@ from percept_obs.labs.points.lab import points_lab, recording_of, run_of
 from percept_obs.labs.points.settings import PICTURES
 from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
 from percept_obs.observability.gramian import gramian
-from percept_obs.points import kernel
 from percept_obs.points.manoeuvre import Manoeuvre
 
 
 @pytest.fixture(scope="module")
-def lab():
-    kernel.compiled()  # once for all, for many short runs
+def lab(always_compiled):
     return points_lab()
 
 

@@ -9,15 +9,13 @@ from lab_settings import FRONT
 
 from percept_obs.labs.points.lab import points_lab, recording_of, run_of
 from percept_obs.observability.gramian import gramian, linear_gramian
-from percept_obs.points import kernel
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")
-def acts(node):
+def acts(node, always_compiled):
     """The settings of every act, as Python accepts them."""
-    kernel.compiled()
     lab = points_lab()
     task = json.dumps(lab.model["standard"])
     script = FRONT / "tests/points_presets.js"

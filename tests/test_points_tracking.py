@@ -1,7 +1,7 @@
 """A run of many points obeys the error dynamics, bears with points that come and go, and says what went wrong."""
 
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ from percept_obs import (
     rigid,
     track,
 )
-from percept_obs.points import constant, independent_points, kernel, lyapunov, riccati, rigid_body, scheduled
+from percept_obs.points import constant, independent_points, lyapunov, riccati, rigid_body, scheduled
 from percept_obs.points.scenarios import moving_body
 from percept_obs.points.simulation import LeavesEveryBound
 from percept_obs.studies.comparison import relative_distance_errors
@@ -93,18 +93,6 @@ def test_python_and_numba_agree(name, hold):
     ]
     np.testing.assert_allclose(runs[0].state, runs[1].state, atol=1e-9)
     np.testing.assert_allclose(runs[0].P, runs[1].P, atol=1e-9)
-
-
-def test_numba_is_taken_where_it_pays(monkeypatch):
-    loop = cache(lambda: None)
-    monkeypatch.setattr(kernel, "compiled", loop)
-    assert kernel.choose(None, 10) == "python"
-    assert kernel.choose(None, 1e9) == "numba"
-    assert kernel.choose("python", 1e9) == "python"
-    loop()
-    assert kernel.choose(None, 10) == "numba", "once compiled it is always faster"
-    monkeypatch.setattr(kernel, "find_spec", lambda _: None)
-    assert kernel.choose(None, 1e9) == "python"
 
 
 @pytest.mark.slow

@@ -19,7 +19,8 @@ from percept_obs import (
     rigid,
     scenarios,
 )
-from percept_obs.recording import halves, seeded, step_grid
+from percept_obs.compile.integrator import instants
+from percept_obs.recording import seeded, step_grid
 
 STILL = affine(np.zeros((3, 3)), np.zeros(3))
 TIME = np.array([0.0, 0.1, 0.3])
@@ -224,4 +225,4 @@ def test_the_grid_of_steps():
     grid, index = step_grid(np.array([0.0, 0.0, 0.1, 0.35]), 0.1)
     np.testing.assert_allclose(grid, [0, 0.1, 0.1 + 0.25 / 3, 0.1 + 0.5 / 3, 0.35])
     assert index.tolist() == [0, 0, 1, 4]
-    np.testing.assert_allclose(halves(np.array([0.0, 1.0, 3.0])), [0, 0.5, 1, 2, 3])
+    np.testing.assert_allclose(instants(np.array([0.0, 1.0, 3.0])), [0, 0.5, 1, 2, 3])

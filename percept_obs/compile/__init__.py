@@ -1,16 +1,18 @@
 """From sympy to code that runs, in Python, numba and JavaScript."""
 
-from percept_obs.compile.functions import function_source, right_hand_side, vectorised
-from percept_obs.compile.kernels import WORTH_COMPILING, Table, Trace, solve
-from percept_obs.compile.loop import LARGEST_PRODUCT, LARGEST_SQUARED_STATE, NotCompilable, source
+from percept_obs.compile.functions import executed, function_source, right_hand_side, vectorised
+from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
+from percept_obs.compile.loop import source
+from percept_obs.compile.text import NotCompilable, Printed
 
 __all__ = [
-    "LARGEST_PRODUCT",
-    "LARGEST_SQUARED_STATE",
-    "WORTH_COMPILING",
+    "Language",
     "NotCompilable",
+    "Printed",
     "Table",
     "Trace",
+    "choose",
+    "executed",
     "function_source",
     "right_hand_side",
     "solve",

@@ -1,9 +1,11 @@
-"""Expressions as functions: of arrays with numpy, of a state for scipy's solvers, of an array in JavaScript."""
+"""Expressions as functions: of arrays with numpy, of a state for scipy's solvers, of an array in every language."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile.equations import Equations
-from percept_obs.compile.loop import Text, refuse_what_differs
+from percept_obs.compile.text import Printed, Text, refuse_what_differs
 
 Array = NDArray[np.float64]
 
@@ -51,14 +53,17 @@ def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> 
 
 
 @lru_cache(maxsize=512)
-def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> str:
-    """Text of a JavaScript function ``evaluate(x, out)`` that fills an array with the expressions' values.
+def function_source(
+    symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...], language: Printed = "javascript"
+) -> str:
+    """Text of a function ``evaluate(x, out)`` that fills an array with the expressions' values and returns it.
 
     Parameters
     ----------
     symbols : tuple of symbols
         In the order of the argument array x.
     expressions : tuple of expressions
+    language : "javascript" or "python"
 
     Returns
     -------
@@ -69,7 +74,7 @@ def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, 
     NotCompilable
         If an expression would not mean the same in Python and JavaScript.
     """
-    text = Text("javascript")
+    text = Text(language)
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
     with text.function("evaluate", ["x", "out"]):
         for k, name in enumerate(names.values()):
@@ -81,3 +86,11 @@ def function_source(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, 
             text.store(f"out[{k}]", f"d{k}")
         text.leave("out")
     return str(text)
+
+
+def executed(text: str) -> Callable[..., Any]:
+    """The Python function that a text defines."""
+    namespace: dict[str, Any] = {"math": math}
+    exec(compile(text, "<printed>", "exec"), namespace)
+    (function,) = (value for value in namespace.values() if isinstance(value, FunctionType))
+    return function

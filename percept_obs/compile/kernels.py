@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from importlib.util import find_spec
 from typing import Any, Literal
 
@@ -13,26 +13,51 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile.equations import Equations
+from percept_obs.compile.functions import executed
 from percept_obs.compile.loop import source
 
 Array = NDArray[np.float64]
+Language = Literal["python", "numba"]
 
 WORTH_COMPILING = 200_000
 """Steps that take Python about as long as numba takes to compile them and run them."""
 
 
+def choose(language: Language | None, steps: float) -> Language:
+    """The language to run a loop in: numba, if it is installed, for so many steps that they pay for its compiling.
+
+    It depends on nothing but the call, so that a run never changes with what ran before it.  Who is to run the same
+    observer often adds up the steps of all runs, or asks for numba.
+
+    Parameters
+    ----------
+    language : "python" or "numba", optional
+        What is asked for.
+    steps : float
+        What is to be run, in steps of a point's observer.
+
+    Raises
+    ------
+    ValueError
+        If the language is another one.
+    """
+    if language not in (None, "python", "numba"):
+        raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
+    return language or ("numba" if steps >= WORTH_COMPILING and find_spec("numba") else "python")
+
+
 @dataclass(frozen=True)
 class Table:
-    """What is known at the start, the middle and the end of every step.
+    """What is known at the instants of every step: its start, its end, and what the method looks at between.
 
     Parameters
     ----------
     steps : array of shape (N,)
         Lengths of the steps in seconds.
-    measured : array of shape (N, 3, m)
-        Measured outputs as they are held at the start, the middle and the end of each step.
-    parameters : array of shape (2 N + 1, p), or (1, p) when constant
-        Known motion and surface at the starts, middles and ends.
+    measured : array of shape (N, EACH + 1, m)
+        Measured outputs as they are held at the instants of each step.
+    parameters : array of shape (N EACH + 1, p), or (1, p) when constant
+        Known motion and surface at the instants of all steps.
     samples : array of shape (N + 1, m)
         New samples at the steps' ends (and the first start); NaN where there is none.
     """
@@ -67,7 +92,7 @@ def solve(
     start: ArrayLike,
     table: Table,
     gains: ArrayLike = (),
-    language: Literal["python", "numba"] | None = None,
+    language: Language | None = None,
 ) -> Trace:
     """Step the equations through the table.
 
@@ -78,8 +103,7 @@ def solve(
     table : Table
     gains : array of shape (number of gains,)
     language : "python" or "numba", optional
-        Left out, Python until these equations have been asked for so many steps that compiling them would have paid,
-        and from then on numba, if it is installed.
+        Left out, numba where it is installed and the steps pay for its compiling, as `choose` says.
 
     Returns
     -------
@@ -90,24 +114,22 @@ def solve(
     ModuleNotFoundError
         If numba is asked for and is not installed.
     """
-    kernel = _kernel(equations)
     size, count = len(equations.state), len(table.steps) + 1
     inputs = [
         np.array(block, dtype=float).ravel()
         for block in (start, table.steps, table.measured, table.parameters, table.samples, gains)
     ]
     varying = len(table.parameters) > 1
-    run = kernel.choose(language, len(table.steps))
-    if run is kernel.python:
+    if choose(language, len(table.steps)) == "python":
         states: Any = [math.nan] * (size * count)
         resets: Any = [0.0] * count
         try:
-            diverged = run(*(block.tolist() for block in inputs), varying, states, resets)
+            diverged = _python(equations)(*(block.tolist() for block in inputs), varying, states, resets)
         except (ArithmeticError, ValueError):
             diverged = next(k for k in range(count) if math.isnan(states[size * k]))
     else:
         states, resets = np.full(size * count, np.nan), np.zeros(count)
-        diverged = run(*inputs, varying, states, resets)
+        diverged = _compiled(equations)(*inputs, varying, states, resets)
     return Trace(
         np.array(states).reshape(count, size),
         np.array(resets) != 0,
@@ -115,36 +137,17 @@ def solve(
     )
 
 
-class _Kernel:
-    """The same text for Python and, when it is there, numba."""
-
-    def __init__(self, equations: Equations) -> None:
-        self.text = source(equations, "python")
-        namespace: dict[str, Any] = {"math": math}
-        exec(compile(self.text, "<run>", "exec"), namespace)
-        self.python: Callable[..., int] = namespace["run"]
-        self.asked = 0
-
-    def choose(self, language: str | None, steps: int) -> Callable[..., int]:
-        if language not in (None, "python", "numba"):
-            raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
-        self.asked += steps
-        pays = self.asked >= WORTH_COMPILING or "compiled" in self.__dict__
-        if language == "numba" or (language is None and pays and find_spec("numba")):
-            return self.compiled
-        return self.python
-
-    # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
-    @cached_property
-    def compiled(self) -> Callable[..., int]:
-        import numba
-
-        block = numba.float64[::1]
-        signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
-        compiled: Callable[..., int] = numba.njit([signature], error_model="numpy")(self.python)
-        return compiled
-
-
 @lru_cache(maxsize=512)
-def _kernel(equations: Equations) -> _Kernel:
-    return _Kernel(equations)
+def _python(equations: Equations) -> Callable[..., int]:
+    return executed(source(equations, "python"))
+
+
+# Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
+@lru_cache(maxsize=512)
+def _compiled(equations: Equations) -> Callable[..., int]:
+    import numba
+
+    block = numba.float64[::1]
+    signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
+    compiled: Callable[..., int] = numba.njit([signature], error_model="numpy")(_python(equations))
+    return compiled

@@ -6,9 +6,10 @@ import json
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from percept_obs.compile.integrator import for_the_page
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.points import texts as points
-from percept_obs.labs.shared.printed import Parts, file_of, packed, unpacked
+from percept_obs.labs.shared.printed import FRONT, Parts, file_of, packed, unpacked
 from percept_obs.labs.structure import texts as structure
 
 LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
@@ -20,6 +21,9 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
 )
 """For each lab, what is printed for its page."""
 
+INTEGRATOR = FRONT / "src/common/model/integrator.js"
+"""The method of the loops that the page's sources write out; from them the bundle is built."""
+
 
 def changed(kind: str) -> list[str]:
     """Places at which the shipped file of a lab is not what this package prints."""
@@ -30,7 +34,9 @@ def changed(kind: str) -> list[str]:
 
 
 def main() -> None:
-    """Write the files of all labs."""
+    """Write the files of all labs, and the integrator for the page's sources where they are at hand."""
+    if INTEGRATOR.parent.exists():
+        INTEGRATOR.write_text(for_the_page(), encoding="utf-8")
     for kind, print_texts in LABS.items():
         file = file_of(kind)
         file.write_bytes(packed(print_texts()))

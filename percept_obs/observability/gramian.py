@@ -11,12 +11,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.windowed import check_window
 from percept_obs.points.conditions import conditions
 from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
-from percept_obs.recording import Recording, halves
+from percept_obs.recording import Recording
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -279,16 +280,11 @@ def true_images(recording: Recording) -> Array:
 
 
 def _transitions(form: PointsForm, time: Array) -> Array:
-    """Transition matrices from each time to the next, shape (K - 1, n, n), by the Runge-Kutta method."""
-    h = np.diff(time)[:, None, None]
-    A, _ = form.coefficients(halves(time))
-    A = np.broadcast_to(A, (2 * len(time) - 1, *A.shape[1:]))
-    unit = np.eye(form.states)
-    k1 = A[:-1:2]
-    k2 = A[1::2] @ (unit + h / 2 * k1)
-    k3 = A[1::2] @ (unit + h / 2 * k2)
-    k4 = A[2::2] @ (unit + h * k3)
-    return np.asarray(unit + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    """Transition matrices from each time to the next, shape (K - 1, n, n), by one step each."""
+    places = instants(time)
+    A, _ = form.coefficients(places)
+    A = by_step(np.broadcast_to(A, (len(places), *A.shape[1:])))
+    return step(np.eye(form.states), np.diff(time)[:, None, None], lambda instant, Phi: A[:, instant] @ Phi)
 
 
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:

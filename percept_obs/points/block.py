@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import sympy as sp
 
+from percept_obs.compile import Printed, function_source
 from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
@@ -14,7 +15,7 @@ class NotLinear(ValueError):
     """The surface's images do not become linear in the point when they are multiplied by its distance."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointBlock:
     """One point's images, freed of their division: l(xi) (y - h(xi)) = -B(y) xi.
 
@@ -41,6 +42,34 @@ class PointBlock:
     def S(self) -> sp.ImmutableMatrix:
         """What an instant tells of the point: B^T B."""
         return (self.B.T * self.B).expand()
+
+    @property
+    def xi(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of an estimate of the point."""
+        return sp.symbols("xihat1:4", real=True)
+
+    @property
+    def innovation(self) -> sp.ImmutableMatrix:
+        """The image minus the estimate's, times the estimate's distance: y l xi - N xi, without a division."""
+        xi = sp.ImmutableMatrix(self.xi)
+        return sp.ImmutableMatrix(self.y) * (self.l * xi)[0] - self.N * xi
+
+    @property
+    def correction(self) -> sp.ImmutableMatrix:
+        """What the observer makes of the innovation: B^T (y l xi - N xi), which C^T and P^-1 take to the state."""
+        return self.B.T * self.innovation
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """Symbols that shape the surface, by name."""
+        return tuple(sorted(self.N.free_symbols | self.l.free_symbols, key=lambda symbol: symbol.name))
+
+    def source(self, language: Printed) -> str:
+        """Text of a function that fills an array with the correction and S, given y, xi and the surface's parameters.
+
+        The loops over points call it, in every language.
+        """
+        return function_source((*self.y, *self.xi, *self.parameters), (*self.correction, *self.S), language)
 
     def eigenvalues(self) -> dict[sp.Expr, int]:
         """Eigenvalues of S with their multiplicities; 0 belongs to the ray."""

@@ -1,26 +1,33 @@
-"""The loop over points: one text that numpy runs as it is and numba compiles once, for any number of points."""
+"""The loop over points: one text that numpy runs as it is and numba compiles once, for any number of points.
+
+What one point tells is printed from its block; here it is spread over the states, for every point and every step.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
-from importlib.util import find_spec
-from typing import Any, Literal, NamedTuple
+from functools import cache
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.compile import Language as Language
+from percept_obs.compile import choose as choose_for_steps
+from percept_obs.compile import executed
+from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, numbers
+from percept_obs.points.block import PointBlock
 from percept_obs.points.form import PointsForm
 
 Array = NDArray[np.float64]
-Language = Literal["python", "numba"]
+Law = tuple[bool, float, float, Array]
+"""Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P + pull: these three."""
 
-LARGEST_SQUARED_STATE = 1e300
-"""A state whose squared norm exceeds this, or is not a number, has diverged."""
+COUPLING, WEIGHTS, PLACES = numbers()
 
-SMALL_WORK = 1e5
-"""Steps times states up to which Python is done before numba has compiled."""
+STATE_WORK = 8
+"""What a step costs Python for each of its states, in steps of a point's observer."""
 
 
 class Arrays(NamedTuple):
@@ -36,8 +43,9 @@ class Arrays(NamedTuple):
         Row in C_k and state of each entry of C.
     entries : array
         Entries of C.
-    N, l : arrays of shape (m, 3) and (3,)
-        One point's block.
+    shape : array
+        Numbers of the block's parameters.
+    block : PointBlock
     """
 
     rows: NDArray[np.intp]
@@ -47,8 +55,8 @@ class Arrays(NamedTuple):
     axes: NDArray[np.intp]
     states: NDArray[np.intp]
     entries: Array
-    N: Array
-    l: Array
+    shape: Array
+    block: PointBlock
 
 
 def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp]) -> Arrays:
@@ -62,12 +70,13 @@ def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp])
     blocks = form.blocks[points][:, :, states]
     owners, axes, used = np.nonzero(blocks)
     begins = np.searchsorted(owners, np.arange(len(points) + 1))
-    N, l = form.surface_numbers
-    return Arrays(rows, columns, layout.which[within], begins, axes, used, blocks[owners, axes, used], N, l)
+    shape = np.array([form.surface.values[symbol] for symbol in form.block.parameters])
+    entries = blocks[owners, axes, used]
+    return Arrays(rows, columns, layout.which[within], begins, axes, used, entries, shape, form.block)
 
 
-def combine(target, first, factor, second):  # type: ignore[no-untyped-def]
-    """Set the target to first + factor second; numba takes long to compile such a line, and each of them anew."""
+def combine(target: Array, first: Array, factor: float, second: Array) -> None:
+    """Set the target to first + factor second, a copy if that is 0; numba would compile each such line anew."""
     for i in range(len(target)):
         target[i] = first[i] + factor * second[i]
 
@@ -77,99 +86,112 @@ def combine_by_numpy(target: Array, first: Array, factor: float, second: Array) 
     target[:] = first + factor * second
 
 
-def rate(combine, solve, form, law, x, P, coefficients, y, dx, dP):  # type: ignore[no-untyped-def]
-    """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
-    rows, columns, which, begins, axes, states, entries, N, l = form
-    computed, information, forgetting, pull = law
-    n, m = len(x), len(N)
-    dx[:] = 0.0
-    for i in range(n if computed else 0):
-        combine(dP[i], pull[i], -forgetting, P[i])
-    for e in range(len(rows)):
-        i, j, a = rows[e], columns[e], coefficients[which[e]]
-        if j == n:
-            dx[i] += a
-        else:
-            dx[i] += a * x[j]
-            if computed:
-                combine(dP[:, j], dP[:, j], -a, P[i])
-                combine(dP[j], dP[j], -a, P[i])
-    correction = np.zeros(n)
-    xi, c, S = np.zeros(3), np.zeros(3), np.zeros((3, 3))
-    anything = False
-    for k in range(len(begins) - 1):
-        seen = True
-        for j in range(m):
-            seen = seen and y[k, j] == y[k, j]
-        if not seen:
-            continue
-        anything = True
-        first, last = begins[k], begins[k + 1]
-        for i in range(3):
-            xi[i] = c[i] = 0.0
-            for h in range(3):
-                S[i, h] = 0.0
-        for e in range(first, last):
-            xi[axes[e]] += entries[e] * x[states[e]]
-        distance = l[0] * xi[0] + l[1] * xi[1] + l[2] * xi[2]
-        for j in range(m):
-            innovation = y[k, j] * distance - N[j, 0] * xi[0] - N[j, 1] * xi[1] - N[j, 2] * xi[2]
-            for i in range(3):
-                b = N[j, i] - y[k, j] * l[i]
-                c[i] += b * innovation
-                for h in range(3 if computed else 0):
-                    S[i, h] += b * (N[j, h] - y[k, j] * l[h])
-        for e in range(first, last):
-            correction[states[e]] += entries[e] * c[axes[e]]
-            if computed:
-                for f in range(first, last):
-                    dP[states[e], states[f]] += information * entries[e] * entries[f] * S[axes[e], axes[f]]
-    if anything and computed:
-        combine(dx, dx, 1.0, solve(P, correction))
-    elif anything:
-        for i in range(n):
-            combine(dx, dx, correction[i], P[i])
+def loop(compiled: Callable[[Any], Any], combine: Any, solve: Any, point: Any) -> Callable[..., tuple[int, Array]]:
+    """The loop over points and steps, of these parts."""
 
+    @compiled
+    def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
+        """Set the target to the start, moved along the rates of stages for shares of a length, if there are any."""
+        for j in range(len(shares)):
+            if shares[j] != 0.0:
+                combine(target, start, length * shares[j], rates[j])
+                start = target
 
-def run(rate, combine, solve, form, law, x, P, steps, coefficients, inverses, outputs, path):  # type: ignore[no-untyped-def]
-    """Step the estimate, and P where it is computed, by the classical Runge-Kutta method.
-
-    The blocks `coefficients` and `inverses` have a row for each start, middle and end of a step, or one row if
-    constant; `outputs` has three rows a step.  The estimates go to `path`.  Returns the first row of `path` at which
-    the estimate was no longer finite, or -1, and the last P.
-    """
-    computed, n = law[0], len(x)
-    x_stage, dx = x.copy(), np.zeros(n)
-    P_stage, dP = P.copy(), np.zeros(P.shape)
-    path[0] = x
-    for k in range(len(steps)):
-        x_sum, P_sum = x.copy(), P.copy()
-        for stage in range(4):
-            place = (stage + 1) // 2
-            row, share = 2 * k + place, 0.5 * steps[k] * place
-            if computed:
-                for i in range(n):
-                    combine(P_stage[i], P[i], share, dP[i])
+    @compiled
+    def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array, dx: Array, dP: Array) -> None:
+        """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
+        rows, columns, which, begins, axes, states, entries, shape = form
+        computed, information, forgetting, pull = law
+        n, m = len(x), y.shape[1]
+        dx[:] = 0.0
+        for i in range(n if computed else 0):
+            combine(dP[i], pull[i], -forgetting, P[i])
+        for e in range(len(rows)):
+            i, j, a = rows[e], columns[e], coefficients[which[e]]
+            if j == n:
+                dx[i] += a
             else:
-                P_stage = inverses[row if len(inverses) > 1 else 0]
-            combine(x_stage, x, share, dx)
-            known = coefficients[row if len(coefficients) > 1 else 0]
-            rate(combine, solve, form, law, x_stage, P_stage, known, outputs[k, place], dx, dP)
-            weight = steps[k] / (6.0 if stage % 3 == 0 else 3.0)
-            combine(x_sum, x_sum, weight, dx)
-            for i in range(n if computed else 0):
-                combine(P_sum[i], P_sum[i], weight, dP[i])
-        x, P = x_sum, P_sum
-        path[k + 1] = x
-        squared = 0.0
-        for i in range(n):
-            squared += x[i] * x[i]
-        if not squared <= LARGEST_SQUARED_STATE:
-            return k + 1, P
-    return -1, P
+                dx[i] += a * x[j]
+                if computed:
+                    combine(dP[:, j], dP[:, j], -a, P[i])
+                    combine(dP[j], dP[j], -a, P[i])
+        correction, anything = np.zeros(n), False
+        given, told = np.zeros(m + 3 + len(shape)), np.zeros(12)
+        for j in range(len(shape)):
+            given[m + 3 + j] = shape[j]
+        for k in range(len(begins) - 1):
+            seen = True
+            for j in range(m):
+                given[j] = y[k, j]
+                seen = seen and y[k, j] == y[k, j]
+            if not seen:
+                continue
+            anything = True
+            given[m : m + 3] = 0.0
+            for e in range(begins[k], begins[k + 1]):
+                given[m + axes[e]] += entries[e] * x[states[e]]
+            point(given, told)
+            for e in range(begins[k], begins[k + 1]):
+                correction[states[e]] += entries[e] * told[axes[e]]
+                for f in range(begins[k], begins[k + 1] if computed else 0):
+                    S = told[3 + 3 * axes[e] + axes[f]]
+                    dP[states[e], states[f]] += information * entries[e] * entries[f] * S
+        if anything and computed:
+            combine(dx, dx, 1.0, solve(P, correction))
+        elif anything:
+            for i in range(n):
+                combine(dx, dx, correction[i], P[i])
+
+    @compiled
+    def run(
+        form: Any,
+        law: Law,
+        x: Array,
+        P: Array,
+        steps: Array,
+        coefficients: Array,
+        inverses: Array,
+        outputs: Array,
+        path: Array,
+    ) -> tuple[int, Array]:
+        """Step the estimate, and P where it is computed, by the Runge-Kutta method.
+
+        The blocks `coefficients` and `inverses` have a row for each instant of a step, or one row if constant;
+        `outputs` has one for each instant of each step.  The estimates go to `path`.  Returns the first row of `path`
+        at which the estimate was no longer finite, or -1, and the last P.
+        """
+        n = len(x)
+        size = n if law[0] else 0
+        now, stage = np.zeros(n + size * size), np.zeros(n + size * size)
+        rates = [np.zeros(len(now)) for _ in WEIGHTS]
+        x_stage, P_stage = stage[:n], stage[n:].reshape(size, size)
+        dx, dP = [along[:n] for along in rates], [along[n:].reshape(size, size) for along in rates]
+        combine(now[:n], x, 0.0, x)
+        for i in range(size):
+            combine(now[n + i * size : n + (i + 1) * size], P[i], 0.0, P[i])
+        combine(path[0], x, 0.0, x)
+        for k in range(len(steps)):
+            combine(stage, now, 0.0, now)
+            for i in range(len(WEIGHTS)):
+                row = EACH * k + PLACES[i]
+                known = coefficients[row if len(coefficients) > 1 else 0]
+                move(stage, now, steps[k], COUPLING[i], rates)
+                if not size:
+                    P_stage = inverses[row if len(inverses) > 1 else 0]
+                rate(form, law, x_stage, P_stage, known, outputs[k, PLACES[i]], dx[i], dP[i])
+            move(now, now, steps[k], WEIGHTS, rates)
+            combine(path[k + 1], now[:n], 0.0, now[:n])
+            squared = 0.0
+            for i in range(n):
+                squared += now[i] * now[i]
+            if not squared < LARGEST_SQUARED_STATE:
+                return k + 1, now[n:].reshape(size, size) if size else P
+        return -1, now[n:].reshape(size, size) if size else P
+
+    return run
 
 
-def solve_by_loops(P, right):  # type: ignore[no-untyped-def]
+def solve_by_loops(P: Array, right: Array) -> Array:
     """Solve P x = right by Cholesky's method; NaN where P is not positive definite.
 
     LAPACK's takes numba twice as long to compile as all the rest.
@@ -206,46 +228,35 @@ def solve_by_numpy(P: Array, right: Array) -> Array:
 
 
 @cache
-def compiled() -> Callable[..., tuple[int, Array]]:
-    """The loop in machine code."""
+def _python(block: PointBlock) -> Callable[..., tuple[int, Array]]:
+    """The loop for points on one kind of surface, in Python."""
+    return loop(lambda text: text, combine_by_numpy, solve_by_numpy, executed(block.source("python")))
+
+
+@cache
+def _compiled(block: PointBlock) -> Callable[..., tuple[int, Array]]:
+    """The same in machine code."""
     import numba
 
-    *parts, loop = (numba.njit(error_model="numpy")(text) for text in (rate, combine, solve_by_loops, run))
+    compiled: Any = numba.njit(error_model="numpy")
+    parts = (combine, solve_by_loops, executed(block.source("python")))
+    run: Any = loop(compiled, *map(compiled, parts))
     line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
     shelf = numba.float64[:, :, :, ::1]
-    form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, sheet, line))
+    form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, line))
     law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
-    loop.compile((*map(numba.typeof, parts), form, law, line, sheet, line, sheet, book, shelf, sheet))
-    return partial(loop, *parts)
+    run.compile((form, law, line, sheet, line, sheet, book, shelf, sheet))
+    return cast(Callable[..., tuple[int, Array]], run)
 
 
 def choose(language: Language | None, work: float) -> Language:
-    """The language to run in: numba if it is installed, unless the work is small and it has not compiled yet.
-
-    Parameters
-    ----------
-    language : "python" or "numba", optional
-        What is asked for.
-    work : float
-        Steps times states.
-
-    Raises
-    ------
-    ValueError
-        If the language is another one.
-    """
-    if language not in (None, "python", "numba"):
-        raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
-    if language is not None:
-        return language
-    if not find_spec("numba"):
-        return "python"
-    return "numba" if work > SMALL_WORK or compiled.cache_info().currsize else "python"
+    """The language to run in, for a number of steps times states; see `percept_obs.compile.choose`."""
+    return choose_for_steps(language, STATE_WORK * work)
 
 
 def advance(
     form: Arrays,
-    law: tuple[bool, float, float, Array],
+    law: Law,
     start: Array,
     P: Array,
     steps: Array,
@@ -260,18 +271,17 @@ def advance(
     ----------
     form : Arrays
     law : (computed, information, forgetting, pull)
-        Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P + pull.
     start : array of shape (n,)
     P : array of shape (n, n)
         At the start, where it is computed.
     steps : array of shape (N,)
         In seconds.
-    coefficients : array of shape (2 N + 1, u) or (1, u)
-        Numbers of the form's expressions at the starts, middles and ends.
-    inverses : array of shape (2 N + 1, n, n) or (1, n, n)
+    coefficients : array of shape (N EACH + 1, u) or (1, u)
+        Numbers of the form's expressions at the instants of all steps.
+    inverses : array of shape (N EACH + 1, n, n) or (1, n, n)
         Inverse of P at the same times, where P is given.
-    outputs : array of shape (N, 3, p, m)
-        Images as they are held at the start, middle and end of each step; NaN where a point is not seen.
+    outputs : array of shape (N, EACH + 1, p, m)
+        Images as they are held at the instants of each step; NaN where a point is not seen.
     language : "python" or "numba"
 
     Returns
@@ -289,14 +299,10 @@ def advance(
         If numba is asked for and is not installed.
     """
     path = np.full((len(steps) + 1, len(start)), np.nan)
-    blocks = (start, P, steps, coefficients, inverses, outputs)
-    loop = compiled() if language == "numba" else _in_python
-    diverged, P = loop(tuple(form), law, *(np.array(block, dtype=float, order="C") for block in blocks), path)
+    tables = (start, P, steps, coefficients, inverses, outputs)
+    loop = (_compiled if language == "numba" else _python)(form.block)
+    with np.errstate(all="ignore"):
+        diverged, P = loop(form[:-1], law, *(np.array(table, dtype=float, order="C") for table in tables), path)
     if diverged >= 0:
         path[diverged:] = np.nan
     return path, P, None if diverged < 0 else int(diverged)
-
-
-def _in_python(*arguments: Any) -> tuple[int, Array]:
-    with np.errstate(all="ignore"):
-        return run(rate, combine_by_numpy, solve_by_numpy, *arguments)

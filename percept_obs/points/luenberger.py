@@ -67,13 +67,12 @@ class LuenbergerObserver:
     @cached_property
     def scaled_innovation(self) -> sp.ImmutableMatrix:
         """E^-1 (y - H(C xhat)) without a division: y_k l xi_k - N xi_k for each point, xi_k = C_k xhat."""
-        form, m = self.form, len(self.form.image_coordinates)
-        estimate = sp.ImmutableMatrix(self.estimate)
+        form, block = self.form, self.form.block
+        m, estimate = len(block.y), sp.ImmutableMatrix(self.estimate)
         parts = []
         for k, C in enumerate(form.C):
-            xi = C * estimate
-            y = sp.ImmutableMatrix(form.y[k * m : (k + 1) * m])
-            parts.append(y * (form.block.l * xi)[0] - form.block.N * xi)
+            here = zip((*block.y, *block.xi), (*form.y[k * m : (k + 1) * m], *(C * estimate)), strict=True)
+            parts.append(block.innovation.xreplace(dict(here)))
         return sp.ImmutableMatrix.vstack(*parts).expand()
 
     @cached_property

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import advance, arrays, choose
-from percept_obs.recording import PLANT_STEP, Scene, halves, step_grid
+from percept_obs.recording import Scene, step_grid
 from percept_obs.system.motion import Motion
 
 Array = NDArray[np.float64]
@@ -73,14 +74,14 @@ class PointsScenario(Scene):
         form = self.form
         grid, index = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
         count = len(grid) - 1
-        unseen = np.full((count, 3, form.points, len(form.image_coordinates)), np.nan)
+        unseen = np.full((count, EACH + 1, form.points, len(form.image_coordinates)), np.nan)
         path, _, diverged = advance(
             arrays(form, np.arange(form.states), np.arange(form.points)),
             (False, 0.0, 0.0, np.zeros((1, 1))),
             np.array(self.state),
             np.zeros((1, 1)),
             np.diff(grid),
-            form.numbers(halves(grid)),
+            form.numbers(instants(grid)),
             np.eye(form.states)[None],
             unseen,
             choose(None, count * form.states),

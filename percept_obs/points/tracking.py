@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import Language, advance, arrays, choose
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import Weight
 from percept_obs.points.run import PointsRun
-from percept_obs.recording import Recording, halves
+from percept_obs.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course
 from percept_obs.tracking.following import DoesNotFit, follow
@@ -76,7 +77,7 @@ def _follow_points(
         along,
         form,
         matrix,
-        form.numbers(halves(along.grid)),
+        form.numbers(along.instants),
         along.held(filled=False),
         began,
         sight,
@@ -147,9 +148,9 @@ def _follow(
         if last is None:
             break
         part = slice(index[first], index[last])
-        rows = slice(2 * part.start, 2 * part.stop + 1)
+        rows = slice(EACH * part.start, EACH * part.stop + 1)
         if not weight.computed and (first == stops[0] or not weight.constant):
-            inverses = _inverses(weight.at(halves(grid)[rows])[:, block[0], block[1]])
+            inverses = _inverses(weight.at(task.along.instants[rows])[:, block[0], block[1]])
         path, P, diverged = advance(
             loop,
             law,

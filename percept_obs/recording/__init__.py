@@ -1,13 +1,12 @@
 """Recordings: what a camera leaves behind, from a simulation or from the world."""
 
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Seed, Uniform, seeded
-from percept_obs.recording.grid import halves, step_grid
+from percept_obs.recording.grid import step_grid
 from percept_obs.recording.recording import Recording, Sighting
-from percept_obs.recording.simulation import PLANT_STEP, Scenario, record
+from percept_obs.recording.simulation import Scenario, record
 
 __all__ = [
     "NO_NOISE",
-    "PLANT_STEP",
     "Camera",
     "Gaussian",
     "Noise",
@@ -17,7 +16,6 @@ __all__ = [
     "Seed",
     "Sighting",
     "Uniform",
-    "halves",
     "record",
     "seeded",
     "step_grid",

@@ -26,11 +26,3 @@ def step_grid(times: Array, longest: float) -> tuple[Array, NDArray[np.int_]]:
     grid = np.concatenate([times[:1], times[owner] + intervals[owner] * (inside / counts[owner])])
     grid[index] = times
     return grid, index
-
-
-def halves(grid: Array) -> Array:
-    """The grid with the middles of its steps put between."""
-    both = np.empty(2 * len(grid) - 1)
-    both[::2] = grid
-    both[1::2] = (grid[:-1] + grid[1:]) / 2
-    return both

@@ -12,17 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.compile import Table, solve
 from percept_obs.compile.equations import Equations
+from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
-from percept_obs.recording.grid import halves, step_grid
+from percept_obs.recording.grid import step_grid
 from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
 
 Array = NDArray[np.float64]
-
-PLANT_STEP = 0.005
-"""Longest step, in seconds, with which a point's motion is integrated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +69,8 @@ class Scenario(Scene):
         grid, last = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
         table = Table(
             np.diff(grid),
-            np.zeros((len(grid) - 1, 3, 0)),
-            self.motion.known(halves(grid)),
+            np.zeros((len(grid) - 1, EACH + 1, 0)),
+            self.motion.known(instants(grid)),
             np.zeros((len(grid), 0)),
         )
         equations = _point_in_motion(self.motion.A, self.motion.b, self.motion.parameters)

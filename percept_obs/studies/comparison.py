@@ -6,14 +6,13 @@ import math
 import time
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import partial
-from importlib.util import find_spec
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.compile import WORTH_COMPILING
+from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.tracking.following import track
@@ -75,8 +74,8 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
-    if sum(len(recording.time) for recording in recordings) >= WORTH_COMPILING and find_spec("numba"):
-        settings = {"language": "numba"} | settings
+    language = choose(None, sum(len(recording.time) for recording in recordings))
+    settings = {"language": language} | settings
     follow = {name: partial(track, observer=each, start=start, **settings) for name, each in observers.items()}
     for run in tqdm(follow.values(), desc="compiling", delay=2, leave=False):
         run(recordings[0])  # so that compiling is no part of the cost

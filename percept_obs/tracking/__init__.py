@@ -1,7 +1,7 @@
 """An observer follows a recording, and the run that it leaves."""
 
 from percept_obs.tracking.course import Hold
-from percept_obs.tracking.following import LONGEST_STEP, DoesNotFit, StepTooLong, track
+from percept_obs.tracking.following import DoesNotFit, StepTooLong, track
 from percept_obs.tracking.run import Run
 
-__all__ = ["LONGEST_STEP", "DoesNotFit", "Hold", "Run", "StepTooLong", "track"]
+__all__ = ["DoesNotFit", "Hold", "Run", "StepTooLong", "track"]

@@ -1,14 +1,16 @@
-"""The table of known signals: what an observer may know at the starts, middles and ends of its steps."""
+"""The table of known signals: what an observer may know at the instants of its steps."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.recording import Recording, halves, step_grid
+from percept_obs.compile.integrator import EACH, by_step, instants
+from percept_obs.recording import Recording, step_grid
 from percept_obs.system.motion import Motion
 
 Array = NDArray[np.float64]
@@ -43,9 +45,14 @@ class Course:
         """Lengths of the steps in seconds, shape (N,)."""
         return np.diff(self.grid)
 
+    @cached_property
+    def instants(self) -> Array:
+        """The times at which the steps look at known signals, shape (N EACH + 1,)."""
+        return instants(self.grid)
+
     def known(self, motion: Motion) -> Array:
-        """The motion's parameters at the starts, middles and ends, shape (2 N + 1, p) or (1, p)."""
-        return motion.known(halves(self.grid))
+        """The motion's parameters at the instants, shape (N EACH + 1, p) or (1, p)."""
+        return motion.known(self.instants)
 
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
@@ -54,7 +61,7 @@ class Course:
         return arriving
 
     def held(self, filled: bool) -> Array:
-        """Outputs at the start, the middle and the end of every step, shape (N, 3, ...).
+        """Outputs at the instants of every step, shape (N, EACH + 1, ...).
 
         Parameters
         ----------
@@ -66,17 +73,15 @@ class Course:
         interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
         before, after = outputs[interval], outputs[interval + 1]
         if self.hold == "zero":
-            held = np.repeat(before[:, None], 3, axis=1)
+            held = np.repeat(before[:, None], EACH + 1, axis=1)
         elif self.hold == "first":
             begin, length = time[interval], np.diff(time)[interval]
-            places = np.stack([self.grid[:-1], (self.grid[:-1] + self.grid[1:]) / 2, self.grid[1:]], axis=1)
-            share = (places - begin[:, None]) / length[:, None]
+            share = (by_step(self.instants) - begin[:, None]) / length[:, None]
             share = share.reshape(*share.shape, *(1,) * (outputs.ndim - 1))
             held = (1 - share) * before[:, None] + share * after[:, None]
         else:
             assert recording.signal is not None
-            exact = recording.signal(halves(self.grid))
-            held = np.stack([exact[:-1:2], exact[1::2], exact[2::2]], axis=1)
+            held = by_step(recording.signal(self.instants))
             held = np.where(np.isnan(before[:, None]), np.nan, held)
         since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
         held[since >= self.longest_hold] = np.nan

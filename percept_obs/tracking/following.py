@@ -6,13 +6,14 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import singledispatch
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.compile import Table, solve, vectorised
+from percept_obs.compile import Language, Table, solve, vectorised
 from percept_obs.compile.equations import Symbols
+from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.recording import Recording
@@ -22,18 +23,10 @@ from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
 Start = Mapping[str, float] | Sequence[float] | None
-Language = Literal["python", "numba"]
-
-LONGEST_STEP = 0.01
-"""Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
 
 
 class DoesNotFit(ValueError):
     """An observer cannot follow this recording."""
-
-
-LARGEST_STEP_RATE = 2.0
-"""Largest product of a step and a decay rate: explicit Euler's limit of stability; Runge-Kutta's is 2.78."""
 
 
 TOO_LONG = (
@@ -157,7 +150,7 @@ def _follow(
     table = Table(along.steps, along.held(filled=True)[..., columns], known, along.arriving(samples))
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
-    at_samples = known if len(known) == 1 else known[2 * index]
+    at_samples = known if len(known) == 1 else known[EACH * index]
     inputs = (*states.T, *last_samples(samples).T, *at_samples.T)
     estimate, unobservable = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
     return Run(
@@ -275,7 +268,7 @@ def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Sym
 
 
 def _known(along: Course, believed: Motion) -> Array:
-    """Parameters of motion and view at the starts, middles and ends of the steps."""
+    """Parameters of motion and view at the instants of the steps."""
     rows, view = along.known(believed), along.recording.view
     shape = [view.values[symbol] for symbol in view.parameters]
     return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])

@@ -63,6 +63,7 @@ def model_for_the_page() -> Texts:
     return {
         "states": {name: _state_for_the_page(name) for name in STATES},
         "block": {"N": _numbers(block.N), "l": _numbers(block.l)[0]},
+        "point": block.source("javascript"),
         "locate": function_source((*SURFACE.image_coordinates, distance), place),
         "equations": _equations(),
         "letters": {symbol.name: markup(LETTERS.get(symbol.name, symbol)) for symbol in SHARES},
@@ -94,7 +95,7 @@ def _layout(form: PointsForm, extra: int, points: int) -> Texts:
     """Where a state's coefficients stand when it has so many of the points."""
     states = np.arange(3 * points + extra)
     part = arrays(form, states, np.arange(points))
-    numbers = {name: getattr(part, name).tolist() for name in part._fields if name not in ("N", "l")}
+    numbers = {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
     return {**numbers, "names": [form.names[k] for k in states]}
 
 
@@ -111,11 +112,10 @@ def _equations() -> list[Texts]:
     forgetting, decrease = sp.symbols("lambda q", positive=True)
     kept = {"forgetting": forgetting, "decrease": decrease}
     K = P.I * C.T * B.T
-    block, xi = point_block(SURFACE), sp.Matrix(sp.symbols("xihat1:4", real=True))
-    innovation = sp.Matrix(block.y) * (block.l * xi)[0] - block.N * xi
+    block = point_block(SURFACE)
     observer = [
         formula(dotted(x), A * x + v + K * e),
-        row("for each point", formula(sp.Symbol("B_k"), block.B), ",", formula(sp.Symbol("e_k"), innovation)),
+        row("for each point", formula(sp.Symbol("B_k"), block.B), ",", formula(sp.Symbol("e_k"), block.innovation)),
     ]
     computed = [
         row("Lyapunov", formula(dotted(P), -A.T * P - P * A - decrease * sp.Identity(n), kept)),

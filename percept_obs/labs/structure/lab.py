@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import as_far_as_seen
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
@@ -27,7 +28,7 @@ from percept_obs.structure import (
 )
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.surfaces import BehindCamera, pinhole
-from percept_obs.tracking.following import LARGEST_STEP_RATE, TOO_LONG, StepTooLong, track
+from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
 from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
 
 MOST_STEPS = 200_000

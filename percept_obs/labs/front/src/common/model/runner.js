@@ -4,7 +4,7 @@
 import { columnOf } from "./derived.js";
 import { hiddenError, settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
-import { arriving, held, lastSamples } from "./tables.js";
+import { arriving, EACH, held, lastSamples } from "./tables.js";
 
 /** What the engines of labs share; each lays out the inputs of its observers by itself. */
 export class Runner {
@@ -87,7 +87,7 @@ function readEstimates(functions, kernel, states, inputs, gains, { width, time, 
     for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
     for (let m = 0; m < last.length; m++) x[m] = last[m][k];
     if (table.varying) {
-      const row = 2 * index[k] * table.width;
+      const row = EACH * index[k] * table.width;
       for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
     }
     functions.estimate(x, out);

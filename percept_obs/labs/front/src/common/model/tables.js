@@ -1,7 +1,10 @@
 // @ts-check
-// What an observer may know at the start, the middle and the end of every step, laid out once; see tracking.py.
+// What an observer may know at the instants of every step, laid out once; see tracking.py.
 
-const PLANT_STEP = 0.005;
+import { INSTANTS, PLANT_STEP } from "./integrator.js";
+
+/** Rows that a step adds to a table of known signals; its end is the next one's start. */
+export const EACH = INSTANTS.length - 1;
 
 /** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
 export function stepGrid(times, longest) {
@@ -47,12 +50,15 @@ export function sampleTimes(period, duration) {
   return time;
 }
 
-/** The grid with the middles of its steps put between. */
-export function halves(grid) {
-  const both = new Float64Array(2 * grid.length - 1);
-  for (let k = 0; k < grid.length; k++) both[2 * k] = grid[k];
-  for (let k = 0; k + 1 < grid.length; k++) both[2 * k + 1] = (grid[k] + grid[k + 1]) / 2;
-  return both;
+/** The times at which the steps of a grid look at known signals. */
+export function instants(grid) {
+  const times = new Float64Array(EACH * (grid.length - 1) + 1);
+  for (let k = 0; k < times.length - 1; k++) {
+    const [step, share] = [(k / EACH) | 0, INSTANTS[k % EACH]];
+    times[k] = (1 - share) * grid[step] + share * grid[step + 1];
+  }
+  times[times.length - 1] = grid[grid.length - 1];
+  return times;
 }
 
 /** Linear interpolation at increasing places, constant outside. */
@@ -92,12 +98,12 @@ export function lastSamples(values, room = fresh) {
   return result;
 }
 
-/** Measured outputs as held at the start, the middle and the end of each step: rows of 3 x outputs. */
+/** Measured outputs as held at the instants of each step: rows of instants x outputs. */
 export function held(columns, times, grid, index, hold, exact, room = fresh) {
   const outputs = columns.length;
   const steps = grid.length - 1;
-  const table = room(steps * 3 * outputs);
-  const row = 3 * outputs;
+  const row = INSTANTS.length * outputs;
+  const table = room(steps * row);
   columns.forEach((values, m) => {
     if (hold === "zero") {
       let last = NaN;
@@ -107,9 +113,9 @@ export function held(columns, times, grid, index, hold, exact, room = fresh) {
       }
       return;
     }
-    const line = hold === "exact" ? exact[m] : lineThrough(values, times, halves(grid));
+    const line = hold === "exact" ? exact[m] : lineThrough(values, times, instants(grid));
     for (let j = 0; j < steps; j++) {
-      for (let stage = 0; stage < 3; stage++) table[(3 * j + stage) * outputs + m] = line[2 * j + stage];
+      for (let i = 0; i <= EACH; i++) table[j * row + i * outputs + m] = line[EACH * j + i];
     }
   });
   return table;
@@ -131,9 +137,9 @@ export function arriving(columns, index, count, room = fresh) {
   return table;
 }
 
-/** Numbers known at the starts, middles and ends of a grid's steps, or the one row that is constant. */
+/** Numbers known at the instants of a grid's steps, or the one row that is constant. */
 export function known(motion, shape, grid) {
-  return knownAt(motion, shape, motion.times.length === 1 ? grid : halves(grid));
+  return knownAt(motion, shape, motion.times.length === 1 ? grid : instants(grid));
 }
 
 /** Rows of known numbers at some times. */

@@ -1,15 +1,15 @@
 // @ts-check
 // The whole of a run: point, camera, observers. The same numbers as record() and track() in Python.
 
+import { LONGEST_STEP } from "../../common/model/integrator.js";
 import { columnOf } from "../../common/model/derived.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
-import { halves, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { windowed } from "./measures.js";
 
-const LONGEST_STEP = 0.01;
 const TOLERANCE = 0.05;
 
 /** Runs settings. */
@@ -71,7 +71,7 @@ export class Engine extends Runner {
 
   exact(settings, grid, functions) {
     const place = [this.camera.placeOf(settings), grid.length];
-    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, halves(grid)));
+    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, instants(grid)));
   }
 
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {

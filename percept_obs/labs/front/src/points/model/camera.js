@@ -3,7 +3,7 @@
 
 import { clockOf, errorOf } from "../../common/model/camera.js";
 import { draws } from "../../common/model/random.js";
-import { halves } from "../../common/model/tables.js";
+import { instants } from "../../common/model/tables.js";
 import { ENTRIES, flowOf, kindsOf } from "./flow.js";
 import { product, pseudoInverse } from "./symmetric.js";
 
@@ -93,7 +93,7 @@ export class Camera {
     const kinds = kindsOf(layout, n);
     const motion = [kinds.kinds.length, ...placeOf(settings), clock];
     const flows = this.memory.once(`flows ${part}`, motion, () => {
-      const known = this.known(scene, part, clock, halves(grid));
+      const known = this.known(scene, part, clock, instants(grid));
       return { of: kinds.kinds.map((kind) => flowOf(kind, steps, known, width, wanted)) };
     });
     return { ...kinds, flows: flows.of, made: flows };

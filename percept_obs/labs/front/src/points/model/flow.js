@@ -1,6 +1,10 @@
 // @ts-check
 // How a state moves: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
 
+import { INSTANTS } from "../../common/model/integrator.js";
+import { stepper } from "../../common/model/runge_kutta.js";
+import { EACH } from "../../common/model/tables.js";
+
 /** Numbers of a flow at a time: Phi and beside it q, row by row. */
 export const ENTRIES = 12;
 
@@ -16,31 +20,23 @@ export function kindsOf({ rows, columns, which }, n) {
   return { kinds: names.map((name) => entries[keys.indexOf(name)]), kindOf: keys.map((key) => names.indexOf(key)) };
 }
 
-/** The flow of a kind at the wanted ends of steps, by the classical Runge-Kutta method; `known` has half steps. */
+/** The flow of a kind at the wanted ends of steps; `known` has a row for each instant at which a step looks. */
 export function flowOf(kind, steps, known, width, wanted) {
   const found = new Float64Array(ENTRIES * wanted.length);
-  const A = [0, 1, 2].map(() => new Float64Array(ENTRIES));
-  const [now, stage, sum, rate] = [0, 1, 2, 3].map(() => new Float64Array(ENTRIES));
+  const A = INSTANTS.map(() => new Float64Array(ENTRIES));
+  const now = new Float64Array(ENTRIES);
+  const step = stepper(ENTRIES);
+  const rate = (instant, flow, out) => ratesOf(A[instant], flow, out);
   now[0] = now[5] = now[10] = 1;
   let next = 0;
   for (let k = 0; next < wanted.length; k++) {
     for (; wanted[next] === k; next++) found.set(now, ENTRIES * next);
     if (k === steps.length) break;
-    const h = steps[k];
-    for (let half = 0; half < 3; half++) {
-      const row = (2 * k + half) * width;
-      for (let e = 0; e < kind.length; e++) A[half][kind[e][0]] = known[row + kind[e][1]];
+    for (let instant = 0; instant <= EACH; instant++) {
+      const row = (EACH * k + instant) * width;
+      for (let e = 0; e < kind.length; e++) A[instant][kind[e][0]] = known[row + kind[e][1]];
     }
-    sum.set(now);
-    for (let part = 0; part < 4; part++) {
-      const place = (part + 1) >> 1;
-      const share = 0.5 * h * place;
-      for (let i = 0; i < ENTRIES; i++) stage[i] = now[i] + (part ? share * rate[i] : 0);
-      ratesOf(A[place], stage, rate);
-      const weight = h / (part % 3 === 0 ? 6 : 3);
-      for (let i = 0; i < ENTRIES; i++) sum[i] += weight * rate[i];
-    }
-    now.set(sum);
+    step(now, steps[k], rate);
   }
   return found;
 }

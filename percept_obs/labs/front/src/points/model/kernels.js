@@ -6,7 +6,7 @@ import { PrintedKernels } from "../../common/model/kernels.js";
 /** All functions of a model; none follow after it has been opened. */
 export class PointsKernels extends PrintedKernels {
   needed({ state }) {
-    const { states, locate } = this.model;
-    return [{ key: state, texts: { coefficients: states[state].coefficients, locate } }];
+    const { states, locate, point } = this.model;
+    return [{ key: state, texts: { coefficients: states[state].coefficients, locate, point } }];
   }
 }

@@ -1,7 +1,7 @@
 // @ts-check
 // The observer of many points: the same numbers as track() in Python.
 
-import { halves, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
+import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { product, pseudoInverse } from "./symmetric.js";
@@ -20,7 +20,7 @@ export class Observer {
     const { period, duration, step } = settings;
     const steps = memory.once("steps", [period, duration, step], () => {
       const made = withSteps(stepGrid(time, step));
-      return { ...made, places: halves(made.grid) };
+      return { ...made, places: instants(made.grid) };
     });
     const inputs = {
       ...steps,
@@ -46,14 +46,14 @@ export class Observer {
     return { estimate, divergedAt: divergedAt < Infinity ? divergedAt : null };
   }
 
-  /** What the observer takes for the images between samples: three rows a step. */
+  /** What the observer takes for the images between samples: a row for each instant of each step. */
   held(scene, { time, outputs }, { index, steps, places }) {
     const { camera } = this;
     const { memory } = camera;
     const { settings, points } = scene;
     const { hold, period, duration, step } = settings;
     const wide = 2 * points;
-    const table = memory.room("held", 3 * wide * steps.length);
+    const table = memory.room("held", (EACH + 1) * wide * steps.length);
     let exact = null;
     if (hold === "exact") {
       const plant = memory.once("exact plant", [period, duration, step], () => plantGrid(places));
@@ -61,14 +61,14 @@ export class Observer {
     }
     for (let k = 0; k + 1 < time.length; k++) {
       for (let j = index[k]; j < index[k + 1]; j++) {
-        for (let stage = 0; stage < 3; stage++) {
-          const share = (places[2 * j + stage] - time[k]) / (time[k + 1] - time[k]);
+        for (let stage = 0; stage <= EACH; stage++) {
+          const share = (places[EACH * j + stage] - time[k]) / (time[k + 1] - time[k]);
           for (let c = 0; c < wide; c++) {
             const before = outputs[k * wide + c];
             let value = before;
             if (hold === "first") value = (1 - share) * before + share * outputs[(k + 1) * wide + c];
-            if (exact) value = Number.isNaN(before) ? NaN : exact[(2 * j + stage) * wide + c];
-            table[(3 * j + stage) * wide + c] = value;
+            if (exact) value = Number.isNaN(before) ? NaN : exact[(EACH * j + stage) * wide + c];
+            table[((EACH + 1) * j + stage) * wide + c] = value;
           }
         }
       }
@@ -101,14 +101,14 @@ export class Observer {
       const path = this.camera.memory.room("observer's path", (to - from + 1) * own);
       const tables = {
         steps: steps.subarray(from, to),
-        coefficients: coefficients.subarray(2 * from * width),
+        coefficients: coefficients.subarray(EACH * from * width),
         width,
-        inverses: inverses.length > 1 ? inverses.subarray(2 * from) : inverses,
-        images: held.subarray(6 * points * from),
+        inverses: inverses.length > 1 ? inverses.subarray(EACH * from) : inverses,
+        images: held.subarray((EACH + 1) * 2 * points * from),
         points,
         first,
       };
-      const diverged = advance(layout, this.camera.model.block, law, x, P, tables, path);
+      const diverged = advance(layout, scene.functions.point, law, x, P, tables, path);
       for (let k = sample; k <= next; k++) {
         const at = (index[k] - from) * own;
         for (let i = 0; i < own; i++) estimate[k * n + states + i] = path[at + i];

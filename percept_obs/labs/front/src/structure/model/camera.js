@@ -2,7 +2,7 @@
 // What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
-import { halves } from "../../common/model/tables.js";
+import { instants } from "../../common/model/tables.js";
 
 const NAMES = ["v_c", "v_p"];
 
@@ -53,7 +53,7 @@ export class StructureCamera extends PointCamera {
     const { ybar, scale } = settings;
     const depth = 1 / (scale * ybar[2]);
     const place = [motionOf(settings), lines.grid.length, lines.grid.at(-1)];
-    const known = this.memory.once("velocities", place, () => this.velocities(settings, swinging, halves(lines.grid)));
+    const known = this.memory.once("velocities", place, () => this.velocities(settings, swinging, instants(lines.grid)));
     return { start: [ybar[0] * depth, ybar[1] * depth, depth], known, shape: [] };
   }
 

@@ -3,7 +3,7 @@
 
 import { columnOf } from "../../common/model/derived.js";
 import { Runner } from "../../common/model/runner.js";
-import { halves, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { EACH, instants, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { motionOf, StructureCamera } from "./camera.js";
 import { keyOf } from "./kernels.js";
 
@@ -95,7 +95,7 @@ export class StructureEngine extends Runner {
 
   exact(settings, grid, functions) {
     const place = [this.camera.placeOf(settings), settings.step];
-    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, halves(grid)));
+    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, instants(grid)));
   }
 
   /** What the observers know of the motion: rows of w, M, m. */
@@ -104,7 +104,7 @@ export class StructureEngine extends Runner {
     const count = hidden.length;
     const place = [period, step, time.length, keyOf(settings), motionOf(settings), scale];
     return this.memory.once("known", place, () => {
-      const { found, size, varying } = this.signals(settings, count, functions, halves(grid));
+      const { found, size, varying } = this.signals(settings, count, functions, instants(grid));
       const width = 3 * count + 6;
       const rows = new Float64Array((found.length / size) * width);
       for (let k = 0; k * size < found.length; k++) {
@@ -125,7 +125,7 @@ export class StructureEngine extends Runner {
     x.set(known.rows.subarray(0, known.width), 3);
     for (let k = 0; k < time.length; k++) {
       for (let m = 0; m < 3; m++) x[m] = last[m][k];
-      const row = 2 * index[k] * known.width;
+      const row = EACH * index[k] * known.width;
       if (known.varying) for (let p = 0; p < known.width; p++) x[3 + p] = known.rows[row + p];
       guard(x, out);
       sizes[k] = out[0];

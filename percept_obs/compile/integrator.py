@@ -1,0 +1,95 @@
+"""The integrator: one Runge-Kutta method, with the constants of every loop that steps by it, here and in the page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Shares = tuple[Fraction, ...]
+
+
+def _row(entries: str) -> Shares:
+    return tuple(map(Fraction, entries.split()))
+
+
+COUPLING = (_row(""), _row("1/2"), _row("0 1/2"), _row("0 0 1"))
+WEIGHTS = _row("1/6 1/3 1/3 1/6")
+"""The classical method as Butcher's tableau: k_i = f(x + h sum_j a_ij k_j), and a step adds h sum_i b_i k_i.
+
+To exchange the method, exchange these two, print what the page needs (``percept_obs.labs.printing``) and build it.
+"""
+
+NODES: Shares = tuple(sum(row, Fraction(0)) for row in COUPLING)
+INSTANTS: Shares = tuple(sorted({Fraction(0), *NODES, Fraction(1)}))
+"""The shares of a step at which known signals are laid out: its start, the stages' nodes between, its end."""
+
+PLACES = tuple(map(INSTANTS.index, NODES))
+"""For each stage, which of the instants it lies at."""
+
+EACH = len(INSTANTS) - 1
+"""Rows that a step adds to a table of known signals; its end is the next one's start."""
+
+LONGEST_STEP = 0.01
+"""Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
+
+PLANT_STEP = 0.005
+"""Longest step, in seconds, with which a point's motion is integrated."""
+
+LARGEST_STEP_RATE = 2.0
+"""Largest product of a step and a decay rate: explicit Euler's limit of stability; Runge-Kutta's is 2.78."""
+
+LARGEST_SQUARED_STATE = 1e300
+"""A state whose squared norm reaches this, or is not a number, has diverged."""
+
+
+def instants(grid: Array) -> Array:
+    """The times at which steps look at known signals, shape (N EACH + 1,), for a grid of shape (N + 1,)."""
+    times = np.empty(EACH * (len(grid) - 1) + 1)
+    times[-1:] = grid[-1:]
+    for k, share in enumerate(map(float, INSTANTS[:-1])):
+        times[k:-1:EACH] = (1 - share) * grid[:-1] + share * grid[1:]
+    return times
+
+
+def by_step(rows: Array) -> Array:
+    """Values at the instants, shape (N EACH + 1, ...), with those of each step together, shape (N, EACH + 1, ...)."""
+    last = len(rows) - 1
+    return np.stack([rows[k : last + k : EACH] for k in range(EACH + 1)], axis=1)
+
+
+def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> Array:
+    """Where states get in a step of the given lengths; rate(instant, states) is their rate at one of its instants."""
+    rates: list[Array] = []
+
+    def moved(shares: Shares) -> Array:
+        return state + lengths * sum(float(share) * found for share, found in zip(shares, rates, strict=True))
+
+    for place, shares in zip(PLACES, COUPLING, strict=True):
+        rates.append(rate(place, moved(shares)))
+    return moved(WEIGHTS)
+
+
+def numbers() -> tuple[Array, Array, NDArray[np.intp]]:
+    """The method for loops over numbers: a_ij of shape (stages, stages), 0 above the diagonal, b_i, and the places."""
+    square = [[*row, *[0] * (len(WEIGHTS) - len(row))] for row in COUPLING]
+    return np.array(square, dtype=float), np.array(WEIGHTS, dtype=float), np.array(PLACES)
+
+
+def for_the_page() -> str:
+    """The method and its constants as the page's module ``common/model/integrator.js``."""
+    square, weights, _ = numbers()
+    constants: dict[str, Any] = {
+        "COUPLING": square.tolist(),
+        "WEIGHTS": weights.tolist(),
+        "INSTANTS": list(map(float, INSTANTS)),
+    }
+    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "LARGEST_STEP_RATE", "LARGEST_SQUARED_STATE"):
+        constants[name] = globals()[name]
+    lines = [f"export const {name} = {json.dumps(value)};" for name, value in constants.items()]
+    return "\n".join(["// Printed by percept_obs/compile/integrator.py, which says what they mean.", *lines, ""])

@@ -1,0 +1,212 @@
+"""Lines of a program in Python or in JavaScript, with formulas that mean the same in both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Literal
+
+import sympy as sp
+from sympy.functions.elementary.piecewise import ExprCondPair
+from sympy.logic.boolalg import Boolean, BooleanFunction
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.pycode import PythonCodePrinter
+
+Printed = Literal["python", "javascript"]
+
+LARGEST_PRODUCT = 8
+"""Integer powers up to this are printed as products, the same in every language."""
+
+_FUNCTIONS = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.tanh: "tanh",
+    sp.cosh: "cosh",
+    sp.sinh: "sinh",
+    sp.atan2: "atan2",
+}
+
+
+class NotCompilable(ValueError):
+    """An expression that would not mean the same in every language."""
+
+
+def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
+    """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
+    for expression in expressions:
+        for node in sp.preorder_traversal(expression):
+            power_fits = isinstance(node, sp.Pow) and (
+                (node.exp.is_Integer and abs(node.exp) <= LARGEST_PRODUCT) or abs(node.exp) == sp.Rational(1, 2)
+            )
+            plain = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.Piecewise, ExprCondPair, sp.Rel, Boolean)
+            known = isinstance(node, (*plain, BooleanFunction)) or node.func in _FUNCTIONS
+            finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
+            constant = isinstance(node, sp.NumberSymbol)
+            if not (power_fits or known or finite or constant):
+                raise NotCompilable(f"{node} cannot be printed alike in Python and JavaScript; write it otherwise")
+            if isinstance(node, sp.Piecewise):
+                for branch in node.args:
+                    if any(
+                        isinstance(part, sp.log) or (isinstance(part, sp.Pow) and not _is_product(part))
+                        for part in sp.preorder_traversal(branch)
+                    ):
+                        raise NotCompilable(
+                            f"a branch of {node} divides or takes a root; common subexpressions would be evaluated "
+                            "where the branch is not taken, so move the division out of the branch"
+                        )
+
+
+def _is_product(power: sp.Pow) -> bool:
+    return bool(power.exp.is_Integer and power.exp > 0)
+
+
+class _Printer(PythonCodePrinter):
+    """Arithmetic in the notation that Python and JavaScript share; what differs is in the words."""
+
+    def __init__(self, words: Mapping[str, str]) -> None:
+        super().__init__({"fully_qualified_modules": False})
+        self.words = words
+
+    def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
+        base, exponent = expr.base, expr.exp
+        if abs(exponent) == sp.Rational(1, 2):
+            root = f"{self.words['math']}.sqrt({self._print(base)})"
+            return root if exponent > 0 else f"(1.0/{root})"
+        product = "*".join([self.parenthesize(base, PRECEDENCE["Pow"])] * abs(int(exponent)))
+        return f"({product})" if exponent > 0 else f"(1.0/({product}))"
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return f"({expr.p}.0/{expr.q}.0)"
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return f"{int(expr)}.0"
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        return repr(float(expr))
+
+    _print_Pi = _print_Exp1 = _print_NumberSymbol
+
+    def _print_Function(self, expr: sp.Function) -> str:
+        return f"{self.words['math']}.{_FUNCTIONS[expr.func]}({', '.join(map(self._print, expr.args))})"
+
+    def _print_Abs(self, expr: sp.Abs) -> str:
+        return f"{self.words['abs']}({self._print(expr.args[0])})"
+
+    def _print_sign(self, expr: sp.sign) -> str:
+        inner = self._print(expr.args[0])
+        return self._choice(f"{inner} > 0.0", "1.0", self._choice(f"{inner} < 0.0", "-1.0", "0.0"))
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        *branches, (last, condition) = expr.args
+        if condition != sp.true:
+            raise NotCompilable(f"{expr} is not defined everywhere; end it with (expression, True)")
+        text = self._print(last)
+        for branch, condition in reversed(branches):
+            text = self._choice(self._print(condition), self._print(branch), text)
+        return text
+
+    def _choice(self, condition: str, then: str, otherwise: str) -> str:
+        return self.words["choice"].format(condition, then, otherwise)
+
+    def _print_And(self, expr: sp.And) -> str:
+        return "(" + f" {self.words['and']} ".join(map(self._print, expr.args)) + ")"
+
+    def _print_Or(self, expr: sp.Or) -> str:
+        return "(" + f" {self.words['or']} ".join(map(self._print, expr.args)) + ")"
+
+    def _print_Relational(self, expr: sp.Rel) -> str:
+        return f"({self._print(expr.lhs)} {expr.rel_op} {self._print(expr.rhs)})"
+
+
+for _function in _FUNCTIONS:
+    setattr(_Printer, f"_print_{_function.__name__}", _Printer._print_Function)
+
+
+_WORDS = {
+    "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
+    "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
+}
+
+
+class Text:
+    """Lines of a program in one of two languages."""
+
+    def __init__(self, language: Printed) -> None:
+        if language not in _WORDS:
+            raise ValueError(f"the language {language!r} is neither 'python' nor 'javascript'")
+        self.python = language == "python"
+        self.print = _Printer(_WORDS[language]).doprint
+        self.lines: list[str] = []
+        self.depth = 0
+        self.assigned: dict[str, None] = {}
+        self.printed: dict[tuple[sp.Expr, ...], tuple[list[tuple[str, str]], list[str]]] = {}
+
+    def __str__(self) -> str:
+        lines = list(self.lines)
+        if not self.python:
+            lines.insert(1, f"  let {', '.join(self.assigned)};")
+        return "\n".join(lines) + "\n"
+
+    def line(self, text: str) -> None:
+        """Add a line, indented."""
+        self.lines.append(("    " if self.python else "  ") * self.depth + text)
+
+    def assign(self, name: str, expression: str) -> None:
+        """Give a local variable a value."""
+        self.assigned[name] = None
+        self.store(name, expression)
+
+    def copy(self, targets: str, values: str, count: int) -> None:
+        """Give targets0, targets1, ... the values of other variables."""
+        for k in range(count):
+            self.assign(f"{targets}{k}", f"{values}{k}")
+
+    def store(self, place: str, expression: str) -> None:
+        """Give a place in an array a value."""
+        self.line(f"{place} = {expression}" + ("" if self.python else ";"))
+
+    def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
+        """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
+        key = tuple(expressions)
+        if key not in self.printed:
+            shared, results = sp.cse(expressions, symbols=sp.numbered_symbols("c", real=True))
+            self.printed[key] = [(s.name, self.print(e)) for s, e in shared], [self.print(e) for e in results]
+        named, formulas = self.printed[key]
+        for name, formula in (*named, *((f"{targets}{k}", formula) for k, formula in enumerate(formulas))):
+            self.assign(name, formula)
+
+    def leave(self, value: str) -> None:
+        """Return a value."""
+        self.line(f"return {value}" + ("" if self.python else ";"))
+
+    @contextmanager
+    def _indented(self, python: str, javascript: str) -> Iterator[None]:
+        self.line(python + ":" if self.python else javascript + " {")
+        self.depth += 1
+        yield
+        self.depth -= 1
+        if not self.python:
+            self.line("}")
+
+    def function(self, name: str, arguments: Sequence[str]) -> Any:
+        """The function that the lines inside make up."""
+        head = f"{name}({', '.join(arguments)})"
+        return self._indented(f"def {head}", f"function {head}")
+
+    def loop(self, index: str, over: str) -> Any:
+        """The loop over an array's indices."""
+        return self._indented(
+            f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
+        )
+
+    def block(self, word: Literal["if", "unless"], condition: str) -> Any:
+        """What is done only under a condition."""
+        if word == "unless":
+            return self._indented(f"if not {condition}", f"if (!({condition}))")
+        return self._indented(f"if {condition}", f"if ({condition})")
