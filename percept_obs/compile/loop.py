@@ -17,6 +17,7 @@ from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import COUPLING, EACH, LARGEST_SQUARED_STATE, PLACES, WEIGHTS
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
 
+LAST = len(WEIGHTS) - 1
 ARGUMENTS = ("start", "steps", "measured", "parameters", "samples", "gains", "varying", "states", "resets")
 
 
@@ -82,6 +83,10 @@ def source(equations: Equations, language: Printed = "python") -> str:
         numerator = shares[stage] * lcm(*(share.denominator for share in shares))
         return f"d{stage}_{k}" if numerator == 1 else f"{numerator}.0*d{stage}_{k}"
 
+    def gathered(stage: int, k: int) -> str:
+        """The sum of the rates of state k up to a stage, by their weights."""
+        return (f"q{k} + " if any(WEIGHTS[:stage]) else "") + times(WEIGHTS, stage, k)
+
     def visit(stage: int) -> None:
         """Assign the rates at a stage, and gather them for the step."""
         shares = COUPLING[stage]
@@ -91,9 +96,8 @@ def source(equations: Equations, language: Printed = "python") -> str:
             rates = " + ".join(times(shares, j, k) for j, share in enumerate(shares) if share)
             text.assign(f"x{k}", f"s{k} + part*({rates})" if rates else f"s{k}")
         text.formulas(flow, f"d{stage}_")
-        for k in range(n if WEIGHTS[stage] else 0):
-            gathered = f"q{k} + " if any(WEIGHTS[:stage]) else ""
-            text.assign(f"q{k}", f"{gathered}{times(WEIGHTS, stage, k)}")
+        for k in range(n if WEIGHTS[stage] and stage < LAST else 0):
+            text.assign(f"q{k}", gathered(stage, k))
 
     def update_by_samples(first: str = "") -> None:
         for k, block in enumerate(update):
@@ -127,7 +131,7 @@ def source(equations: Equations, language: Printed = "python") -> str:
                 look(EACH)
             text.assign("part", shared(WEIGHTS))
             for k in range(n):
-                text.assign(f"s{k}", f"s{k} + part*q{k}")
+                text.assign(f"s{k}", f"s{k} + part*({gathered(LAST, k)})")
             update_by_samples(f"{m}*(k + 1) + ")
             if equations.reset:
                 text.copy("x", "s", n)
