@@ -107,14 +107,14 @@ def test_started_at_the_truth_it_stays_there(name, form, scenario):
 
 
 @pytest.mark.parametrize("make", COPIES, ids=lambda make: make.key)
-@pytest.mark.parametrize("form", PARTITIONS, ids=lambda form: f"{form.surface.name} {'+'.join(form.measured)}")
+@pytest.mark.parametrize("form", PARTITIONS, ids=lambda form: f"{form.view.name} {'+'.join(form.measured)}")
 def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
     if make.refusal(form):
         with pytest.raises((NotAffine, NotIntegrable)):
             make(form)
     else:
         for scenario, duration in ((scenarios.ma2005_eq35, 5), (scenarios.ma2005_eq36, 10)):
-            assert_it_stays_at_the_truth(record(scenario(form.surface), duration), make(form))
+            assert_it_stays_at_the_truth(record(scenario(form.view), duration), make(form))
 
 
 @given(scenario=motions())

@@ -253,8 +253,8 @@ def test_a_choice_is_a_view_of_points():
     np.testing.assert_allclose(linear.locate(np.hstack([linear.scaled(ybar), theta])), points)
     assert np.isinf(first.locate(np.hstack([ybar, -theta]))).all()
     assert first.coordinates == (*first.image_coordinates, *sp.symbols("theta1:4", real=True))
-    assert first.form.surface is first
-    assert linear.form.surface is linear
+    assert first.form.view is first
+    assert linear.form.view is linear
 
 
 def test_which_choices_fit_each_other():

@@ -235,14 +235,14 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     ValueError
         If there is no truth, P is computed or misses (15), or the window does not fit.
     """
-    form, weight = observer.form, observer.weight
+    form, matrix = observer.form, observer.P
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window)
     time, images = recording.time, true_images(recording)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
-        None if weight.computed else np.broadcast_to(weight.at(time[every]), (len(time[every]), *[form.states] * 2))
+        None if matrix.computed else np.broadcast_to(matrix.at(time[every]), (len(time[every]), *[form.states] * 2))
     )
     if P_there is None or not conditions(observer, time[every], images[every], P_there).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
@@ -257,7 +257,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
-        P = weight.at(at)
+        P = matrix.at(at)
         inverse = np.linalg.inv(np.broadcast_to(P, (len(at), *P.shape[1:])))
         corrected = np.linalg.inv(Phi) @ inverse @ np.swapaxes(rows, 1, 2) * np.sqrt(shares)[:, None, None]
         # what is corrected at one instant is missing from all later images

@@ -29,10 +29,10 @@ from percept_obs.papers.base import (
     vectors,
 )
 from percept_obs.points import (
+    LyapunovMatrix,
     PointsForm,
     PointsRun,
     PointsScenario,
-    Weight,
     constant,
     luenberger,
     riccati,
@@ -86,7 +86,7 @@ ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 
 
 @cache
-def followed(scenario: PointsScenario, P: Weight | None = None) -> PointsRun:
+def followed(scenario: PointsScenario, P: LyapunovMatrix | None = None) -> PointsRun:
     """An example, seen exactly, from a start that is off by `ERROR`; P is the identity when left out."""
     recording = record(scenario, DURATION, Camera(PERIOD))
     start = [x - e for x, e in zip(scenario.state, ERROR, strict=False)]
@@ -123,8 +123,8 @@ def on_both_examples(printed: Printed) -> Finding:
 
 def converges_without(printed: Printed) -> Finding:
     """A P from a Riccati equation: the largest eigenvalue of the left side of (15) with it, and the decay."""
-    weight = riccati(1.0)
-    run = followed(ONE_POINT, weight)
+    matrix = riccati(1.0)
+    run = followed(ONE_POINT, matrix)
     conditions = run.conditions()
     numbers = {"largest eigenvalue of (15)": float(conditions.printed.max()), "decay in 1/s": run.decay_rate(0, 40)}
     serves = conditions.weaker_holds and not conditions.printed_holds and run.decay_rate(0, 40) > 0.1

@@ -5,7 +5,7 @@ from percept_obs.points.bodies import body_with_origin, independent_points, rigi
 from percept_obs.points.conditions import Conditions
 from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
-from percept_obs.points.lyapunov_matrix import Weight, constant, lyapunov, riccati, scheduled
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix, constant, lyapunov, riccati, scheduled
 from percept_obs.points.run import PointsRun
 from percept_obs.points.simulation import LeavesEveryBound, PointsScenario
 from percept_obs.points.tracking import FirstSight
@@ -15,13 +15,13 @@ __all__ = [
     "FirstSight",
     "LeavesEveryBound",
     "LuenbergerObserver",
+    "LyapunovMatrix",
     "NotLinear",
     "PointBlock",
     "PointsForm",
     "PointsRun",
     "PointsScenario",
     "UnseenDirection",
-    "Weight",
     "body_with_origin",
     "constant",
     "independent_points",

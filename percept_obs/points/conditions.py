@@ -97,13 +97,13 @@ def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Arr
     """
     if not 0 < epsilon <= 2:
         raise ValueError(f"epsilon is {epsilon}; it must be above 0 and at most 2")
-    form, weight = observer.form, observer.weight
+    form, matrix = observer.form, observer.P
     S = form.information(outputs)
-    if weight.computed:
-        left = weight.information * S - weight.forgetting * (P - weight.start) - weight.decrease
+    if matrix.computed:
+        left = matrix.information * S - matrix.forgetting * (P - matrix.start) - matrix.decrease
     else:
         A, _ = form.coefficients(time)
-        left = np.swapaxes(A, 1, 2) @ P + P @ A + weight.rate(time)
+        left = np.swapaxes(A, 1, 2) @ P + P @ A + matrix.rate(time)
         left = (left + np.swapaxes(left, 1, 2)) / 2
     return Conditions(
         time,

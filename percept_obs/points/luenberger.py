@@ -11,7 +11,7 @@ import sympy as sp
 from percept_obs.observers.base import About
 from percept_obs.observers.parts import hats
 from percept_obs.points.form import PointsForm
-from percept_obs.points.lyapunov_matrix import Weight, weight
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix, lyapunov_matrix
 
 ABOUT = About(
     "Luenberger-type observer",
@@ -29,17 +29,17 @@ class LuenbergerObserver:
     ----------
     form : PointsForm
         What it believes in.
-    weight : Weight
+    P : LyapunovMatrix
         P.
     """
 
     form: PointsForm
-    weight: Weight
+    P: LyapunovMatrix
 
     @property
     def name(self) -> str:
         """The observer's name."""
-        return f"Luenberger, {self.weight.name}"
+        return f"Luenberger, {self.P.name}"
 
     @property
     def about(self) -> About:
@@ -132,8 +132,8 @@ def luenberger(form: PointsForm, P: Any = 1.0) -> LuenbergerObserver:
     Parameters
     ----------
     form : PointsForm
-    P : number, array of shape (n, n), function of time, or Weight
-        A number stands for its multiple of the identity.  Weights come from `constant`, `scheduled`, `lyapunov` and
+    P : number, array of shape (n, n), function of time, or LyapunovMatrix
+        A number stands for its multiple of the identity.  Others come from `constant`, `scheduled`, `lyapunov` and
         `riccati`.  A smaller P corrects more.
 
     Returns
@@ -150,4 +150,4 @@ def luenberger(form: PointsForm, P: Any = 1.0) -> LuenbergerObserver:
     H. Inaba et al., Nonlinear observers for perspective time-varying linear systems with multiple observing points,
     IFAC 2005, (10), (11) and Theorem 3.4.
     """
-    return LuenbergerObserver(form, weight(P).sized(form.states))
+    return LuenbergerObserver(form, lyapunov_matrix(P).sized(form.states))

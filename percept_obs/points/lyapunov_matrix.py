@@ -18,7 +18,7 @@ DIFFERENCE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
-class Weight:
+class LyapunovMatrix:
     """How P moves: given over time, or P' = -A^T P - P A + information S - forgetting (P - start) - decrease.
 
     Parameters
@@ -60,7 +60,7 @@ class Weight:
             return np.ones(self.start.shape, dtype=bool)
         return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
 
-    def sized(self, states: int) -> Weight:
+    def sized(self, states: int) -> LyapunovMatrix:
         """The same for a number of states.
 
         Raises
@@ -98,12 +98,12 @@ class Weight:
         return (self.at(high) - self.at(low)) / (high - low)[:, None, None]
 
 
-def constant(P: ArrayLike = 1.0) -> Weight:
+def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
     """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity."""
-    return Weight("constant P", None, schedule=Signal(np.ravel(np.asarray(P, dtype=float))))
+    return LyapunovMatrix("constant P", None, schedule=Signal(np.ravel(np.asarray(P, dtype=float))))
 
 
-def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> Weight:
+def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> LyapunovMatrix:
     """P given over time.
 
     Parameters
@@ -119,14 +119,14 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
         If samples and times do not fit.
     """
     if callable(P):
-        return Weight("scheduled P", None, schedule=Signal(P))
+        return LyapunovMatrix("scheduled P", None, schedule=Signal(P))
     samples = np.asarray(P, dtype=float)
     if times is None:
         raise ValueError("samples of P need their times=; a P that stays is constant(P)")
-    return Weight("scheduled P", None, schedule=Signal(samples.reshape(len(samples), -1), np.asarray(times)))
+    return LyapunovMatrix("scheduled P", None, schedule=Signal(samples.reshape(len(samples), -1), np.asarray(times)))
 
 
-def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> Weight:
+def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatrix:
     """P from the Lyapunov equation P' = -A^T P - P A - decrease, which meets (15) with room for the decrease.
 
     Parameters
@@ -136,10 +136,10 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> Weight:
     decrease : array of shape (n, n) or float
         Symmetric positive semidefinite.  P stays positive only while the start outweighs what it takes away.
     """
-    return Weight("Lyapunov", start, decrease=decrease)
+    return LyapunovMatrix("Lyapunov", start, decrease=decrease)
 
 
-def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> Weight:
+def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     """P from P' = -A^T P - P A + S - forgetting (P - start), S = C^T B^T B C; its inverse solves a Riccati equation.
 
     P gathers what the images told, as the information matrix of least squares does, and forgets it exponentially, but
@@ -164,12 +164,12 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> Weight:
     """
     if not (np.isfinite(forgetting) and forgetting >= 0):
         raise ValueError(f"the forgetting is {forgetting} 1/s; it must be finite and not negative")
-    return Weight("Riccati", start, information=1.0, forgetting=float(forgetting))
+    return LyapunovMatrix("Riccati", start, information=1.0, forgetting=float(forgetting))
 
 
-def weight(P: Any) -> Weight:
-    """What `luenberger` takes for P: a Weight, a function of time, an array or a number."""
-    if isinstance(P, Weight):
+def lyapunov_matrix(P: Any) -> LyapunovMatrix:
+    """What `luenberger` takes for P: a LyapunovMatrix, a function of time, an array or a number."""
+    if isinstance(P, LyapunovMatrix):
         return P
     return scheduled(P) if callable(P) else constant(P)
 

@@ -14,7 +14,7 @@ from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import Language, advance, arrays, choose
 from percept_obs.points.luenberger import LuenbergerObserver
-from percept_obs.points.lyapunov_matrix import Weight
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
 from percept_obs.recording import Recording
 from percept_obs.system.motion import Motion
@@ -63,7 +63,7 @@ def _follow_points(
     believed: Motion | None,
     language: Language | None,
 ) -> PointsRun:
-    form, matrix, recording, time = observer.form, observer.weight, along.recording, along.recording.time
+    form, matrix, recording, time = observer.form, observer.P, along.recording, along.recording.time
     _refuse_misfits(recording, form, believed)
     sight = start if isinstance(start, FirstSight) else None
     x = np.zeros(form.states) if start is None or sight else np.array(start, dtype=float)
@@ -103,7 +103,7 @@ class _Task:
 
     along: Course
     form: PointsForm
-    weight: Weight
+    matrix: LyapunovMatrix
     coefficients: Array
     held: Array
     began: NDArray[np.bool_]
@@ -112,12 +112,12 @@ class _Task:
     language: Language
 
 
-def _independent(form: PointsForm, weight: Weight) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
     """States, and the points that they make, that nothing couples with the others: neither A, nor C, nor P."""
     from scipy.sparse.csgraph import connected_components
 
     layout, n = form.layout, form.states
-    coupled = weight.couples.copy()
+    coupled = matrix.couples.copy()
     within = layout.columns < n
     coupled[layout.rows[within], layout.columns[within]] = True
     used = (form.blocks != 0).any(axis=1)
@@ -131,26 +131,26 @@ def _follow(
     task: _Task, states: NDArray[np.intp], points: NDArray[np.intp], x: Array
 ) -> tuple[Array, Array, float | None]:
     """Estimates at all samples, P at the kept ones, and when the estimate diverged."""
-    weight, time, grid, index = task.weight, task.along.recording.time, task.along.grid, task.along.index
+    matrix, time, grid, index = task.matrix, task.along.recording.time, task.along.grid, task.along.index
     block = np.ix_(states, states)
-    P, n = weight.start[block].copy(), len(states)
-    pull = weight.forgetting * P - weight.decrease[block]
+    P, n = matrix.start[block].copy(), len(states)
+    pull = matrix.forgetting * P - matrix.decrease[block]
     loop = arrays(task.form, states, points)
-    law = (weight.computed, weight.information, weight.forgetting, pull)
+    law = (matrix.computed, matrix.information, matrix.forgetting, pull)
     stops = np.union1d(task.kept, np.flatnonzero(task.began[:, points].any(axis=1)))
     inverses = np.zeros((1, 1, 1))
     state, at_kept = np.full((len(time), n), np.nan), np.full((len(task.kept), n, n), np.nan)
     for first, last in zip(stops, [*stops[1:], None], strict=True):
         if task.began[first, points].any():
             x, P = _begin(task, int(first), states, points, x, P)
-        at_kept[task.kept == first] = P if weight.computed else weight.at(time[first])[0][block]
+        at_kept[task.kept == first] = P if matrix.computed else matrix.at(time[first])[0][block]
         state[first] = x
         if last is None:
             break
         part = slice(index[first], index[last])
         rows = slice(EACH * part.start, EACH * part.stop + 1)
-        if not weight.computed and (first == stops[0] or not weight.constant):
-            inverses = _inverses(weight.at(task.along.instants[rows])[:, block[0], block[1]])
+        if not matrix.computed and (first == stops[0] or not matrix.constant):
+            inverses = _inverses(matrix.at(task.along.instants[rows])[:, block[0], block[1]])
         path, P, diverged = advance(
             loop,
             law,
@@ -207,7 +207,7 @@ def _begin(
     x, P = x.copy(), P.copy()
     x[free] = np.linalg.lstsq(rows[:, free], goal.ravel() - rows[:, ~free] @ x[~free], rcond=None)[0]
     P[free] = P[:, free] = 0
-    P[np.ix_(free, free)] = task.weight.start[np.ix_(states[free], states[free])]
+    P[np.ix_(free, free)] = task.matrix.start[np.ix_(states[free], states[free])]
     return x, P
 
 

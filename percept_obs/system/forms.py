@@ -55,10 +55,10 @@ class PartitionedSystem:
     rate : matrix of shape (n1 + n2, 1)
         Time derivative of (x1, x2).
     parameters : tuple of symbols
-        Known motion and surface.
+        Known motion and view.
     coordinates : tuple of symbols
-        All coordinates in the order of the surface.
-    surface : View or None
+        All coordinates in the order of the view.
+    view : View or None
         Where the outputs are seen.
     """
 
@@ -67,12 +67,12 @@ class PartitionedSystem:
     rate: sp.ImmutableMatrix
     parameters: tuple[sp.Symbol, ...]
     coordinates: tuple[sp.Symbol, ...]
-    surface: View | None = None
+    view: View | None = None
 
     @property
     def values(self) -> dict[sp.Symbol, float]:
-        """Numbers of the surface's symbols."""
-        return dict(self.surface.values) if self.surface else {}
+        """Numbers of the view's symbols."""
+        return dict(self.view.values) if self.view else {}
 
     @property
     def measured(self) -> tuple[str, ...]:
@@ -99,7 +99,7 @@ class PartitionedSystem:
         # What is affine but not written so still holds hidden coordinates; their value does not matter there.
         w = w if not w.free_symbols & set(self.x2) else w.subs(away)
         phi, g = self.rate[:n1, :].expand().subs(away), self.rate[n1:, :]
-        return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.surface, w=w, phi=phi, g=g)
+        return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.view, w=w, phi=phi, g=g)
 
     @cached_property
     def culprits(self) -> tuple[str, ...]:
@@ -125,7 +125,7 @@ class CanonicalForm(PartitionedSystem):
 
     Parameters
     ----------
-    x1, x2, parameters, coordinates, surface
+    x1, x2, parameters, coordinates, view
         See `PartitionedSystem`; its rate follows from w, phi and g.
     w : matrix of shape (n2, n1)
     phi : matrix of shape (n1, 1)
@@ -214,7 +214,7 @@ def partition(
     rate: sp.ImmutableMatrix,
     measured: Sequence[str],
     parameters: tuple[sp.Symbol, ...],
-    surface: View | None = None,
+    view: View | None = None,
 ) -> PartitionedSystem:
     """Divide a system, given the names of the measured coordinates and the rate in the order of all coordinates."""
     rates = dict(zip(coordinates, rate, strict=True))
@@ -222,7 +222,7 @@ def partition(
     x1 = tuple(by_name[name] for name in measured)
     x2 = tuple(symbol for symbol in coordinates if symbol not in x1)
     ordered = sp.ImmutableMatrix([rates[symbol] for symbol in (*x1, *x2)])
-    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, surface)
+    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, view)
 
 
 def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> tuple[str, ...]:

@@ -224,9 +224,9 @@ def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
 def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None:
     form, recording = observer.form, along.recording
     view = recording.view
-    if form.surface is None or not form.surface.fits(view):
+    if form.view is None or not form.view.fits(view):
         raise DoesNotFit(
-            f"the {observer.name} observer was made for the {form.surface.name if form.surface else 'no'} surface "
+            f"the {observer.name} observer was made for the {form.view.name if form.view else 'no'} surface "
             f"{dict(form.values)}, but the recording was seen on the {view.name} {dict(view.values)}; derive the "
             "observer for the recording's surface"
         )

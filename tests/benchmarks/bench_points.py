@@ -43,7 +43,7 @@ def loop(recording, observer):
     n = form.states
     known = form.numbers(np.linspace(0, 60, 2 * STEPS + 1))
     images = np.repeat(recording.outputs[:-1, None], 3, axis=1)
-    tables = (np.full(STEPS, 0.01), known, np.linalg.inv(observer.weight.at(0.0)), images)
+    tables = (np.full(STEPS, 0.01), known, np.linalg.inv(observer.P.at(0.0)), images)
     law = (False, 0.0, 0.0, np.zeros((n, n)))
     form_arrays = arrays(form, np.arange(n), np.arange(form.points))
     path, _, diverged = advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba")

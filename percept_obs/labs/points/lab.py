@@ -18,10 +18,10 @@ from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points import (
     FirstSight,
+    LyapunovMatrix,
     PointsRun,
     PointsScenario,
     UnseenDirection,
-    Weight,
     constant,
     luenberger,
     lyapunov,
@@ -38,7 +38,7 @@ from percept_obs.tracking.run import SETTLED_PART, VERDICTS
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
 
-_WEIGHTS: Mapping[str, Callable[[Settings], Weight]] = MappingProxyType(
+_WEIGHTS: Mapping[str, Callable[[Settings], LyapunovMatrix]] = MappingProxyType(
     {
         "constant": lambda s: constant(s["size"]),
         "scheduled": lambda s: scheduled(lambda t: s["size"] * (s["final"] / s["size"]) ** (t / s["duration"])),
