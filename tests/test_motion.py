@@ -64,40 +64,6 @@ def test_sympy_columns_of_numbers_are_vectors():
     assert rigid(column, [0] * 3, [0] * 3).values[sp.Symbol("w3", real=True)] == 3
 
 
-def test_symbols_take_numbers():
-    k = sp.Symbol("k", real=True)
-    motion = affine(k * sp.eye(3), [0, 0, 1])
-    bound = motion.with_values({k: 0.3})
-    assert (bound.A, bound.parameters, bound.values) == (motion.A, (k,), {k: 0.3})
-    assert motion.signal is None
-    assert bound.with_values({"k": 2}).values == {k: 2.0}
-
-
-def test_numbers_that_are_not_given_stay():
-    motion = affine(A, b).with_values({"b3": 7})
-    assert motion.known(0.0).tolist() == [[*A.ravel(), 1, 2, 7]]
-
-
-@pytest.mark.parametrize(
-    ("values", "message"),
-    [
-        ({"b4": 1}, "no symbol b4; it has a11, a12"),
-        ({"b3": np.nan}, "not finite"),
-        ({"b3": "much"}, "not all numbers"),
-        ({"b3": None}, "not all numbers"),
-    ],
-)
-def test_numbers_that_do_not_fit_are_refused(values, message):
-    with pytest.raises(ValueError, match=message):
-        affine(A, b).with_values(values)
-
-
-@pytest.mark.parametrize("motion", [affine(), affine(lambda t: A, b)], ids=["symbols", "varying"])
-def test_a_symbol_without_a_number_is_refused(motion):
-    with pytest.raises(ValueError, match=r"needs numbers for all of its symbols: a11, .*b2 too"):
-        motion.with_values({"b3": 1})
-
-
 def test_rigid_motion_turns_with_plus_w():
     motion = rigid((0.1, 0.2, 0.3), (1, 2, 3), (4, 5, 6))
     point = np.array([0.5, -1, 2])

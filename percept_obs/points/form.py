@@ -16,7 +16,7 @@ from percept_obs.compile import vectorised
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
 from percept_obs.recording import Recording
-from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
@@ -279,27 +279,21 @@ class PointsForm:
         """From one point's image to the innovation of all of them, step by step."""
         block, xi = self.block, sp.Matrix(POINT)
         values = ",\\ ".join(sp.latex(value) for value in block.eigenvalues())
-        return Derivation(
-            (
-                Step("The state moves:", rf"\dot x = A x + v,\quad n = {self.states}"),
-                Step("A point of it is seen at:", equals("y", sp.Matrix(self.surface.image))),
-                Step(
-                    "Times its distance this is linear in the point:",
-                    rf"{sp.latex(self.surface.distance)}\, y = {sp.latex(block.N)} {sp.latex(xi)}",
-                ),
-                Step("So the point lies in the kernel of:", equals("B(y)", block.B)),
-                Step(
-                    "The same at the estimate leaves the innovation, linear in the error:",
-                    r"y - h(\hat\xi) = \frac{1}{l\hat\xi}\, B(y)\,(\xi - \hat\xi)",
-                ),
-                Step("What an instant tells of the point:", equals("B^T B", block.S)),
-                Step("Its eigenvalues, 0 for the ray:", values),
-                Step(
-                    f"For all {self.points} points, block by block:",
-                    r"y - H(C\hat x) = E(\hat x)\, B(y)\, C\, (x - \hat x)",
-                ),
-            )
-        )
+        formulas = {
+            "The state moves:": rf"\dot x = A x + v,\quad n = {self.states}",
+            "A point of it is seen at:": equals("y", sp.Matrix(self.surface.image)),
+            "Times its distance this is linear in the point:": (
+                rf"{sp.latex(self.surface.distance)}\, y = {sp.latex(block.N)} {sp.latex(xi)}"
+            ),
+            "So the point lies in the kernel of:": equals("B(y)", block.B),
+            "The same at the estimate leaves the innovation, linear in the error:": (
+                r"y - h(\hat\xi) = \frac{1}{l\hat\xi}\, B(y)\,(\xi - \hat\xi)"
+            ),
+            "What an instant tells of the point:": equals("B^T B", block.S),
+            "Its eigenvalues, 0 for the ray:": values,
+            f"For all {self.points} points, block by block:": r"y - H(C\hat x) = E(\hat x)\, B(y)\, C\, (x - \hat x)",
+        }
+        return Derivation.of(formulas)
 
     def _repr_latex_(self) -> str:
         return (

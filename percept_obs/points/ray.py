@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from percept_obs.points.block import point_block
 from percept_obs.points.form import PointsForm
-from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.surfaces import pinhole
 
 Array = NDArray[np.float64]
@@ -63,21 +63,18 @@ class RayError:
     def derivation(self) -> Derivation:
         """From the error's rate to the best gain, step by step."""
         k, omega = sp.latex(self.gain), sp.latex(self.turning)
-        return Derivation(
-            (
-                Step(
-                    "In axes across and along the ray, which turns, the error obeys:",
-                    equals(r"\dot z", sp.latex(self.matrix) + r"\, z"),
-                ),
-                Step("Its rates are:", r",\quad ".join(map(sp.latex, self.eigenvalues))),
-                Step("They meet, and the slow one is fastest, at:", equals(k, self.best_gain)),
-                Step("Errors then decay at the rate:", sp.latex(self.best_decay)),
-                Step(
-                    "A larger gain holds the estimate on the ray and lets nothing along it; the rate tends to:",
-                    rf"{sp.latex(self.over_gain)} \quad ({k} \gg {omega})",
-                ),
-            )
-        )
+        formulas = {
+            "In axes across and along the ray, which turns, the error obeys:": (
+                equals(r"\dot z", sp.latex(self.matrix) + r"\, z")
+            ),
+            "Its rates are:": r",\quad ".join(map(sp.latex, self.eigenvalues)),
+            "They meet, and the slow one is fastest, at:": equals(k, self.best_gain),
+            "Errors then decay at the rate:": sp.latex(self.best_decay),
+            "A larger gain holds the estimate on the ray and lets nothing along it; the rate tends to:": (
+                rf"{sp.latex(self.over_gain)} \quad ({k} \gg {omega})"
+            ),
+        }
+        return Derivation.of(formulas)
 
 
 @lru_cache(maxsize=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import overload
 
@@ -25,6 +25,11 @@ class Derivation(Sequence[Step]):
     """A sequence of steps that a notebook shows as text and formulas, and that prints as text; a slice is one too."""
 
     steps: tuple[Step, ...]
+
+    @classmethod
+    def of(cls, formulas: Mapping[str, str]) -> Derivation:
+        """A derivation of formulas by their reasons."""
+        return cls(tuple(Step(reason, formula) for reason, formula in formulas.items()))
 
     @overload
     def __getitem__(self, index: int) -> Step: ...

@@ -10,7 +10,7 @@ from itertools import product
 
 import sympy as sp
 
-from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.view import View
 
 
@@ -189,17 +189,15 @@ class CanonicalForm(PartitionedSystem):
     def derivation(self) -> Derivation:
         """The form in formulas, one part after the other."""
         x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
-        return Derivation(
-            (
-                Step("Measured and hidden:", rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}"),
-                Step(
-                    "What multiplies the hidden coordinates in the measured ones' rate:",
-                    equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
-                ),
-                Step("What is left of it without them:", equals(r"\phi", self.phi)),
-                Step("How the hidden coordinates change:", equals(r"g", self.g)),
-            )
-        )
+        formulas = {
+            "Measured and hidden:": rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}",
+            "What multiplies the hidden coordinates in the measured ones' rate:": (
+                equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T)
+            ),
+            "What is left of it without them:": equals(r"\phi", self.phi),
+            "How the hidden coordinates change:": equals(r"g", self.g),
+        }
+        return Derivation.of(formulas)
 
     def _repr_latex_(self) -> str:
         x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)

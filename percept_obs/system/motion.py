@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -120,35 +120,6 @@ class Motion:
             return {}
         return dict(zip(self.parameters, self.signal.at(0.0)[0].tolist(), strict=True))
 
-    def with_values(self, values: Mapping[sp.Symbol | str, float]) -> Motion:
-        """The same motion with constant numbers for its symbols; those of a constant motion stay where none is given.
-
-        Parameters
-        ----------
-        values : mapping of symbols or their names to numbers
-
-        Raises
-        ------
-        ValueError
-            If a symbol is unknown or left without a number, or a value is not a finite number.
-        """
-        names = [symbol.name for symbol in self.parameters]
-        given = {str(symbol): value for symbol, value in values.items()}
-        unknown = [name for name in given if name not in names]
-        if unknown:
-            raise ValueError(
-                f"the {self.name} motion has no symbol {', '.join(unknown)}; it has {', '.join(names) or 'none'}"
-            )
-        numbers = {symbol.name: value for symbol, value in self.values.items()} | given
-        missing = [name for name in names if name not in numbers]
-        if missing:
-            raise ValueError(f"the {self.name} motion needs numbers for all of its symbols: {', '.join(missing)} too")
-        try:
-            row = [float(numbers[name]) for name in names]
-        except (TypeError, ValueError):
-            raise ValueError(f"the values {given} are not all numbers") from None
-        return replace(self, signal=Signal(np.array([row])))
-
     def known(self, times: ArrayLike) -> Values:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
@@ -161,7 +132,7 @@ class Motion:
             if self.parameters:
                 raise ValueError(
                     f"the {self.name} motion has no values for {', '.join(map(str, self.parameters))}; "
-                    "build it with numbers, for instance affine(A, b), or give it some: motion.with_values({...})"
+                    "build it with numbers, for instance affine(A, b)"
                 )
             return np.zeros((1, 0))
         rows = self.signal.at(times)

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from percept_obs.system.derivation import Derivation, Step, equals
+from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -129,42 +129,32 @@ class PerspectiveSystem:
         eta = sp.latex(surface.inverse_distance)
         m = sp.Matrix(surface.ray)
         point = sp.latex(sp.Matrix(POINT))
-        return Derivation(
-            (
-                Step(
-                    "The point moves:",
-                    equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
-                ),
-                Step(
-                    f"It is seen on the {surface.name} surface:",
-                    rf"{sp.latex(y)} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = "
-                    rf"{sp.latex(1 / surface.distance)}",
-                ),
-                Step(
-                    "So the point lies on a ray, at the distance one over the inverse distance:",
-                    rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(m)}",
-                ),
-                Step(
-                    "Derivatives of the image coordinates, and of the distance l, taken on the ray:",
-                    rf"J(m) = {sp.latex(self._image_gradient)},\quad "
-                    rf"\nabla l(m) = {sp.latex(self._distance_gradient)}",
-                ),
-                Step("The velocity, times the inverse distance:", equals(rf"A m + b\,{eta}", self._velocity)),
-                Step(
-                    "Image coordinates do not change with scale, so the inverse distance cancels:",
-                    rf"\dot y = J(m)\,(A m + b\,{eta}),\quad "
-                    rf"\dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",
-                ),
-                Step(
-                    "Multiplied out:",
-                    equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
-                ),
-                Step(
-                    "The focus of expansion, where the distance drops out of the image's motion:",
-                    equals(sp.latex(y), self.foe),
-                ),
-            )
-        )
+        formulas = {
+            "The point moves:": (
+                equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}")
+            ),
+            f"It is seen on the {surface.name} surface:": (
+                rf"{sp.latex(y)} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = "
+                rf"{sp.latex(1 / surface.distance)}"
+            ),
+            "So the point lies on a ray, at the distance one over the inverse distance:": (
+                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(m)}"
+            ),
+            "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
+                rf"J(m) = {sp.latex(self._image_gradient)},\quad "
+                rf"\nabla l(m) = {sp.latex(self._distance_gradient)}"
+            ),
+            "The velocity, times the inverse distance:": equals(rf"A m + b\,{eta}", self._velocity),
+            "Image coordinates do not change with scale, so the inverse distance cancels:": (
+                rf"\dot y = J(m)\,(A m + b\,{eta}),\quad "
+                rf"\dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})"
+            ),
+            "Multiplied out:": equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
+            "The focus of expansion, where the distance drops out of the image's motion:": (
+                equals(sp.latex(y), self.foe)
+            ),
+        }
+        return Derivation.of(formulas)
 
     def _repr_latex_(self) -> str:
         return rf"$\displaystyle \frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))} = {sp.latex(self.rate)}$"

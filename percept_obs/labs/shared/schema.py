@@ -48,6 +48,9 @@ class Kind:
 
     def read(self, name: str, value: object) -> Any:
         """The value as plain data, or a ValueError that says what is expected of the setting with this name."""
+        value = value.tolist() if isinstance(value, np.ndarray) and value.ndim else value
+        if not self._allows(value):
+            raise ValueError(f"{name} is {reprlib.repr(value)}; it must be {self.expected}")
         return self._read(name, value)
 
     def for_the_page(self) -> Settings:
@@ -58,11 +61,11 @@ class Kind:
     def _expected(self) -> str:
         raise NotImplementedError
 
-    def _read(self, name: str, value: object) -> Any:
-        raise NotImplementedError
+    def _allows(self, value: Any) -> bool:
+        return True
 
-    def _refusal(self, name: str, value: object) -> ValueError:
-        return ValueError(f"{name} is {reprlib.repr(value)}; it must be {self.expected}")
+    def _read(self, name: str, value: Any) -> Any:
+        return value
 
 
 @dataclass(frozen=True)
@@ -96,12 +99,12 @@ class Number(Kind):
         bounds = [f"{bound:g}" if bound < 1e6 else str(bound) for bound in (self.low, self.high)]
         return f"{kind} from {' to '.join(bounds)}{'' if self.zero else ', not 0'}{self.reason and f'; {self.reason}'}"
 
-    def _read(self, name: str, value: Any) -> float:
+    def _allows(self, value: Any) -> bool:
         kind: Any = Integral if self.whole else Real
-        if isinstance(value, bool) or not isinstance(value, kind):
-            raise self._refusal(name, value)
-        if not self.low <= value <= self.high or not (self.zero or value):
-            raise self._refusal(name, value)
+        number = isinstance(value, kind) and not isinstance(value, bool)
+        return number and self.low <= value <= self.high and bool(self.zero or value)
+
+    def _read(self, name: str, value: Any) -> float:
         return int(value) if self.whole else float(value)
 
 
@@ -115,10 +118,8 @@ class Choice(Kind):
     def _expected(self) -> str:
         return f"one of {', '.join(self.names)}"
 
-    def _read(self, name: str, value: object) -> str:
-        if not isinstance(value, str) or value not in self.names:
-            raise self._refusal(name, value)
-        return value
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, str) and value in self.names
 
 
 @dataclass(frozen=True)
@@ -132,11 +133,12 @@ class Names(Kind):
     def _expected(self) -> str:
         return f"a list with {'at least one' if self.least else 'some'} of {', '.join(self.names)}, each once"
 
-    def _read(self, name: str, value: object) -> list[str]:
+    def _allows(self, value: Any) -> bool:
         if not isinstance(value, list | tuple) or not all(isinstance(v, str) and v in self.names for v in value):
-            raise self._refusal(name, value)
-        if len(value) < self.least or len(set(value)) < len(value):
-            raise self._refusal(name, value)
+            return False
+        return self.least <= len(value) == len(set(value))
+
+    def _read(self, name: str, value: Any) -> list[str]:
         return list(value)
 
 
@@ -149,10 +151,8 @@ class Flag(Kind):
     def _expected(self) -> str:
         return "True or False"
 
-    def _read(self, name: str, value: object) -> bool:
-        if not isinstance(value, bool):
-            raise self._refusal(name, value)
-        return value
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, bool)
 
 
 @dataclass(frozen=True)
@@ -168,12 +168,12 @@ class Row(Kind):
         kinds = list(dict.fromkeys(entry.expected for entry in self.entries))
         return f"a list of {len(self.entries)}, {f'each {kinds[0]}' if len(kinds) == 1 else '; '.join(kinds)}"
 
-    def _read(self, name: str, value: object) -> list[Any]:
-        values = _listed(value)
-        if values is None or len(values) != len(self.entries):
-            raise self._refusal(name, value)
-        named = [f"{name} {entry.label or k}" for k, entry in enumerate(self.entries, 1)]
-        return [entry.read(n, v) for entry, n, v in zip(self.entries, named, values, strict=True)]
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, list | tuple) and len(value) == len(self.entries)
+
+    def _read(self, name: str, value: Any) -> list[Any]:
+        entries = enumerate(zip(self.entries, value, strict=True), 1)
+        return [kind.read(f"{name} {kind.label or k}", entry) for k, (kind, entry) in entries]
 
 
 @dataclass(frozen=True)
@@ -187,11 +187,11 @@ class Several(Kind):
     def _expected(self) -> str:
         return f"a list of 1 to {self.most}, each {self.of.expected}"
 
-    def _read(self, name: str, value: object) -> list[Any]:
-        values = _listed(value)
-        if values is None or not 1 <= len(values) <= self.most:
-            raise self._refusal(name, value)
-        return [self.of.read(f"{name} {k}", entry) for k, entry in enumerate(values, 1)]
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, list | tuple) and 1 <= len(value) <= self.most
+
+    def _read(self, name: str, value: Any) -> list[Any]:
+        return [self.of.read(f"{name} {k}", entry) for k, entry in enumerate(value, 1)]
 
 
 @dataclass(frozen=True)
@@ -207,9 +207,10 @@ class Group(Kind):
     def _expected(self) -> str:
         return f"a mapping of {', '.join(self.of)}"
 
-    def _read(self, name: str, value: object) -> Settings:
-        if not isinstance(value, Mapping):
-            raise self._refusal(name, value)
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, Mapping)
+
+    def _read(self, name: str, value: Any) -> Settings:
         unknown = ", ".join(sorted(str(key) for key in value if key not in self.of))
         if unknown:
             raise ValueError(f"{name} has no {unknown}; there are {', '.join(self.of)}")
@@ -223,7 +224,7 @@ class GainsOf(Group):
 
     observer: Callable[[], Observer] = field(repr=False)
 
-    def _read(self, name: str, value: object) -> Settings:
+    def _read(self, name: str, value: Any) -> Settings:
         found = super()._read(name, value)
         if found != self.opening:
             self.observer().with_gains(**found)
@@ -239,7 +240,7 @@ class Optional(Kind):
     def _expected(self) -> str:
         return f"None or {self.of.expected}"
 
-    def _read(self, name: str, value: object) -> Any:
+    def _read(self, name: str, value: Any) -> Any:
         return None if value is None else self.of.read(name, value)
 
 
@@ -250,9 +251,10 @@ class Whole(Kind):
     def _expected(self) -> str:
         return "a mapping of settings"
 
-    def _read(self, name: str, value: object) -> Settings:
-        if not isinstance(value, Mapping):
-            raise self._refusal(name, value)
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, Mapping)
+
+    def _read(self, name: str, value: Any) -> Settings:
         return dict(value)
 
 
@@ -323,12 +325,6 @@ def noise(**sizes: Number) -> Group:
 SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random")
 DROPOUT = Number(0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost")
 KEPT = Optional(Whole(), about="None, or the settings of the run that is kept to compare with")
-
-
-def _listed(value: object) -> list[Any] | None:
-    if isinstance(value, np.ndarray) and value.ndim:
-        return list(value.tolist())
-    return list(value) if isinstance(value, list | tuple) else None
 
 
 def _plain(value: object) -> Any:
