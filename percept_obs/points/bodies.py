@@ -9,10 +9,8 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.points.form import PointsForm
-from percept_obs.system.motion import Motion, bound
+from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.surfaces import ImagingSurface, pinhole
-
-AXES = "xyz"
 
 
 def independent_points(motion: Motion, points: int, surface: ImagingSurface | None = None) -> PointsForm:
@@ -47,8 +45,7 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
         motion.parameters,
         motion.signal,
     )
-    sums = [[k] for k in range(points)]
-    return PointsForm(many, _sums(sums, points), surface or pinhole(), _names([f"X{k + 1}" for k in range(points)]))
+    return _form(many, [f"X{k + 1}" for k in range(points)], [[k] for k in range(points)], surface)
 
 
 def rigid_body(
@@ -96,10 +93,8 @@ functions of time, optional
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
     motion = _body_motion("rigid body", points, given, times)
-    sums = [[0], *([0, k] for k in range(1, points))]
-    return PointsForm(
-        motion, _sums(sums, points), surface or pinhole(), _names(["r", *(f"d{k + 1}" for k in range(1, points))])
-    )
+    others = range(1, points)
+    return _form(motion, ["r", *(f"d{k + 1}" for k in others)], [[0], *([0, k] for k in others)], surface)
 
 
 def body_with_origin(
@@ -135,9 +130,8 @@ def body_with_origin(
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
     motion = _body_motion("rigid body with an origin", points + 1, given, times)
-    sums = [[0, k + 1] for k in range(points)]
-    names = _names(["o", *(f"d{k + 1}" for k in range(points))])
-    return PointsForm(motion, _sums(sums, points + 1), surface or pinhole(), names)
+    others = range(1, points + 1)
+    return _form(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
 
 
 def _body_motion(name: str, vectors: int, given: tuple[Any, ...], times: ArrayLike | None) -> Motion:
@@ -147,14 +141,10 @@ def _body_motion(name: str, vectors: int, given: tuple[Any, ...], times: ArrayLi
     symbols = (w_c, v_c, w_b, v_p)
     if any(value is not None for value in given):
         given = tuple(np.zeros(3) if value is None else value for value in given)
-    place, turning = _cross(-w_c), _cross(w_b - w_c)
+    place, turning = cross(-w_c), cross(w_b - w_c)
     A = _placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
     v = _placed(vectors, {(0, 0): v_p - v_c}, columns=1)
     return bound(name, A, v, list(zip(given, symbols, strict=True)), times)
-
-
-def _cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    return sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
 
 
 def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:
@@ -169,16 +159,13 @@ def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], col
     return sp.ImmutableSparseMatrix(3 * vectors, columns or 3 * vectors, entries)
 
 
-def _sums(sums: list[list[int]], vectors: int) -> np.ndarray:
-    """C of points that are sums of the state's vectors, shape (p, 3, 3 vectors)."""
-    C = np.zeros((len(sums), 3, vectors, 3))
+def _form(motion: Motion, vectors: list[str], sums: list[list[int]], surface: ImagingSurface | None) -> PointsForm:
+    """The form of points that are sums of the state's vectors."""
+    C = np.zeros((len(sums), 3, len(vectors), 3))
     for k, parts in enumerate(sums):
         C[k, :, parts, :] = np.eye(3)
-    return C.reshape(len(sums), 3, -1)
-
-
-def _names(vectors: list[str]) -> tuple[str, ...]:
-    return tuple(f"{vector}_{axis}" for vector in vectors for axis in AXES)
+    names = tuple(f"{vector}_{axis}" for vector in vectors for axis in "xyz")
+    return PointsForm(motion, C.reshape(len(sums), 3, -1), surface or pinhole(), names)
 
 
 def _refuse(points: int) -> None:

@@ -51,29 +51,17 @@ class Conditions:
         """Whether the weaker inequality holds throughout."""
         return bool((self.weaker <= TOLERANCE * self.scale).all())
 
-    @property
-    def positive(self) -> bool:
-        """Whether P stays positive definite."""
-        return bool((self.least > 0).all())
-
     def verdict(self) -> str:
         """What holds, in words; what does not, from when on."""
         parts = []
         for name, values in (("(15)", self.printed), (f"the weaker one with epsilon = {self.epsilon:g}", self.weaker)):
-            missed = np.flatnonzero(values > TOLERANCE * self.scale)
-            if not len(missed):
-                parts.append(f"{name} holds throughout")
-            else:
-                parts.append(
-                    f"{name} fails first at {self.time[missed[0]]:.3g} s, by {values.max():.3g} at "
-                    f"{self.time[values.argmax()]:.3g} s"
-                )
-        lost = np.flatnonzero(self.least <= 0)
-        if len(lost):
-            parts.append(f"P is not positive definite from {self.time[lost[0]]:.3g} s on")
-        else:
-            parts.append(f"the smallest eigenvalue of P is {self.least.min():.3g}")
-        return "; ".join(parts)
+            missed = self.time[values > TOLERANCE * self.scale]
+            worst = f"by {values.max():.3g} at {self.time[values.argmax()]:.3g} s"
+            parts.append(
+                f"{name} fails first at {missed[0]:.3g} s, {worst}" if len(missed) else f"{name} holds throughout"
+            )
+        lost, least = self.time[self.least <= 0], f"the smallest eigenvalue of P is {self.least.min():.3g}"
+        return "; ".join([*parts, f"P is not positive definite from {lost[0]:.3g} s on" if len(lost) else least])
 
 
 def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Array, epsilon: float = 1.0) -> Conditions:

@@ -17,7 +17,7 @@ from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
 from percept_obs.recording import Recording
 from percept_obs.system.derivation import Derivation, equals
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
 Array = NDArray[np.float64]
@@ -97,7 +97,7 @@ class PointsForm:
         if len(set(names)) != len(names) or len(names) != n:
             raise ValueError(f"{len(names)} names were given for {n} states; each state needs a name of its own")
         point_block(self.surface)
-        if not self._symbolic:
+        if not any(block.free_symbols for block in self.C):
             if not np.isfinite(self.blocks).all():
                 raise ValueError("C has entries that are not finite; remove or repair the NaN or infinite ones")
             if self.unseen.shape[1]:
@@ -159,16 +159,13 @@ class PointsForm:
         for k, block in enumerate(self.C):
             for (i, j), value in block.todok().items():
                 dense[k, i, j] = float(value)
-        return _readonly(dense)
+        return readonly(dense)
 
     @cached_property
     def surface_numbers(self) -> tuple[Array, Array]:
         """Numbers of the block: N of shape (m, 3) and l of shape (3,)."""
-        values = self.surface.values
-        return (
-            np.array(self.block.N.subs(values), dtype=float),
-            np.array(self.block.l.subs(values), dtype=float).ravel(),
-        )
+        N, l = (np.array(part.subs(self.surface.values), dtype=float) for part in (self.block.N, self.block.l))
+        return N, l.ravel()
 
     @cached_property
     def layout(self) -> Layout:
@@ -203,10 +200,8 @@ class PointsForm:
         """Image coordinates of states of shape (..., n), shape (..., p, m); NaN behind the camera."""
         positions = self.locate(states)
         N, l = self.surface_numbers
-        distance = (positions @ l)[..., None]
-        return np.divide(
-            positions @ N.T, distance, out=np.full((*positions.shape[:-1], len(N)), np.nan), where=distance > 0
-        )
+        distance, images = (positions @ l)[..., None], positions @ N.T
+        return np.divide(images, distance, out=np.full_like(images, np.nan), where=distance > 0)
 
     def information(self, outputs: ArrayLike) -> Array:
         """S = C^T B^T B C for outputs of shape (..., p, m), shape (..., n, n); points with a NaN are left out."""
@@ -218,8 +213,7 @@ class PointsForm:
         outputs = np.asarray(outputs, dtype=float)
         N, l = self.surface_numbers
         seen = np.isfinite(outputs).all(axis=-1)[..., None, None]
-        block = np.where(seen, N - np.nan_to_num(outputs)[..., None] * l, 0.0)
-        rows = block @ self.blocks
+        rows = np.where(seen, N - np.nan_to_num(outputs)[..., None] * l, 0.0) @ self.blocks
         return rows.reshape(*outputs.shape[:-2], -1, self.states)
 
     @cached_property
@@ -234,7 +228,7 @@ class PointsForm:
         else:
             known = np.random.default_rng(0).normal(size=(DRAWS, len(self.motion.parameters)))
         A = self._dense(self._evaluated(known))[:, :, :-1]
-        return _readonly(unobservable(A, self.blocks.reshape(-1, self.states)))
+        return readonly(unobservable(A, self.blocks.reshape(-1, self.states)))
 
     def describe(self, directions: Array) -> tuple[str, ...]:
         """Directions of the state in words, one sum of states for each column of an array of shape (n, q)."""
@@ -259,16 +253,13 @@ class PointsForm:
     def B(self) -> sp.ImmutableMatrix:
         """B(y) of all points, shape (m p, 3 p)."""
         m, block = len(self.image_coordinates), self.block
-        return sp.ImmutableMatrix(
-            sp.diag(*(block.B.xreplace(dict(zip(block.y, self.y[k * m :], strict=False))) for k in range(self.points)))
-        )
+        images = (self.y[k * m : (k + 1) * m] for k in range(self.points))
+        return sp.ImmutableMatrix(sp.diag(*(block.B.xreplace(dict(zip(block.y, y, strict=True))) for y in images)))
 
     def E(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """E of a state: one over the distance of each point, shape (m p, m p)."""
-        points = [C * sp.ImmutableMatrix(state) for C in self.C]
-        return sp.ImmutableMatrix(
-            sp.diag(*(sp.eye(len(self.image_coordinates)) / (self.block.l * xi)[0] for xi in points))
-        )
+        distances = [(self.block.l * C * sp.ImmutableMatrix(state))[0] for C in self.C]
+        return sp.ImmutableMatrix(sp.diag(*(sp.eye(len(self.image_coordinates)) / l for l in distances)))
 
     def H(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """Images of all points of a state, shape (m p, 1)."""
@@ -278,7 +269,6 @@ class PointsForm:
     def derivation(self) -> Derivation:
         """From one point's image to the innovation of all of them, step by step."""
         block, xi = self.block, sp.Matrix(POINT)
-        values = ",\\ ".join(sp.latex(value) for value in block.eigenvalues())
         formulas = {
             "The state moves:": rf"\dot x = A x + v,\quad n = {self.states}",
             "A point of it is seen at:": equals("y", sp.Matrix(self.surface.image)),
@@ -290,7 +280,7 @@ class PointsForm:
                 r"y - h(\hat\xi) = \frac{1}{l\hat\xi}\, B(y)\,(\xi - \hat\xi)"
             ),
             "What an instant tells of the point:": equals("B^T B", block.S),
-            "Its eigenvalues, 0 for the ray:": values,
+            "Its eigenvalues, 0 for the ray:": ",\\ ".join(map(sp.latex, block.eigenvalues())),
             f"For all {self.points} points, block by block:": r"y - H(C\hat x) = E(\hat x)\, B(y)\, C\, (x - \hat x)",
         }
         return Derivation.of(formulas)
@@ -300,10 +290,6 @@ class PointsForm:
             rf"$\displaystyle \dot x = A x + v,\quad x \in \mathbb{{R}}^{{{self.states}}},\quad "
             rf"y_k = h(C_k x),\ k = 1 \ldots {self.points},\quad B_k = {sp.latex(self.block.B)}$"
         )
-
-    @property
-    def _symbolic(self) -> bool:
-        return any(block.free_symbols for block in self.C)
 
     def _evaluated(self, known: Array) -> Array:
         expressions = self.layout.expressions
@@ -348,9 +334,3 @@ def _matrix(block: Any) -> sp.ImmutableMatrix:
     array = np.asarray(block, dtype=object)
     entries = {(i, j): sp.sympify(array[i, j]) for i, j in zip(*np.nonzero(array), strict=True)}
     return sp.ImmutableSparseMatrix(*array.shape, entries)
-
-
-def _readonly(array: Array) -> Array:
-    array = np.array(array, dtype=float)
-    array.setflags(write=False)
-    return array

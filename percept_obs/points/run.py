@@ -101,16 +101,5 @@ class PointsRun(Run):
         return float(-np.polyfit(self.time[part], np.log(size), 1)[0])
 
     def conditions(self, epsilon: float = 1.0) -> Conditions:
-        """The inequality (15) and the weaker sufficient one along the run, apart.
-
-        Parameters
-        ----------
-        epsilon : float
-            Of the weaker one, A^T P + P A + P' <= (2 - epsilon) S, above 0 and at most 2.
-
-        Raises
-        ------
-        ValueError
-            If epsilon is out of its range.
-        """
+        """The inequality (15) and the weaker sufficient one along the run, with epsilon above 0 and at most 2."""
         return conditions(self.observer, self.time[self.kept], self.recording.outputs[self.kept], self.P, epsilon)

@@ -16,7 +16,6 @@ from percept_obs.points.kernel import Language, advance, arrays, choose
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
-from percept_obs.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course
 from percept_obs.tracking.following import DoesNotFit, follow
@@ -64,14 +63,22 @@ def _follow_points(
     language: Language | None,
 ) -> PointsRun:
     form, matrix, recording, time = observer.form, observer.P, along.recording, along.recording.time
-    _refuse_misfits(recording, form, believed)
+    if believed is not None:
+        raise DoesNotFit("this observer believes in the motion of its form; make it of a form with another motion")
+    if not form.fits(recording.view):
+        raise DoesNotFit(
+            f"the observer was made for {form.name}, but the recording shows {recording.view.name}; derive the "
+            "observer for the recording's points and surface"
+        )
     sight = start if isinstance(start, FirstSight) else None
     x = np.zeros(form.states) if start is None or sight else np.array(start, dtype=float)
     if x.shape != (form.states,) or not np.isfinite(x).all():
         raise ValueError(
             f"the start has shape {x.shape}; expected {form.states} finite numbers: {', '.join(form.names)}"
         )
-    began = np.zeros_like(recording.seen) if sight is None else _first_sights(recording, sight.absence)
+    began = np.zeros_like(recording.seen)
+    for sighting in recording.sightings(sight.absence) if sight else ():
+        began[sighting.first, sighting.point] = True
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
     task = _Task(
         along,
@@ -167,24 +174,6 @@ def _follow(
         if diverged is not None:
             return state, at_kept, float(grid[index[first] + diverged])
     return state, at_kept, None
-
-
-def _refuse_misfits(recording: Recording, form: PointsForm, believed: Motion | None) -> None:
-    if believed is not None:
-        raise DoesNotFit("this observer believes in the motion of its form; make it of a form with another motion")
-    if not form.fits(recording.view):
-        raise DoesNotFit(
-            f"the observer was made for {form.name}, but the recording shows {recording.view.name}; derive the "
-            "observer for the recording's points and surface"
-        )
-
-
-def _first_sights(recording: Recording, absence: float) -> NDArray[np.bool_]:
-    """Where a point is seen for the first time, or again after an absence, shape (K, p)."""
-    began = np.zeros_like(recording.seen)
-    for sighting in recording.sightings(absence):
-        began[sighting.first, sighting.point] = True
-    return began
 
 
 def _begin(

@@ -9,9 +9,9 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
 
@@ -81,10 +81,10 @@ class Recording:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("time", "outputs", *(() if self.truth is None else ("truth",))):
-            object.__setattr__(self, name, _readonly(getattr(self, name)))
+        for name in ("time", "outputs", "truth")[: 2 if self.truth is None else 3]:
+            object.__setattr__(self, name, readonly(getattr(self, name)))
         object.__setattr__(self, "names", tuple(self.names))
-        distances = {name: _readonly(values) for name, values in self.distances.items()}
+        distances = {name: readonly(values) for name, values in self.distances.items()}
         object.__setattr__(self, "distances", MappingProxyType(distances))
         self._check_times()
         self._check_outputs()
@@ -303,9 +303,3 @@ class Recording:
             truth=values[:, 1:] if complete else None,
             source=os.fspath(path),
         )
-
-
-def _readonly(values: ArrayLike) -> Array:
-    array = np.array(values, dtype=float)
-    array.setflags(write=False)
-    return array

@@ -189,9 +189,13 @@ def rigid(
         If shapes do not match, values are not finite or times do not increase.
     """
     w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
-    cross = sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
     given = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
-    return bound("rigid", cross, v_p - v_c, given, times)
+    return bound("rigid", cross(w), v_p - v_c, given, times)
+
+
+def cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """[w]x, the matrix of the cross product w x X."""
+    return sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
 
 
 def linear(A: Any = None, v: Any = None, states: int | None = None, times: ArrayLike | None = None) -> Motion:
@@ -253,15 +257,9 @@ def bound(
         Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
     times : array of shape (K,), optional
         Times in seconds of sampled values.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not match, values are not finite or times do not increase.
     """
-    blocks = [block for _, block in given]
     values = [value for value, _ in given]
-    symbols = tuple(s for block in blocks for s in block)
+    symbols = tuple(s for _, block in given for s in block)
     if all(value is None for value in values):
         return Motion(name, A, b, symbols)
     if any(value is None for value in values):
@@ -275,16 +273,13 @@ def bound(
         return Motion(name, A, b, symbols, Signal(lambda t: _row(given, t)))
     if times is None:
         return Motion(name, A, b, symbols, Signal(_row(given, 0.0)))
-    count = len(np.asarray(times))
-    rows = [_rows(value, block, count) for value, block in given]
+    rows = [_rows(value, block, len(np.asarray(times))) for value, block in given]
     return Motion(name, A, b, symbols, Signal(np.hstack(rows), np.asarray(times, dtype=float)))
 
 
 def _row(given: list[Coefficient], time: float) -> Values:
     """All coefficients at a time, one after the other."""
-    return np.concatenate(
-        [_rows(value(time) if callable(value) else value, block, 1) for value, block in given], axis=1
-    )
+    return np.hstack([_rows(value(time) if callable(value) else value, block, 1) for value, block in given])
 
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
@@ -309,6 +304,11 @@ def _has_symbols(value: object) -> bool:
 def _frozen(array: Values, what: str) -> Values:
     if not np.isfinite(array).all():
         raise ValueError(f"{what} are not finite; remove or repair the NaN or infinite ones")
-    array = array.copy()
+    return readonly(array)
+
+
+def readonly(values: ArrayLike) -> Values:
+    """A copy of numbers that cannot be changed."""
+    array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array

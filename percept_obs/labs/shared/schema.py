@@ -62,7 +62,7 @@ class Kind:
         raise NotImplementedError
 
     def _allows(self, value: Any) -> bool:
-        return True
+        raise NotImplementedError
 
     def _read(self, name: str, value: Any) -> Any:
         return value
@@ -240,7 +240,8 @@ class Optional(Kind):
     def _expected(self) -> str:
         return f"None or {self.of.expected}"
 
-    def _read(self, name: str, value: Any) -> Any:
+    def read(self, name: str, value: object) -> Any:
+        """None, or what the other kind reads."""
         return None if value is None else self.of.read(name, value)
 
 
