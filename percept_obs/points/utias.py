@@ -18,7 +18,7 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     Parameters
     ----------
     path : path, optional
-        See `find_utias`.
+        See `find_utias`, also for what is raised.
     landmarks : sequence of int, optional
         Which of them; all that have a track when left out, in increasing order.
 
@@ -31,8 +31,8 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
 
     Raises
     ------
-    FileNotFoundError, DatasetUnavailable, ValueError
-        See `find_utias`; also if a landmark has no track.
+    ValueError
+        If a landmark has no track.
     """
     tables = utias_tables(path)
     followed = sorted({track.point for track in tables.tracks})

@@ -126,10 +126,6 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
 
-    Returns
-    -------
-    Recording
-
     Raises
     ------
     BehindCamera

@@ -158,23 +158,14 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
     the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth.
     A measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.
 
-    Parameters
-    ----------
-    path : path, optional
-        See `find_utias`.
+    For the path and what is raised see `find_utias`.
 
     Returns
     -------
     tuple of Recording
         44 tracks of 3.0 to 8.6 s.
-
-    Raises
-    ------
-    FileNotFoundError, DatasetUnavailable, ValueError
-        See `find_utias`.
     """
-    tables, surface = utias_tables(path), pinhole()
-    recordings = []
+    tables, surface, recordings = utias_tables(path), pinhole(), []
     for number, track in enumerate(tables.tracks):
         rows = slice(track.first, track.last + 1)
         truth = surface.project(tables.points[rows, track.point])
@@ -191,20 +182,8 @@ def utias_tables(path: str | os.PathLike[str] | None = None) -> UtiasTables:
     recorded gyroscope is not used: it agrees poorly with the motion of the image.  A track is a landmark seen
     at consecutive samples for at least 3 s, without a gap of more than 0.30 s.
 
-    Parameters
-    ----------
-    path : str or path, optional
-        Where the recording is, as in `find_utias`.
-
-    Returns
-    -------
-    UtiasTables
-        1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
-
-    Raises
-    ------
-    FileNotFoundError, ValueError, DatasetUnavailable
-        As `find_utias` does.
+    These are 1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements; for the path see
+    `find_utias`.
 
     Notes
     -----

@@ -108,6 +108,7 @@ class StructureAndMotion(OnePoint):
     zero: tuple[str, ...] = ()
     earlier: tuple[str, ...] = ()
     scale: float | None = None
+    image_coordinates = OUTPUTS
 
     def __post_init__(self) -> None:
         for group in ("unknown", "zero", "earlier"):
@@ -143,9 +144,8 @@ class StructureAndMotion(OnePoint):
             return f"nothing is unknown; name one to three of {', '.join(QUANTITIES)}"
         if len(self.unknown) > len(OUTPUTS):
             return (
-                f"{len(self.unknown)} unknowns ({', '.join(self.unknown)}), but ybar has {len(OUTPUTS)} components, "
-                f"which give {len(OUTPUTS)} equations at an instant; know at least "
-                f"{len(self.unknown) - len(OUTPUTS)} of them"
+                f"{len(self.unknown)} unknowns ({', '.join(self.unknown)}), but ybar has 3 components, which give "
+                f"3 equations at an instant; know at least {len(self.unknown) - len(OUTPUTS)} of them"
             )
         for camera, object_ in zip(_CAMERA, _OBJECT, strict=True):
             if {camera.name, object_.name} <= set(self.unknown):
@@ -163,12 +163,9 @@ class StructureAndMotion(OnePoint):
     @property
     def known_velocity(self) -> tuple[sp.Expr, ...]:
         """Components of v_c - v_p along the axes on which both are known, those that are zero left out."""
-        differences = (
-            (camera - object_).xreplace(self._absent)
-            for camera, object_ in zip(_CAMERA, _OBJECT, strict=True)
-            if not {camera.name, object_.name} & set(self.unknown)
-        )
-        return tuple(difference for difference in differences if difference)
+        axes = zip(_CAMERA, _OBJECT, strict=True)
+        known = ((c - o).xreplace(self._absent) for c, o in axes if not {c.name, o.name} & set(self.unknown))
+        return tuple(filter(None, known))
 
     @property
     def theta(self) -> tuple[sp.Expr, ...]:
@@ -185,12 +182,9 @@ class StructureAndMotion(OnePoint):
         """The canonical form of measured outputs whose rate is given in d_s and the velocities."""
         hidden = sp.symbols(f"theta1:{len(self.unknown) + 1}", real=True)
         rate = rate.xreplace(self._absent).xreplace(self._in_theta(hidden))
-        names = [symbol.name for symbol in outputs]
-        constant = sp.zeros(len(hidden), 1)
-        parameters = (*self._known, *self.parameters)
-        return partition(
-            (*outputs, *hidden), sp.ImmutableMatrix([*rate, *constant]), names, parameters, view
-        ).canonical_form()
+        rate = sp.ImmutableMatrix([*rate, *sp.zeros(len(hidden), 1)])
+        names, parameters = [symbol.name for symbol in outputs], (*self._known, *self.parameters)
+        return partition((*outputs, *hidden), rate, names, parameters, view).canonical_form()
 
     @property
     def _known(self) -> tuple[sp.Symbol, ...]:
@@ -329,11 +323,6 @@ class StructureAndMotion(OnePoint):
     def name(self) -> str:
         """What is unknown, in words."""
         return f"scaled pinhole with {', '.join(self.unknown)} unknown"
-
-    @property
-    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Symbols y1, y2, ybar3 of the measured outputs."""
-        return OUTPUTS
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:

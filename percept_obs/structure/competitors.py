@@ -113,16 +113,6 @@ def scale_spread(
             for begin, end in windows:
                 found = run.estimate[(run.time >= begin) & (run.time <= end), 3]
                 there = found[np.isfinite(found)]
-                rows.append(
-                    {
-                        "observer": name,
-                        "decibels": ratio,
-                        "begin": begin,
-                        "end": end,
-                        "mean": float(there.mean()) if len(there) else np.nan,
-                        "std": float(there.std()) if len(there) else np.nan,
-                        "missing": 1 - len(there) / len(found),
-                        "true": setup.scale,
-                    }
-                )
-    return pd.DataFrame(rows)
+                scatter = (there.mean(), there.std()) if len(there) else (np.nan, np.nan)
+                rows.append((name, ratio, begin, end, *scatter, 1 - len(there) / len(found), setup.scale))
+    return pd.DataFrame(rows, columns=["observer", "decibels", "begin", "end", "mean", "std", "missing", "true"])

@@ -35,6 +35,7 @@ class LinearView(OnePoint):
     """
 
     choice: StructureAndMotion
+    image_coordinates = OUTPUTS
 
     @cached_property
     def form(self) -> CanonicalForm:
@@ -53,11 +54,6 @@ class LinearView(OnePoint):
     def name(self) -> str:
         """What is unknown, in words."""
         return f"linear view of the {self.choice.name}"
-
-    @property
-    def image_coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of the scaled position."""
-        return OUTPUTS
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:

@@ -190,14 +190,8 @@ class ScaledDepthCamera(Camera):
 
     Parameters
     ----------
-    period : float
-        Time between pictures in seconds.
-    noise : Uniform or Gaussian
-        In pixels, added to every image coordinate.
-    dropout : float
-        Probability that a picture is lost.
-    reach : float
-        Largest absolute image coordinate that is seen.
+    period, noise, dropout, reach
+        See `Camera`, of pictures; the noise is in pixels.
     pixels : PixelCamera
         One whose pixels are the image coordinates when left out.  Pictures in which a point of the object is outside
         the image are lost.
@@ -260,10 +254,6 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
         From `rigid`; what is unknown in it is not used unless the truth is asked for.
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
-
-    Returns
-    -------
-    Recording
     """
     truth = None
     if scale is not None:

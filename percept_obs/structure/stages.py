@@ -14,13 +14,13 @@ from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.system.motion import Motion, rigid
+from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
 
-_CAMERA, _OBJECT = (tuple(s.name for s in rigid().parameters[k : k + 3]) for k in (3, 6))
+_OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +85,6 @@ def semigeneral(
     **settings
         Passed to `track`, such as ``hold`` and ``step``.
 
-    Returns
-    -------
-    SemigeneralRun
-
     Raises
     ------
     ValueError
@@ -122,14 +118,10 @@ def semigeneral(
 
 
 def _with_velocities(motion: Motion, found: dict[str, float]) -> Motion:
-    """The motion with the camera's velocities that were found, and with an object about which nothing is said."""
+    """The motion with the camera's velocities that were found."""
 
-    def velocities(time: float) -> dict[str, float]:
-        known = dict(zip((s.name for s in motion.parameters), motion.known(time)[0].tolist(), strict=True))
-        return known | found
+    def known(time: float) -> list[float]:
+        given = zip(motion.parameters, motion.known(time)[0].tolist(), strict=True)
+        return [found.get(symbol.name, value) for symbol, value in given]
 
-    return rigid(
-        lambda time: motion.known(time)[0, :3],
-        lambda time: [velocities(time)[name] for name in _CAMERA],
-        (0.0, 0.0, 0.0),
-    )
+    return replace(motion, signal=Signal(known))

@@ -132,10 +132,6 @@ def effort(
     most : int
         Evaluations after which it gives up.
 
-    Returns
-    -------
-    Effort
-
     Raises
     ------
     ValueError

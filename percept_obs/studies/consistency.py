@@ -33,11 +33,6 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
     -------
     low, high : arrays of shape (K, n)
         NaN where the run has diverged.
-
-    Raises
-    ------
-    ValueError
-        If the observer claims no covariance.
     """
     variances = np.diagonal(run.covariance, axis1=1, axis2=2)
     spread = DEVIATIONS * np.sqrt(np.maximum(variances, 0))  # round-off may leave one a little below zero
@@ -54,11 +49,6 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     low, high : arrays of shape (K,)
         `high` is infinite where the interval reaches zero, and both are where it is not positive at all; NaN where
         the run has diverged.
-
-    Raises
-    ------
-    ValueError
-        If the observer claims no covariance.
     """
     low, high = (end[:, -1] for end in claimed_interval(run))
     nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
@@ -160,10 +150,6 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
     confidence : float
         Probability of the two-sided intervals, between 0 and 1.
-
-    Returns
-    -------
-    Consistency
 
     Raises
     ------

@@ -52,10 +52,8 @@ class PerspectiveSystem:
     @cached_property
     def rate(self) -> sp.ImmutableMatrix:
         """Time derivative of `coordinates`, expanded.  Ma 2005, (4), p. 64 for affine motion and the pinhole."""
-        velocity = self._velocity
-        inverse = self.surface.inverse_distance
-        image_rate = self._image_gradient * velocity
-        inverse_rate = -inverse * (self._distance_gradient * velocity)
+        image_rate = self._image_gradient * self._velocity
+        inverse_rate = -self.surface.inverse_distance * (self._distance_gradient * self._velocity)
         return sp.ImmutableMatrix([*image_rate, *inverse_rate]).expand()
 
     def jacobian(self) -> sp.ImmutableMatrix:
@@ -71,20 +69,7 @@ class PerspectiveSystem:
     def partition(self, *names: str) -> PartitionedSystem:
         """Divide the coordinates into measured and hidden ones.
 
-        Parameters
-        ----------
-        *names : str
-            Names of the measured coordinates, such as "y1", "y2".
-
-        Returns
-        -------
-        PartitionedSystem
-            Enough for the extended Kalman filter, for any outputs on any surface.
-
-        Raises
-        ------
-        ValueError
-            If a name is unknown, repeated, or the inverse distance, or none is given.
+        This is enough for the extended Kalman filter, for any outputs on any surface; see `measure` for the names.
         """
         known = [symbol.name for symbol in self.surface.image_coordinates]
         if not names or len(set(names)) != len(names) or not set(names) <= set(known):
@@ -101,10 +86,6 @@ class PerspectiveSystem:
         ----------
         *names : str
             Names of the measured coordinates, such as "y1", "y2".
-
-        Returns
-        -------
-        CanonicalForm
 
         Raises
         ------
@@ -125,34 +106,27 @@ class PerspectiveSystem:
     def derivation(self) -> Derivation:
         """The way from X' = A X + b to the rate, step by step."""
         surface, motion = self.surface, self.motion
-        y = sp.Matrix(surface.image_coordinates)
+        y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
         eta = sp.latex(surface.inverse_distance)
-        m = sp.Matrix(surface.ray)
-        point = sp.latex(sp.Matrix(POINT))
         formulas = {
             "The point moves:": (
                 equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}")
             ),
             f"It is seen on the {surface.name} surface:": (
-                rf"{sp.latex(y)} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = "
-                rf"{sp.latex(1 / surface.distance)}"
+                rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}"
             ),
             "So the point lies on a ray, at the distance one over the inverse distance:": (
-                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(m)}"
+                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(sp.Matrix(surface.ray))}"
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
-                rf"J(m) = {sp.latex(self._image_gradient)},\quad "
-                rf"\nabla l(m) = {sp.latex(self._distance_gradient)}"
+                rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}"
             ),
             "The velocity, times the inverse distance:": equals(rf"A m + b\,{eta}", self._velocity),
             "Image coordinates do not change with scale, so the inverse distance cancels:": (
-                rf"\dot y = J(m)\,(A m + b\,{eta}),\quad "
-                rf"\dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})"
+                rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})"
             ),
             "Multiplied out:": equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
-            "The focus of expansion, where the distance drops out of the image's motion:": (
-                equals(sp.latex(y), self.foe)
-            ),
+            "The focus of expansion, where the distance drops out of the image's motion:": equals(y, self.foe),
         }
         return Derivation.of(formulas)
 

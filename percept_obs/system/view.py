@@ -55,17 +55,14 @@ class View(Protocol):
 
 
 class OnePoint(ABC):
-    """A view of one point whose coordinates begin with what can be measured."""
+    """A view of one point, so that there is once what there is once a point; it begins with what can be measured."""
 
     @property
     @abstractmethod
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
         """Symbols of what can be measured."""
 
-    @property
-    def point_shape(self) -> tuple[int, ...]:
-        """What there is once a point, there is once."""
-        return ()
+    point_shape: tuple[int, ...] = ()
 
     def outputs(self, coordinates: ArrayLike) -> NDArray[np.float64]:
         """What is measured, shape (..., m): the first of the coordinates, of shape (..., n)."""

@@ -75,10 +75,6 @@ def track(
     longest_hold : float
         Seconds after a sample from which on one of several points is not seen until its next one.
 
-    Returns
-    -------
-    Run
-
     Raises
     ------
     DoesNotFit
@@ -170,15 +166,7 @@ def _estimates(
 ) -> tuple[Array, NDArray[np.int_]]:
     """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
-    Parameters
-    ----------
-    observer : Observer
-    inputs : arrays of shape (K,)
-        State, outputs and parameters at the samples.
-    time : array of shape (K,)
-        Seconds since the first sample.
-    first : array of shape (n1,)
-        The first sample.
+    They follow from state, outputs and parameters at the samples, the seconds since the first one, and the first one.
     """
     form = observer.form
     symbols = (*observer.equations.state, *form.x1, *form.parameters)

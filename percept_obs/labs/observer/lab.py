@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Mapping
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.sampling import as_far_as_seen
 from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
-from percept_obs.recording import Camera, Recording, Scenario, record
+from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
 from percept_obs.tracking.following import StepTooLong, track
@@ -159,4 +159,4 @@ def _simulated_once(text: str) -> Recording:
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])
-    return as_far_as_seen(partial(record, scenario, camera=camera, seed=settings["seed"]), scenario, camera.period)
+    return as_far_as_seen(scenario, camera, settings["seed"])

@@ -56,13 +56,7 @@ def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
 
 @lru_cache(maxsize=256)
 def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = "") -> Observer:
-    """An observer with its default gains, and its own way to switch unless another is named.
-
-    Raises
-    ------
-    ValueError
-        If it does not exist for this form.
-    """
+    """An observer with its default gains, and its own way to switch unless another is named."""
     switch = {"switch": way or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
     return BY_NAME[name](form_of(surface, outputs), **switch)
 

@@ -130,20 +130,17 @@ def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = 
     R = sp.MatrixSymbol(letters["noise_variance"].name, 1, 1)
     rows = kalman_equations(x, P, F, rate, c, y, doubt, R)
     at_estimate = sp.Function("f")(sp.Symbol("xhat"))
+    ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
+    hidden = [] if letters["hidden_process_noise"] in zero else ["with", ones, "for measured and hidden"]
     start = sp.diag(letters["measured_variance"], letters["hidden_variance"])
     return [
         row(formula(dotted(x), at_estimate), "with", formula(F, sp.Derivative(at_estimate, sp.Symbol("xhat")))),
-        row(formula(dotted(P), rows["P'"], letters), *_where_hidden(letters["hidden_process_noise"] in zero)),
+        row(formula(dotted(P), rows["P'"], letters), *hidden),
         row("at a sample of an output", formula("<mi>y</mi>", c.T * sp.MatrixSymbol("x", n, 1))),
         row(formula("<mi>e</mi>", rows["e"]), ",", formula("<mi>s</mi>", rows["s"], letters)),
         row(formula("<mi>k</mi>", rows["k"]), ",", formula(after(x), rows["x+"]), ",", formula(after(P), rows["P+"])),
         row("at the start", formula(P, start, letters)),
     ]
-
-
-def _where_hidden(unused: bool) -> list[str]:
-    ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
-    return [] if unused else ["with", ones, "for measured and hidden"]
 
 
 def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from percept_obs.recording import Recording, Scenario
+from percept_obs.recording import Camera, Recording, Scenario, record
 from percept_obs.system.surfaces import BehindCamera
 
 
-def as_far_as_seen(simulate: Callable[[float], Recording], scenario: Scenario, period: float) -> Recording:
+def as_far_as_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
     """What a camera records until the point leaves the half-space in front of it.
-
-    Parameters
-    ----------
-    simulate : function of a duration in seconds
-    scenario : Scenario
-    period : float
-        Seconds between samples.
 
     Raises
     ------
@@ -26,10 +17,10 @@ def as_far_as_seen(simulate: Callable[[float], Recording], scenario: Scenario, p
         If it leaves at once.
     """
     try:
-        return simulate(scenario.duration)
+        return record(scenario, camera=camera, seed=seed)
     except BehindCamera:
-        times = period * np.arange(np.floor(scenario.duration / period + 1e-9) + 1)
-        return simulate(times[samples_in_front(scenario, times) - 1])
+        times = camera.times(scenario.duration)
+        return record(scenario, times[samples_in_front(scenario, times) - 1], camera, seed)
 
 
 def samples_in_front(scenario: Scenario, times: np.ndarray) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gai
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
-from percept_obs.recording import Recording, record
+from percept_obs.recording import Recording
 from percept_obs.structure import (
     QUANTITIES,
     GivenDepth,
@@ -69,13 +69,7 @@ class StructureLab(Lab):
         )
 
     def run(self) -> dict[str, Run]:
-        """Runs of the same settings in Python, by the observers' names.
-
-        Raises
-        ------
-        ImpossibleChoice
-            If the unknowns cannot be told apart.
-        """
+        """Runs of the same settings in Python, by the observers' names."""
         return runs(self.settings)
 
     def refuse(self, settings: Settings) -> None:
@@ -102,13 +96,7 @@ structure_lab = StructureLab
 
 
 def unknowns_of(settings: Settings) -> StructureAndMotion:
-    """What is unknown; what is known and stays 0 is known to be zero.
-
-    Raises
-    ------
-    ImpossibleChoice
-        If the unknowns cannot be told apart.
-    """
+    """What is unknown; what is known and stays 0 is known to be zero."""
     values = {
         f"{name}{axis}": settings[name][axis - 1] or settings[f"{name}_swing"][axis - 1]
         for name in ("v_c", "v_p")
@@ -156,14 +144,13 @@ def _recorded(settings: Settings, unknowns: StructureAndMotion) -> Recording:
 @lru_cache(maxsize=4)
 def _recorded_once(text: str, unknowns: StructureAndMotion) -> Recording:
     settings = json.loads(text)
-    y1, y2, ybar3 = settings["ybar"]
-    depth = 1 / (settings["scale"] * ybar3)
-    place, scale = (y1 * depth, y2 * depth, depth), settings["scale"]
+    (y1, y2, ybar3), scale = settings["ybar"], settings["scale"]
+    depth = 1 / (scale * ybar3)
+    place = (y1 * depth, y2 * depth, depth)
     scenario = StructureScenario(
         "the lab's", motion_of(settings), place, settings["duration"], pinhole(), scale=scale, choice=unknowns
     )
-    make, period = NOISES[settings["noise"]["kind"]], settings["period"]
+    make = NOISES[settings["noise"]["kind"]]
     source = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])
-    camera = ScaledDepthCamera(period, make(settings["noise"]["size"]), depth=source)
-    simulate = partial(record, scenario, camera=camera, seed=settings["seed"])
-    return as_far_as_seen(simulate, scenario, period)
+    camera = ScaledDepthCamera(settings["period"], make(settings["noise"]["size"]), depth=source)
+    return as_far_as_seen(scenario, camera, settings["seed"])

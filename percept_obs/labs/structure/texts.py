@@ -133,7 +133,8 @@ def unknowns_for_the_page(unknown: tuple[str, ...], earlier: bool) -> Texts:
     """A choice in formulas, and as a function that turns velocities into the parameters of the general form."""
     choice = StructureAndMotion(unknown, earlier=("d_s",) if earlier else ())
     M, m = choice.translation
-    alone = _velocities_that_must_not_all_be_zero(choice)
+    velocities = choice.known_velocity if "d_s" in unknown else ()
+    alone = sorted(symbol.name for velocity in velocities for symbol in velocity.free_symbols)
     number, zero = corollaries().get(key_of(unknown, earlier), (None, ()))
     letters = {symbol.name: symbol for symbol in (*choice.form.parameters, *choice.image_coordinates)}
     scale = sp.Symbol("d_s", real=True)
@@ -157,12 +158,6 @@ def unknowns_for_the_page(unknown: tuple[str, ...], earlier: bool) -> Texts:
 
 
 _OMEGA_G = "<msub><mi>Ω</mi><mi>g</mi></msub>"
-
-
-def _velocities_that_must_not_all_be_zero(choice: StructureAndMotion) -> list[str]:
-    if "d_s" not in choice.unknown:
-        return []
-    return sorted(s.name for velocity in choice.known_velocity for s in velocity.free_symbols)
 
 
 def _refusal(unknown: tuple[str, ...], zero: list[str]) -> str:
