@@ -1,8 +1,7 @@
 """Many points of one state that moves linearly, and their Luenberger-type observer (Inaba et al. 2005)."""
 
-from percept_obs.points.block import NotLinear, PointBlock, point_block
+from percept_obs.points.block import NotLinear, point_block
 from percept_obs.points.bodies import body_with_origin, independent_points, rigid_body
-from percept_obs.points.conditions import Conditions
 from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, constant, lyapunov, riccati, scheduled
@@ -11,13 +10,11 @@ from percept_obs.points.simulation import LeavesEveryBound, PointsScenario
 from percept_obs.points.tracking import FirstSight
 
 __all__ = [
-    "Conditions",
     "FirstSight",
     "LeavesEveryBound",
     "LuenbergerObserver",
     "LyapunovMatrix",
     "NotLinear",
-    "PointBlock",
     "PointsForm",
     "PointsRun",
     "PointsScenario",

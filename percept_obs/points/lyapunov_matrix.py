@@ -69,10 +69,9 @@ class LyapunovMatrix:
             If a matrix has another shape, or is not symmetric, finite and positive (semi-)definite.
         """
         if self.schedule is not None:
-            start = None if callable(self.schedule.samples) else self.schedule.samples[0]
-            if start is not None and start.size not in (1, states**2):
-                raise ValueError(f"P is scheduled with {start.size} entries; expected 1 or {states} x {states}")
             for k, row in enumerate(() if callable(self.schedule.samples) else self.schedule.samples):
+                if row.size not in (1, states**2):
+                    raise ValueError(f"P is scheduled with {row.size} entries; expected 1 or {states} x {states}")
                 _definite(_square(row, states), f"P, sample {k},")
             return replace(self, start=np.eye(states), decrease=np.zeros((states, states)))
         start, decrease = (_square(value, states) for value in (self.start, self.decrease))
@@ -187,7 +186,7 @@ def _definite(matrix: Array, what: str, semi: bool = False) -> None:
     if not np.isfinite(matrix).all() or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max(initial=1e-300):
         raise ValueError(f"{what} must be a finite symmetric matrix")
     least = float(np.linalg.eigvalsh(matrix)[0])
-    if least < (-1e-12 if semi else 0) or (least == 0 and not semi):
+    if least < -1e-12 or (least <= 0 and not semi):
         raise ValueError(
             f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite, "
             "for V = rho^T P rho is to measure the error"

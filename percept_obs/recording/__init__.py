@@ -1,6 +1,6 @@
 """Recordings: what a camera leaves behind, from a simulation or from the world."""
 
-from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Seed, Uniform, seeded
+from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
 from percept_obs.recording.grid import step_grid
 from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
@@ -13,7 +13,6 @@ __all__ = [
     "Recording",
     "Scenario",
     "Scene",
-    "Seed",
     "Sighting",
     "Uniform",
     "record",

@@ -3,7 +3,6 @@
 from percept_obs.structure.choice import (
     QUANTITIES,
     ImpossibleChoice,
-    ScaledDynamics,
     StructureAndMotion,
     scaled_dynamics,
 )
@@ -30,7 +29,6 @@ __all__ = [
     "LinearView",
     "PatchDepth",
     "ScaledDepthCamera",
-    "ScaledDynamics",
     "StructureAndMotion",
     "StructureScenario",
     "grid_patch",

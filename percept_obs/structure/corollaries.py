@@ -39,10 +39,9 @@ class Corollary:
         """
         if sorted(axes) != ["1", "2", "3"]:
             raise ValueError(f"the axes {axes!r} must be 1, 2 and 3 in some order")
-        order = str.maketrans("ijk", axes)
+        order = str.maketrans("ijk", axes)  # of which d_s has none
         unknown, zero, earlier = (
-            tuple(name if name == "d_s" else name.translate(order) for name in group)
-            for group in (self.unknown, self.zero, self.earlier)
+            tuple(name.translate(order) for name in group) for group in (self.unknown, self.zero, self.earlier)
         )
         return StructureAndMotion(unknown, zero, earlier, scale)
 

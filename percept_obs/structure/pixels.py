@@ -35,12 +35,9 @@ class PixelCamera:
     size: Sequence[int] | None = None
 
     def __post_init__(self) -> None:
-        for name, positive in (("focal", True), ("centre", False), ("size", True)):
-            if name == "size" and self.size is None:
-                continue
-            values = np.asarray(getattr(self, name), dtype=float)
-            if values.shape != (2,) or not np.isfinite(values).all() or (positive and not (values > 0).all()):
-                kind = "positive" if positive else "finite"
+        for name in ("focal", "centre", "size")[: 2 if self.size is None else 3]:
+            values, kind = np.asarray(getattr(self, name), dtype=float), "finite" if name == "centre" else "positive"
+            if values.shape != (2,) or not np.isfinite(values).all() or (kind == "positive" and not (values > 0).all()):
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
             object.__setattr__(self, name, tuple(values.tolist()))
 
@@ -135,9 +132,8 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
         raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
     to_reference, to_images = _normalising(reference), _normalising(images)
-    m = _carried(to_reference, reference)
     p = _carried(to_images, images)
-    m = np.broadcast_to(m, p.shape)
+    m = np.broadcast_to(_carried(to_reference, reference), p.shape)
     zero = np.zeros_like(m)
     rows = np.concatenate(
         [

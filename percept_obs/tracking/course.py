@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.compile.integrator import EACH, by_step, instants
-from percept_obs.recording import Recording, step_grid
-from percept_obs.system.motion import Motion
+from percept_obs.recording import Recording
 
 Array = NDArray[np.float64]
 Hold = Literal["zero", "first", "exact"]
@@ -24,10 +23,8 @@ class Course:
     Parameters
     ----------
     recording : Recording
-    grid : array of shape (N + 1,)
-        Ends of the steps in seconds, from the first sample to the last.
-    index : integer array of shape (K,)
-        Where the samples stand in the grid.
+    grid, index : arrays of shapes (N + 1,) and (K,)
+        Ends of the steps in seconds, and where the samples stand among them, as from `step_grid`.
     hold : "zero", "first" or "exact"
         What is taken for the outputs between samples.
     longest_hold : float
@@ -49,10 +46,6 @@ class Course:
     def instants(self) -> Array:
         """The times at which the steps look at known signals, shape (N EACH + 1,)."""
         return instants(self.grid)
-
-    def known(self, motion: Motion) -> Array:
-        """The motion's parameters at the instants, shape (N EACH + 1, p) or (1, p)."""
-        return motion.known(self.instants)
 
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
@@ -86,11 +79,6 @@ class Course:
         since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
         held[since >= self.longest_hold] = np.nan
         return np.asarray(held)
-
-
-def course(recording: Recording, hold: Hold, step: float, longest_hold: float) -> Course:
-    """Divide the intervals between samples into equal steps, no longer than given in seconds."""
-    return Course(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 
 def last_samples(columns: Array) -> Array:

@@ -16,9 +16,9 @@ from percept_obs.compile.equations import Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
-from percept_obs.recording import Recording
+from percept_obs.recording import Recording, step_grid
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.course import Course, Hold, course, last_samples
+from percept_obs.tracking.course import Course, Hold, last_samples
 from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
@@ -108,7 +108,8 @@ def track(
             raise ValueError(f"the {name} is {value}; it must be positive, in seconds")
     if not math.isfinite(step):
         raise ValueError(f"the step is {step} s; it must be finite")
-    return follow(observer, course(recording, hold, step, longest_hold), start, believed, language)
+    along = Course(recording, *step_grid(recording.time, step), hold, longest_hold)
+    return follow(observer, along, start, believed, language)
 
 
 @singledispatch
@@ -124,13 +125,7 @@ def follow(observer: Any, along: Course, start: Any, believed: Motion | None, la
 
 
 @follow.register
-def _follow(
-    observer: Observer,
-    along: Course,
-    start: Start,
-    believed: Motion | None,
-    language: Language | None,
-) -> Run:
+def _follow(observer: Observer, along: Course, start: Start, believed: Motion | None, language: Language | None) -> Run:
     form, recording, index = observer.form, along.recording, along.index
     believed = believed or recording.motion
     _refuse_misfits(along, observer, believed)
@@ -257,6 +252,6 @@ def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Sym
 
 def _known(along: Course, believed: Motion) -> Array:
     """Parameters of motion and view at the instants of the steps."""
-    rows, view = along.known(believed), along.recording.view
+    rows, view = believed.known(along.instants), along.recording.view
     shape = [view.values[symbol] for symbol in view.parameters]
     return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])

@@ -115,12 +115,11 @@ def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
         circle = None
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
-    for name, way in ((name, way) for name, ways in WAYS.items() for way in ways):
-        refusal = BY_NAME[name].refusal(form)
-        if refusal:
+    for name, ways in WAYS.items():
+        if refusal := BY_NAME[name].refusal(form):
             refused[name] = refusal
         else:
-            kernels.setdefault(name, {})[way] = kernel_for_the_page(observer_of(surface, outputs, name, way))
+            kernels[name] = {way: kernel_for_the_page(observer_of(surface, outputs, name, way)) for way in ways}
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],

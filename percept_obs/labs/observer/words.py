@@ -45,15 +45,12 @@ def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     if run.diverged_at is not None:
         return []
     if run.observer.covariance is not None:
-        return [_claim_in_words(run), _consistency_in_words(run)]
+        spread = f"{2 * np.sqrt(max(0.0, run.covariance[-1, -1, -1])):.2g} (2σ) at the end"
+        claim = f"{run.observer.name}: it claims to know the inverse distance to within {spread}."
+        return [claim, _consistency_in_words(run)]
     if run.recording.truth is None or not _can_be_linearised(chosen):
         return []
     return _error_in_words(chosen, run, window)
-
-
-def _claim_in_words(run: Run) -> str:
-    spread = 2 * float(np.sqrt(max(0.0, run.covariance[-1, -1, -1])))
-    return f"{run.observer.name}: it claims to know the inverse distance to within {spread:.2g} (2σ) at the end."
 
 
 def _consistency_in_words(run: Run) -> str:

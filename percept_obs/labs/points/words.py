@@ -29,19 +29,15 @@ def in_words(run: PointsRun, window: float) -> dict[str, Any]:
     """
     recording = run.recording
     window = min(window, float(run.time[-1]))
-    told = gramian(recording, window)
-    sentences = []
-    if not told.holds:
-        pair = linear_gramian(recording, window)
-        if pair.holds:
-            sentences.append(
-                "With their depths the points would tell everything, with a smallest eigenvalue of "
-                f"{pair.least:.2g}: the pair (C, A) is uniformly observable, and only the images do not show it."
-            )
-    bound = None
+    seen, sentences, bound = gramian(recording, window).holds, [], None
+    if not seen and (pair := linear_gramian(recording, window)).holds:
+        sentences.append(
+            f"With their depths the points would tell everything, with a smallest eigenvalue of {pair.least:.2g}: the "
+            "pair (C, A) is uniformly observable, and only the images do not show it."
+        )
     if len(run.kept):
         sentences.append(f"{run.conditions().verdict()}.".replace("(15)", "Inequality (15)", 1))
-        bound, sentence = _guaranteed(run, told.holds, window)
+        bound, sentence = _guaranteed(run, seen, window)
         sentences.append(sentence)
     sentences.append(_turning(run))
     return {"sentences": sentences, "bound": bound}

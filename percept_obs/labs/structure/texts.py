@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
-from itertools import combinations, permutations
+from itertools import combinations, permutations, product
 from types import MappingProxyType
 from typing import Any
 
@@ -170,8 +170,8 @@ def _refusal(unknown: tuple[str, ...], zero: list[str]) -> str:
 
 def _determinant(choice: StructureAndMotion, letters: dict[str, sp.Symbol]) -> str:
     """The determinant as a formula; where it is long, in the differences of the velocities."""
-    determinant, square = choice.determinant, choice.form.w.is_square
-    if square:
+    determinant = choice.determinant
+    if choice.form.w.is_square:
         return formula("<mrow><mi>det</mi><mo>&#8289;</mo>" + _OMEGA_G + "</mrow>", determinant, letters)
     differences = sp.symbols("delta1:4", real=True)
     shifted = {c: d + o for c, d, o in zip(CAMERA, differences, OBJECT, strict=True)}
@@ -196,9 +196,8 @@ def texts_for_the_page() -> Parts:
     done: set[str] = set(refused())
     for count in range(1, LARGEST + 1):
         yield f"forms/{count}", form_for_the_page(count)
-        for unknown in combinations(QUANTITIES, count):
-            for earlier in (False, True):
-                key = key_of(unknown, earlier)
-                if key not in done:
-                    done.add(key)
-                    yield f"unknowns/{key}", unknowns_for_the_page(unknown, earlier)
+        for unknown, earlier in product(combinations(QUANTITIES, count), (False, True)):
+            key = key_of(unknown, earlier)
+            if key not in done:
+                done.add(key)
+                yield f"unknowns/{key}", unknowns_for_the_page(unknown, earlier)
