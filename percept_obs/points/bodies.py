@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -38,13 +39,9 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     _refuse(points)
     if motion.A.shape != (3, 3):
         raise ValueError(f"the motion has {motion.A.shape[0]} states; that of a single point has 3")
-    many = Motion(
-        f"{motion.name}, {points} points",
-        _placed(points, {(k, k): motion.A for k in range(points)}),
-        _placed(points, {(k, 0): motion.b for k in range(points)}, columns=1),
-        motion.parameters,
-        motion.signal,
-    )
+    A = _placed(points, {(k, k): motion.A for k in range(points)})
+    b = _placed(points, {(k, 0): motion.b for k in range(points)}, columns=1)
+    many = replace(motion, name=f"{motion.name}, {points} points", A=A, b=b)
     return _form(many, [f"X{k + 1}" for k in range(points)], [[k] for k in range(points)], surface)
 
 

@@ -93,11 +93,6 @@ def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Arr
         A, _ = form.coefficients(time)
         left = np.swapaxes(A, 1, 2) @ P + P @ A + matrix.rate(time)
         left = (left + np.swapaxes(left, 1, 2)) / 2
-    return Conditions(
-        time,
-        np.linalg.eigvalsh(left)[:, -1],
-        np.linalg.eigvalsh(left - (2 - epsilon) * S)[:, -1],
-        np.asarray(np.linalg.eigvalsh(P)[:, 0]),
-        epsilon,
-        np.linalg.norm(P, axis=(1, 2)) + np.linalg.norm(S, axis=(1, 2)),
-    )
+    printed, weaker = (np.linalg.eigvalsh(each)[:, -1] for each in (left, left - (2 - epsilon) * S))
+    scale = np.linalg.norm(P, axis=(1, 2)) + np.linalg.norm(S, axis=(1, 2))
+    return Conditions(time, printed, weaker, np.asarray(np.linalg.eigvalsh(P)[:, 0]), epsilon, scale)

@@ -75,16 +75,11 @@ class PointsScenario(Scene):
         grid, index = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
         count = len(grid) - 1
         unseen = np.full((count, EACH + 1, form.points, len(form.image_coordinates)), np.nan)
+        loop = arrays(form, np.arange(form.states), np.arange(form.points))
+        known, any_P, none = form.numbers(instants(grid)), np.eye(form.states)[None], np.zeros((1, 1))
+        law, language = (False, 0.0, 0.0, none), choose(None, count * form.states)
         path, _, diverged = advance(
-            arrays(form, np.arange(form.states), np.arange(form.points)),
-            (False, 0.0, 0.0, np.zeros((1, 1))),
-            np.array(self.state),
-            np.zeros((1, 1)),
-            np.diff(grid),
-            form.numbers(instants(grid)),
-            np.eye(form.states)[None],
-            unseen,
-            choose(None, count * form.states),
+            loop, law, np.array(self.state), none, np.diff(grid), known, any_P, unseen, language
         )
         if diverged is not None:
             raise LeavesEveryBound(

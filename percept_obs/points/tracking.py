@@ -80,17 +80,9 @@ def _follow_points(
     for sighting in recording.sightings(sight.absence) if sight else ():
         began[sighting.first, sighting.point] = True
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
-    task = _Task(
-        along,
-        form,
-        matrix,
-        form.numbers(along.instants),
-        along.held(filled=False),
-        began,
-        sight,
-        kept,
-        choose(language, len(along.grid) * form.states),
-    )
+    coefficients, held = form.numbers(along.instants), along.held(filled=False)
+    spoken = choose(language, len(along.grid) * form.states)
+    task = _Task(along, form, matrix, coefficients, held, began, sight, kept, spoken)
     state, P = np.full((len(time), form.states), np.nan), np.zeros((len(kept), form.states, form.states))
     ends = []
     for states, points in _independent(form, matrix):
@@ -138,7 +130,8 @@ def _follow(
     task: _Task, states: NDArray[np.intp], points: NDArray[np.intp], x: Array
 ) -> tuple[Array, Array, float | None]:
     """Estimates at all samples, P at the kept ones, and when the estimate diverged."""
-    matrix, time, grid, index = task.matrix, task.along.recording.time, task.along.grid, task.along.index
+    matrix, along = task.matrix, task.along
+    time, grid, index = along.recording.time, along.grid, along.index
     block = np.ix_(states, states)
     P, n = matrix.start[block].copy(), len(states)
     pull = matrix.forgetting * P - matrix.decrease[block]
@@ -157,18 +150,10 @@ def _follow(
         part = slice(index[first], index[last])
         rows = slice(EACH * part.start, EACH * part.stop + 1)
         if not matrix.computed and (first == stops[0] or not matrix.constant):
-            inverses = _inverses(matrix.at(task.along.instants[rows])[:, block[0], block[1]])
-        path, P, diverged = advance(
-            loop,
-            law,
-            x,
-            P,
-            np.diff(grid)[part],
-            task.coefficients if len(task.coefficients) == 1 else task.coefficients[rows],
-            inverses,
-            task.held[part][:, :, points],
-            task.language,
-        )
+            inverses = _inverses(matrix.at(along.instants[rows])[:, block[0], block[1]])
+        steps, images = along.steps[part], task.held[part][:, :, points]
+        known = task.coefficients if len(task.coefficients) == 1 else task.coefficients[rows]
+        path, P, diverged = advance(loop, law, x, P, steps, known, inverses, images, task.language)
         state[first : last + 1] = path[index[first : last + 1] - index[first]]
         x = path[-1]
         if diverged is not None:

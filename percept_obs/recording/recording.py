@@ -294,12 +294,5 @@ class Recording:
         if not len(values):
             raise ValueError(f"{os.fspath(path)} has a header and no rows; at least two samples are needed")
         complete = inverse in rows and len(names) == len(surface.image_coordinates)
-        return cls(
-            values[:, 0],
-            values[:, 1 : 1 + len(names)],
-            names,
-            surface,
-            motion,
-            truth=values[:, 1:] if complete else None,
-            source=os.fspath(path),
-        )
+        outputs, truth = values[:, 1 : 1 + len(names)], values[:, 1:] if complete else None
+        return cls(values[:, 0], outputs, names, surface, motion, truth, source=os.fspath(path))

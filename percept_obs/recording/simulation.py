@@ -67,12 +67,8 @@ class Scenario(Scene):
         """
         times = np.asarray(times, dtype=float)
         grid, last = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
-        table = Table(
-            np.diff(grid),
-            np.zeros((len(grid) - 1, EACH + 1, 0)),
-            self.motion.known(instants(grid)),
-            np.zeros((len(grid), 0)),
-        )
+        steps, known = np.diff(grid), self.motion.known(instants(grid))
+        table = Table(steps, np.zeros((len(steps), EACH + 1, 0)), known, np.zeros((len(grid), 0)))
         equations = _point_in_motion(self.motion.A, self.motion.b, self.motion.parameters)
         trace = solve(equations, self.position, table)
         if trace.diverged is not None:

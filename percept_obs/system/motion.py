@@ -234,13 +234,9 @@ def linear(A: Any = None, v: Any = None, states: int | None = None, times: Array
         return motion
     there = (motion.signal.samples != 0).any(axis=0).tolist()
     zero = {s: sp.S.Zero for s, t in zip(motion.parameters, there, strict=True) if not t}
-    return Motion(
-        "linear",
-        motion.A.xreplace(zero),
-        motion.b.xreplace(zero),
-        tuple(s for s in motion.parameters if s not in zero),
-        Signal(motion.signal.samples[:, there], motion.signal.times),
-    )
+    left = tuple(s for s in motion.parameters if s not in zero)
+    signal = Signal(motion.signal.samples[:, there], motion.signal.times)
+    return Motion("linear", motion.A.xreplace(zero), motion.b.xreplace(zero), left, signal)
 
 
 def bound(

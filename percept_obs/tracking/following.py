@@ -144,16 +144,9 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     at_samples = known if len(known) == 1 else known[EACH * index]
     inputs = (*states.T, *last_samples(samples).T, *at_samples.T)
     estimate, unobservable = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
-    return Run(
-        recording,
-        observer,
-        estimate,
-        states,
-        None if trace.diverged is None else float(along.grid[trace.diverged]),
-        along.hold,
-        along.grid[trace.resets],
-        unobservable,
-    )
+    diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
+    resets = along.grid[trace.resets]
+    return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
 def _estimates(
