@@ -1,4 +1,3 @@
-// @ts-check
 // The bundle's entrance: anywidget calls render() for each view of a lab.
 //
 // To add a lab: a folder beside observer/ with an engine that makes results of settings (types.js says of what) and a

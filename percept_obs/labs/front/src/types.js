@@ -1,4 +1,3 @@
-// @ts-check
 // What passes from computing to drawing: results, which are plain data without functions, nodes of the page, or arrays
 // that a later run writes to, so that they may be kept, drawn again, or come from a worker; then schemas and charts.
 // Rows of numbers lie one after the other in a Float64Array, a row a sample; NaN stands for what is not there.

@@ -1,4 +1,3 @@
-// @ts-check
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
 import { same } from "../common/model/settings.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The lab of many points: points of one state before a moving camera, and an observer that follows them.
 
 import { Live } from "../common/page/live.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What the page calls the settings of the lab of many points.
 
 import { HOLD, NOISE } from "../common/model/schema.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The lab of structure and motion: what is known, what can therefore be estimated, and how the estimates converge.
 
 import { settingsAfter as settingsOf } from "../common/model/settings.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What the page calls the settings of the structure lab.
 
 import { HOLD, NOISE } from "../common/model/schema.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What the Python texts of all labs have in common.
 
 import { switchOf } from "./settings.js";

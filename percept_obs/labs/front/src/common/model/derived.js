@@ -1,4 +1,3 @@
-// @ts-check
 // What follows from a result's rows of numbers: made when it is first asked for, and kept as long as they are.
 
 import { column } from "./tables.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // How far an estimate is from the truth, and since when it has settled.
 
 /** Largest absolute error of the hidden coordinates at each sample. */

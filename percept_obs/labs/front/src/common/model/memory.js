@@ -1,4 +1,3 @@
-// @ts-check
 // What a computation keeps from one run to the next. Nothing of a room is ever handed out.
 
 /** Values that are made once for the same inputs, and arrays that are used again. */

@@ -1,4 +1,3 @@
-// @ts-check
 // Texts that sympy printed become functions: each group is one module, imported once and kept.
 
 /** Import a module's text; a Blob's address works in JupyterLab, in Voila and from a file. */

@@ -1,4 +1,3 @@
-// @ts-check
 // The Mersenne Twister MT19937 with its reference seeding: the same numbers as in Python for the same seed.
 
 const SIZE = 624;

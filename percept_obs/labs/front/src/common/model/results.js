@@ -1,4 +1,3 @@
-// @ts-check
 // The result of the latest settings, and of the run that is kept beside it; each is computed once.
 
 /** Runs an engine, and a second one for the kept run, which seldom changes. */

@@ -1,4 +1,3 @@
-// @ts-check
 // Ranges, ticks and number words of axes.
 
 /** A number as Python's format(value, ".3g") writes it. */

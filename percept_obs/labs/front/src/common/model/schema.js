@@ -1,4 +1,3 @@
-// @ts-check
 // What may be set: the kinds and ranges that Python's schema says, in the words of the page; types.js says what each holds.
 
 /** What observers may take for the outputs between samples. */

@@ -1,4 +1,3 @@
-// @ts-check
 // Settings: comparing them, reading and changing them by the place of a value such as "noise.size" or "b.0".
 
 /** Whether two settings are the same, whatever the order of their keys. */

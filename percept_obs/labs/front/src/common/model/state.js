@@ -1,4 +1,3 @@
-// @ts-check
 // What a lab is asked to show: settings, the preset that is open, the time at which values are read; and the way back.
 
 import { same } from "./settings.js";

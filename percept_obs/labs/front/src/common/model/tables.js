@@ -1,4 +1,3 @@
-// @ts-check
 // What an observer may know at the instants of every step, laid out once; see tracking.py.
 
 import { INSTANTS, PLANT_STEP } from "./integrator.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
 
 /**

@@ -1,4 +1,3 @@
-// @ts-check
 // What happened, in words. Those of verdicts come from Python, so that both say the same.
 
 import { readable, short } from "./scales.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // A canvas that is as sharp as the screen and as wide as its place, with a name for those who do not see it.
 
 import { DASHES } from "./lines.js";

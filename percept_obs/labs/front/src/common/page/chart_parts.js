@@ -1,4 +1,3 @@
-// @ts-check
 // What time charts are put together from: lines, ranges, and the same in words.
 
 import { linearScale, logScale, readable, spread } from "../model/scales.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Time charts: lines of width 1, least and greatest value of each pixel column, so that 8,000 points cost as 800.
 
 import { Picture } from "./canvas.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Controls that a keyboard, a screen reader and a hand can use; each knows how to show new settings.
 
 let count = 0;

@@ -1,4 +1,3 @@
-// @ts-check
 // What the panels of all labs are made of: groups of controls that read from a lab's settings and change them.
 
 import { schemaAt } from "../model/schema.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
 
 import { switchOf } from "../model/settings.js";

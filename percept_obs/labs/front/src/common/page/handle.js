@@ -1,4 +1,3 @@
-// @ts-check
 // A handle on a picture: dragged with mouse, touch or arrow keys.
 
 import { element } from "./controls.js";

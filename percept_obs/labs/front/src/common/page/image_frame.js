@@ -1,4 +1,3 @@
-// @ts-check
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
 import { linearScale, tickLabel } from "../model/scales.js";

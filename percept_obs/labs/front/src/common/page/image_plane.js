@@ -1,4 +1,3 @@
-// @ts-check
 // The image plane: the point's path, the estimates, and a handle.
 
 import { spread } from "../model/scales.js";

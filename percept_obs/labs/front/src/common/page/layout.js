@@ -1,4 +1,3 @@
-// @ts-check
 // Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
 
 import { button, element } from "./controls.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // How lines are told apart: by their dashes as well as by their colours.
 
 /** Dashes of the lines that are compared, in their order. */

@@ -1,4 +1,3 @@
-// @ts-check
 // The page's line to Python: state goes out when the hand rests, at most one message at a time, the latest wins.
 
 const PATIENCE = 4000;

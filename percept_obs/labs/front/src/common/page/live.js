@@ -1,4 +1,3 @@
-// @ts-check
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
 import { Results } from "../model/results.js";

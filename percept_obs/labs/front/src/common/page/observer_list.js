@@ -1,4 +1,3 @@
-// @ts-check
 // The observers to choose from: what is known of each, where it is impossible and why, and the gains of the chosen.
 
 import { changeAt, switchOf } from "../model/settings.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What changes around a lab: the sizes of its pictures, and whether the page is dark.
 
 /** Tell of sizes and themes from now on; returns what ends it. */

@@ -1,4 +1,3 @@
-// @ts-check
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The whole of a run: point, camera, observers. The same numbers as record() and track() in Python.
 
 import { LONGEST_STEP } from "../../common/model/integrator.js";

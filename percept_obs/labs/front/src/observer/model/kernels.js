@@ -1,4 +1,3 @@
-// @ts-check
 // The functions that settings need: of the point, the surface, the form, the observers.
 
 import { PrintedKernels } from "../../common/model/kernels.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What is read off a run: excitation.
 
 /** Smallest eigenvalue of a symmetric matrix of size 1 or 2, given row by row. */

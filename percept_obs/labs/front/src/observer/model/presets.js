@@ -1,4 +1,3 @@
-// @ts-check
 // Points worth seeing: each asks first, then shows, and may have a second act. A way back is the lab's business.
 
 import { settingsAfter } from "../../common/model/settings.js";

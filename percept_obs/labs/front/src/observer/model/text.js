@@ -1,4 +1,3 @@
-// @ts-check
 // Why it happened, and the image plane in words.
 
 import { readable } from "../../common/model/scales.js";

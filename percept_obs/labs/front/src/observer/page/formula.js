@@ -1,4 +1,3 @@
-// @ts-check
 // The observer lab's equations: of the canonical form, with the numbers of their letters.
 
 import { keyOf } from "../model/kernels.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The controls of the observer lab: each reads from the settings and changes them.
 
 import { checkbox, element } from "../../common/page/controls.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
 import { columnOf, derived, distancesOf } from "../../common/model/derived.js";

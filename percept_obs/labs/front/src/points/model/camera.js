@@ -1,4 +1,3 @@
-// @ts-check
 // Points in motion and the camera that sees them: the same numbers as record() in Python.
 
 import { clockOf, errorOf } from "../../common/model/camera.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Directions of a state in words, as points/directions.py has them.
 
 import { short } from "../../common/model/scales.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The whole of a run: points in motion, camera, observer, and what is read off them.
 
 import { Memory } from "../../common/model/memory.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Condition (14): what the images of each window tell of the state, as points/gramian.py has it.
 
 import { ENTRIES } from "./flow.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // What is read off a run of many points: the error's size, its decay, when points were not seen.
 
 export const TOLERANCE = 0.05;

@@ -1,4 +1,3 @@
-// @ts-check
 // Symmetric matrices, row by row in flat arrays: their extreme eigenvalues, all of them with vectors, least squares.
 
 const PRECISION = 1e-13;

@@ -1,4 +1,3 @@
-// @ts-check
 // What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
 
 import { derived } from "../../common/model/derived.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The equations of the observer and of the motion, with the numbers that sliders set.
 
 import { FormulaSheet } from "../../common/page/formulas.js";

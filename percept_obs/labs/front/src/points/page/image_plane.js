@@ -1,4 +1,3 @@
-// @ts-check
 // The image plane of many points: their paths, those of their estimates, and each point at time 0 as a handle.
 
 import { readable, spread } from "../../common/model/scales.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The controls of the lab of many points: each reads from the settings and changes them.
 
 import { button, element } from "../../common/page/controls.js";

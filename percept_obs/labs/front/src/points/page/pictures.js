@@ -1,4 +1,3 @@
-// @ts-check
 // What each time chart shows of a run: lines, scale, bars where a point is not seen.
 
 import { columnOf } from "../../common/model/derived.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The points to drag: depth, when they are hidden, adding and removing.
 
 import { button, element, slider } from "../../common/page/controls.js";

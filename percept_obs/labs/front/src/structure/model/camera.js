@@ -1,4 +1,3 @@
-// @ts-check
 // What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";

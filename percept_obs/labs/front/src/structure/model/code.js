@@ -1,4 +1,3 @@
-// @ts-check
 // The few lines of Python that make the same run.
 
 import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The whole of a run: object, camera, observers. The same numbers as record() and track() in Python.
 
 import { columnOf } from "../../common/model/derived.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The functions that settings need: of the point, of the choice of unknowns, of the observers.
 
 import { PrintedKernels } from "../../common/model/kernels.js";

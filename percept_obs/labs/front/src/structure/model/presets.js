@@ -1,4 +1,3 @@
-// @ts-check
 // Points worth seeing: each asks first, then shows, and may have more acts.
 
 const STILL = [0, 0, 0];

@@ -1,4 +1,3 @@
-// @ts-check
 // What rows of ybar and theta say of the unknown quantities and of the range, as StructureAndMotion.quantities().
 
 import { columnOf, derived } from "../../common/model/derived.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // Why it happened, and the pictures in words.
 
 import { readable, short } from "../../common/model/scales.js";

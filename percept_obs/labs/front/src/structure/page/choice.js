@@ -1,4 +1,3 @@
-// @ts-check
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { readable } from "../../common/model/scales.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The structure lab's equations: of the choice of unknowns, with the numbers of their letters.
 
 import { keyOf } from "../model/kernels.js";

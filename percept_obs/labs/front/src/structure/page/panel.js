@@ -1,4 +1,3 @@
-// @ts-check
 // The controls of the structure lab: each reads from the settings and changes them.
 
 import { changeAt } from "../../common/model/settings.js";

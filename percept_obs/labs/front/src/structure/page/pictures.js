@@ -1,4 +1,3 @@
-// @ts-check
 // What each time chart shows of a run: lines, scale, gaps, and the same in words.
 
 import { columnOf, derived } from "../../common/model/derived.js";

@@ -1,4 +1,3 @@
-// @ts-check
 // The scene from above, in metres: the camera at the bottom, the object's path, and where the estimates put it.
 
 import { linearScale, spread } from "../../common/model/scales.js";
