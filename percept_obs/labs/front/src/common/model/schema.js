@@ -12,7 +12,8 @@ export const NOISE = { kind: { choices: { uniform: "uniform", gaussian: "Gaussia
  * @returns {Record<string, import("../../types.js").SettingSchema>}
  */
 export function schemaOf(told, words) {
-  return mapped(told, (kind, name) => MAKE[kind.kind]?.(kind, words[name] ?? {}, name) ?? kind);
+  const made = (kind, name) => MAKE[kind.kind]?.(kind, words[name] ?? {}, name) ?? kind;
+  return Object.fromEntries(Object.entries(told).map(([name, kind]) => [name, made(kind, name)]));
 }
 
 /** The schema of the value at a place in the settings. */
@@ -51,7 +52,3 @@ const MAKE = {
     return { kind: "several", most: entries.at(-1).most, ...words };
   },
 };
-
-function mapped(object, change) {
-  return Object.fromEntries(Object.entries(object).map(([name, value]) => [name, change(value, name)]));
-}

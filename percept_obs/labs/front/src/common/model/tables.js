@@ -23,14 +23,10 @@ export function stepGrid(times, longest) {
   return { grid, index };
 }
 
-/** The lengths of the steps of a grid. */
 export function differences(grid) {
-  const steps = new Float64Array(grid.length - 1);
-  for (let k = 0; k < steps.length; k++) steps[k] = grid[k + 1] - grid[k];
-  return steps;
+  return grid.subarray(1).map((end, k) => end - grid[k]);
 }
 
-/** A grid of steps with their lengths. */
 export function withSteps({ grid, index }) {
   return { grid, index, steps: differences(grid) };
 }
@@ -44,9 +40,7 @@ export function plantGrid(times) {
 
 /** Times of samples, a period apart. */
 export function sampleTimes(period, duration) {
-  const time = new Float64Array(Math.floor(duration / period + 1e-9) + 1);
-  for (let k = 0; k < time.length; k++) time[k] = period * k;
-  return time;
+  return Float64Array.from({ length: Math.floor(duration / period + 1e-9) + 1 }, (_, k) => period * k);
 }
 
 /** The times at which the steps of a grid look at known signals. */
@@ -108,7 +102,7 @@ export function held(columns, times, grid, index, hold, exact, room = fresh) {
       let last = NaN;
       for (let k = 0; k + 1 < index.length; k++) {
         if (values[k] === values[k]) last = values[k];
-        for (let at = index[k] * row + m; at < index[k + 1] * row; at += outputs) table[at] = last;
+        for (let at = 3 * index[k] * outputs + m; at < 3 * index[k + 1] * outputs; at += outputs) table[at] = last;
       }
       return;
     }

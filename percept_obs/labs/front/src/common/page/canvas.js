@@ -1,19 +1,18 @@
 // A canvas that is as sharp as the screen and as wide as its place, with a name for those who do not see it.
 
+import { element } from "./controls.js";
 import { DASHES } from "./lines.js";
+
+const COLOURS = ["ink", "muted", "line", "grid", "sample", "warning", "kept"];
 
 /** A canvas with role, label and a text that tells what it shows. */
 export class Picture {
   constructor(className, label) {
     this.label = label;
-    this.canvas = document.createElement("canvas");
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", label);
+    this.canvas = element("canvas", { role: "img", "aria-label": label });
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    this.figure = document.createElement("figure");
-    this.figure.className = className;
-    this.figure.append(this.canvas);
-    this.below = document.createElement("canvas");
+    this.figure = element("figure", { class: className }, this.canvas);
+    this.below = element("canvas");
     this.paintedFor = "";
     /** @type {{width: number, height: number} | null} */
     this.size = null;
@@ -69,16 +68,7 @@ export class Picture {
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const colour = (name) => style.getPropertyValue(`--lab-${name}`).trim();
-  return {
-    ink: colour("ink"),
-    muted: colour("muted"),
-    line: colour("line"),
-    grid: colour("grid"),
-    paper: colour("paper"),
-    sample: colour("sample"),
-    warning: colour("warning"),
-    kept: colour("kept"),
-    lines: DASHES.map((_, k) => colour(`line-${k}`)),
-    font: `11px ${colour("font") || "sans-serif"}`,
-  };
+  const [ink, muted, line, grid, sample, warning, kept] = COLOURS.map(colour);
+  const lines = DASHES.map((_, k) => colour(`line-${k}`));
+  return { ink, muted, line, grid, sample, warning, kept, lines, font: `11px ${colour("font") || "sans-serif"}` };
 }

@@ -1,7 +1,5 @@
 // What is read off a run of many points: the error's size, its decay, when points were not seen.
 
-export const TOLERANCE = 0.05;
-
 /** Norm of truth minus estimate at each sample. */
 export function norms(truth, estimate, n) {
   const found = new Float64Array(truth.length / n);
@@ -61,11 +59,4 @@ export function spansOf(time, outputs, points, point) {
     else spans.push({ first: k, last: k });
   }
   return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: time[Math.min(last + 1, time.length - 1)] }));
-}
-
-/** When the error came within the tolerance for good, or null. */
-export function settledAt(time, size) {
-  let k = size.length;
-  while (k > 0 && size[k - 1] < TOLERANCE) k -= 1;
-  return k === size.length ? null : time[k] - time[0];
 }

@@ -1,21 +1,22 @@
 // What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
 
 import { derived } from "../../common/model/derived.js";
+import { settlingTime } from "../../common/model/errors.js";
 import { readable, short } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { filled, settledInWords } from "../../common/model/words.js";
 import { inWords, mainly } from "./directions.js";
-import { settledAt, TOLERANCE } from "./measures.js";
 import { eigen } from "./symmetric.js";
 
 const MOST_ABSENCES = 3;
+const TOLERANCE = 0.05;
 
 /** What happened to the error, as PointsRun.verdict() in Python. */
 export function verdict({ time, size, divergedAt }, model) {
   const { verdicts, remedy, judged } = model;
   if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
   const error = { judged, error: size.at(-1), tolerance: TOLERANCE };
-  return settledInWords(error, settledAt(time, size) ?? Infinity, time.at(-1) - time[0], model);
+  return settledInWords(error, settlingTime(time, size, TOLERANCE), time.at(-1) - time[0], model);
 }
 
 /** How fast the error decays, and what is guaranteed. */
