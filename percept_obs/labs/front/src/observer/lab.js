@@ -4,13 +4,12 @@ import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
-import { ObserverFormulas } from "../common/page/formulas.js";
+import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, translationTowards } from "./model/engine.js";
-import { Kernels } from "./model/kernels.js";
+import { Kernels, keyOf } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
-import { imagePlaneInWords, reasons } from "./model/text.js";
-import { numbersOf, systemOf } from "./page/formula.js";
+import { reasons } from "./model/text.js";
 import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { WORDS } from "./schema.js";
@@ -28,12 +27,14 @@ export class ObserverLab extends Live {
       label: "Focus of expansion",
       tag: "FOE",
       placeOf: (shown) => shown.foe,
-      inWords: imagePlaneInWords,
       onMove: (foe) => this.moveFoe(foe),
       onRest: () => this.rest(),
     });
     this.planes = [plane];
-    this.formulas = new ObserverFormulas(this.model, systemOf, numbersOf);
+    this.formulas = new ObserverFormulas(this.model, {
+      systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
+      numbersOf: ({ A, b, normal }) => lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }),
+    });
     this.panel = new Panel(this);
     this.open(place);
   }

@@ -1,16 +1,29 @@
 // The lab of many points: points of one state before a moving camera, and an observer that follows them.
 
+import { FormulaSheet, lettered } from "../common/page/formulas.js";
 import { Live } from "../common/page/live.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
 import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
-import { Formulas } from "./page/formula.js";
 import { ImagePlane } from "./page/image_plane.js";
 import { Panel } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { WORDS } from "./schema.js";
+
+/** The equations of the observer and of the motion, with the numbers that sliders set. */
+class Formulas extends FormulaSheet {
+  constructor({ equations }) {
+    super();
+    for (const { title, lines } of equations) this.section(title, "", lines);
+  }
+
+  show(settings) {
+    const numbers = { ...settings, ...lettered({ v: settings.velocity }) };
+    this.putIn((_, letter) => numbers[letter]);
+  }
+}
 
 export class PointsLab extends Live {
   constructor(widget, place, model) {

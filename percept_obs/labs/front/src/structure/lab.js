@@ -4,14 +4,13 @@ import { settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
-import { ObserverFormulas } from "../common/page/formulas.js";
+import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
-import { StructureKernels } from "./model/kernels.js";
+import { keyOf, StructureKernels } from "./model/kernels.js";
 import { PRESETS } from "./model/presets.js";
-import { imagePlaneInWords, readingAt, reasons } from "./model/text.js";
+import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
-import { numbersOf, systemOf } from "./page/formula.js";
 import { StructurePanel } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { Scene } from "./page/scene.js";
@@ -27,12 +26,14 @@ export class StructureLab extends Live {
       label: "Start of the point",
       tag: "start",
       placeOf: (shown) => shown.settings.ybar.slice(0, 2),
-      inWords: imagePlaneInWords,
       onMove: (point) => this.moveStart(point),
       onRest: () => this.rest(),
     });
     this.planes = [plane, new Scene()];
-    this.formulas = new ObserverFormulas(this.model, systemOf, numbersOf);
+    this.formulas = new ObserverFormulas(this.model, {
+      systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
+      numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),
+    });
     this.panel = new StructurePanel(this);
     this.choice = new ChoiceOfUnknowns(this.model, this);
     this.head = this.choice.body;

@@ -27,6 +27,15 @@ export function switchOf(settings, name) {
   return settings.switches?.[name] ?? "";
 }
 
+/** Presets whose acts have what each preset says for all of them, and a button that says no more than that it shows. */
+export function presetsOf(presets) {
+  const whole = (shared, { changes, beside, ...act }) => ({
+    ...{ button: "Show", ...act, changes: { ...shared, ...changes } },
+    beside: beside && { ...shared, ...beside },
+  });
+  return presets.map(({ changes, acts, ...preset }) => ({ ...preset, acts: acts.map((act) => whole(changes, act)) }));
+}
+
 /** The settings of a preset's act: the standard ones, whatever the lab was opened with, and the act's changes. */
 export function settingsAfter(act, standard) {
   const changed = { ...structuredClone(standard), ...structuredClone(act.changes), kept: null };

@@ -47,12 +47,16 @@ export function readingAt(shown, cursor) {
   return parts.join(" · ");
 }
 
-/** What the image plane of a point shows. */
-export function pathsInWords({ time, truth, width, names, runs }) {
-  const point = (rows, k) => names.slice(0, 2).map((name, c) => `${name} ${readable(rows[k * width + c])}`).join(", ");
+/** The text equivalent of the image plane of a point. */
+export function imagePlaneInWords({ problem, time, truth, width, names, runs, foe, circle }) {
+  if (problem) return problem;
+  const point = (rows, k = 0) => names.slice(0, 2).map((name, c) => `${name} ${readable(rows[k * width + c])}`).join(", ");
   const end = time.length - 1;
-  const path = truth ? [`the point goes from ${point(truth, 0)} to ${point(truth, end)}`] : [];
-  return [...path, ...runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`)];
+  const parts = runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`);
+  if (truth) parts.unshift(`the point goes from ${point(truth)} to ${point(truth, end)}`);
+  if (foe) parts.push(`focus of expansion at y1 ${readable(foe[0])}, y2 ${readable(foe[1])}`);
+  if (circle) parts.push(`circle of radius ${readable(Math.abs(circle[2]))} in which an instant tells little`);
+  return `${parts.join("; ")}.`;
 }
 
 /** When the point was lost, if it was. */

@@ -31,7 +31,8 @@ export function decades(lines, least, most) {
   return logScale(Math.min(Math.max(low, least), top / 10), top);
 }
 
-function hull(bounds) {
+/** The range that holds all of these. */
+export function hull(bounds) {
   return [Math.min(...bounds.map(([low]) => low)), Math.max(...bounds.map(([, high]) => high))];
 }
 

@@ -8,7 +8,6 @@ import { readable } from "../model/scales.js";
 export class FormulaSheet {
   constructor() {
     this.body = element("div", { class: "formulas" });
-    this.shownFor = "";
     /** @type {{node: Element, owner: string, letter: string}[]} */
     this.numbers = [];
   }
@@ -62,13 +61,18 @@ export class FormulaSheet {
   }
 }
 
+/** The numbers of rows by letter and place: a1, a2, a3 of {a: [...]}. */
+export function lettered(rows) {
+  return Object.fromEntries(Object.entries(rows).flatMap(([letter, row]) => row.map((value, i) => [`${letter}${i + 1}`, value])));
+}
+
 /**
  * The panel of equations.  A lab of its own gives two functions:
- *   systemOf(settings, model)  {title, lines} of the system's equations, as MathML
- *   numbersOf(settings)        the present numbers of its letters
+ *   systemOf(settings)   title of the system's equations, and these as MathML
+ *   numbersOf(settings)  the present numbers of its letters
  */
 export class ObserverFormulas extends FormulaSheet {
-  constructor(model, systemOf, numbersOf) {
+  constructor(model, { systemOf, numbersOf }) {
     super();
     this.shownFor = "";
     this.model = model;
@@ -79,11 +83,13 @@ export class ObserverFormulas extends FormulaSheet {
   /** Show the equations of these settings, with their numbers. */
   show(settings) {
     const chosen = settings.observers.map((name) => [name, this.linesOf(settings, name)]);
-    const system = this.systemOf(settings, this.model);
+    const system = this.systemOf(settings);
     const key = JSON.stringify([system, chosen]);
     if (key !== this.shownFor) {
       this.shownFor = key;
-      this.build(system, chosen);
+      this.clear();
+      this.section(system[0], "motion", system[1]);
+      for (const [name, lines] of chosen) this.section(`The ${this.model.observers[name].title} observer`, name, lines);
     }
     const motion = this.numbersOf(settings);
     this.putIn((owner, letter) => (settings.gains[owner] ?? motion)[letter]);
@@ -93,11 +99,5 @@ export class ObserverFormulas extends FormulaSheet {
   linesOf(settings, name) {
     const equations = this.model.observers[name].equations[switchOf(settings, name)];
     return equations.find(({ zero }) => zero.every((gain) => settings.gains[name][gain] === 0)).lines;
-  }
-
-  build(system, chosen) {
-    this.clear();
-    this.section(system.title, "motion", system.lines);
-    for (const [name, lines] of chosen) this.section(`The ${this.model.observers[name].title} observer`, name, lines);
   }
 }

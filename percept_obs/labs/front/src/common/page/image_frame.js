@@ -12,12 +12,6 @@ export function squareAround(bounds) {
   return { centre, half, ticks };
 }
 
-/** Widen a range so that it holds another one. */
-export function widen(range, other) {
-  range[0] = Math.min(range[0], other[0]);
-  range[1] = Math.max(range[1], other[1]);
-}
-
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
 export function placed(target, { centre, half }) {
   const { width, height } = target.fit();

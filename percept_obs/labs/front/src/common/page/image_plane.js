@@ -2,35 +2,53 @@
 
 import { spread } from "../model/scales.js";
 import { sampleAt } from "../model/tables.js";
+import { imagePlaneInWords } from "../model/words.js";
 import { Picture } from "./canvas.js";
+import { hull } from "./chart_parts.js";
 import { Handle } from "./handle.js";
-import { clipTo, dot, drawAxes, drawEnds, drawPath, placed, squareAround, widen } from "./image_frame.js";
+import { clipTo, dot, drawAxes, drawEnds, drawPath, placed, squareAround } from "./image_frame.js";
 import { DASHES, KEPT, SOLID } from "./lines.js";
 
-/** The picture, and the handle that is dragged with mouse, touch or arrow keys. */
-export class ImagePlane extends Picture {
-  constructor({ name, label, tag, placeOf, inWords, onMove, onRest }) {
+/** A picture of a square of the image, with handles to drag. */
+export class FramedImage extends Picture {
+  constructor(handles) {
     super("image-plane", "Image plane");
-    this.placeOf = placeOf;
-    this.inWords = inWords;
     /** @type {ReturnType<typeof squareAround> | null} */
     this.square = null;
-    const whole = `${label}: drag it, or use the arrow keys`;
-    this.handle = new Handle({ name, className: "diamond", label: whole, onMove, onRest });
-    this.handle.node.dataset.tag = tag;
-    this.figure.append(this.handle.node);
+    this.handles = handles.map((handle) => new Handle(handle));
+    this.figure.append(...this.handles.map(({ node }) => node));
   }
 
-  /** Draw what is shown; while the hand holds the handle the frame stays where it is. */
-  draw(shown, ghost, cursor, theme) {
-    const place = this.placeOf(shown);
-    const square = (this.handle.grip && this.square) || squareOf(shown, ghost, place);
+  /** Paint inside a square, and put handles in their places; while the hand holds one, the square stays as it is. */
+  paint(squareOf, theme, inside, places) {
+    const square = (this.handles.some(({ grip }) => grip) && this.square) || squareOf();
     this.square = square;
     const frame = placed(this, square);
     const pen = this.context;
     this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();
     clipTo(pen, frame.box);
+    inside(pen, frame);
+    pen.restore();
+    this.handles.forEach((handle, k) => handle.stand(places[k], frame));
+  }
+}
+
+/** The image of one point; `placeOf` says of a result where the handle stands. */
+export class ImagePlane extends FramedImage {
+  constructor({ name, label, tag, placeOf, onMove, onRest }) {
+    super([{ name, className: "diamond", label: `${label}: drag it, or use the arrow keys`, onMove, onRest }]);
+    this.placeOf = placeOf;
+    this.handles[0].node.dataset.tag = tag;
+  }
+
+  draw(shown, ghost, cursor, theme) {
+    const place = this.placeOf(shown);
+    const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
+    this.paint(() => squareOf(shown, ghost, place), theme, inside, [place]);
+  }
+
+  trace(pen, frame, shown, ghost, cursor, theme) {
     if (shown.circle) drawCircle(pen, shown.circle, frame, theme);
     const trace = (rows, colour, dash) => drawPath(pen, rows, { width: shown.width }, frame, colour, dash);
     ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
@@ -38,31 +56,28 @@ export class ImagePlane extends Picture {
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
     if (shown.truth?.length) drawEnds(pen, shown.truth, shown.width, frame, theme);
     if (cursor !== null) drawAt(pen, shown, cursor, frame, theme);
-    pen.restore();
-    this.handle.stand(place, frame);
   }
 
-  /** Say what the picture shows, and where the handle is. */
   describe(shown) {
-    this.tell(this.inWords(shown));
-    this.handle.describe();
+    this.tell(imagePlaneInWords(shown));
+    this.handles[0].describe();
   }
 }
 
 /** A square with round numbers that holds the path and the handle, unless that is far away. */
 function squareOf(shown, ghost, place) {
   const seen = (c) => (shown.truth?.length ? bound(shown.truth, shown.width, c) : bound(shown.outputs, shown.sampled, c));
-  const bounds = [0, 1].map((c) => seen(c) ?? [-1, 1]);
-  for (const run of ghost?.runs ?? []) {
-    bounds.forEach((b, c) => {
+  const bounds = [0, 1].map((c) => {
+    let found = seen(c) ?? [-1, 1];
+    for (const run of ghost?.runs ?? []) {
       const other = bound(run.estimate, shown.width, c);
-      if (other && other[1] - other[0] < 3 * (b[1] - b[0])) widen(b, other);
-    });
-  }
+      if (other && other[1] - other[0] < 3 * (found[1] - found[0])) found = hull([found, other]);
+    }
+    return found;
+  });
   const size = Math.max(...bounds.map(([low, high]) => high - low), 0.2);
   const reachable = place?.every((v, c) => v > bounds[c][0] - 1.5 * size && v < bounds[c][1] + 1.5 * size);
-  if (reachable) bounds.forEach((b, c) => widen(b, [place[c], place[c]]));
-  return squareAround(bounds);
+  return squareAround(reachable ? bounds.map((b, c) => hull([b, [place[c], place[c]]])) : bounds);
 }
 
 function bound(rows, width, c) {

@@ -1,7 +1,7 @@
-// Why it happened, and the image plane in words.
+// Why it happened, in words.
 
 import { readable } from "../../common/model/scales.js";
-import { leavingInWords, pathsInWords } from "../../common/model/words.js";
+import { leavingInWords } from "../../common/model/words.js";
 
 const UNEXCITED = 1e-4;
 
@@ -52,13 +52,4 @@ function nearestToFoe({ foe, truth, width, time }) {
     if (squared < least) [least, at] = [squared, k];
   }
   return { distance: Math.sqrt(least), time: time[at] };
-}
-
-/** The text equivalent of the image plane. */
-export function imagePlaneInWords(shown) {
-  if (shown.problem) return shown.problem;
-  const parts = pathsInWords(shown);
-  if (shown.foe) parts.push(`focus of expansion at y1 ${readable(shown.foe[0])}, y2 ${readable(shown.foe[1])}`);
-  if (shown.circle) parts.push(`circle of radius ${readable(Math.abs(shown.circle[2]))} in which an instant tells little`);
-  return `${parts.join("; ")}.`;
 }

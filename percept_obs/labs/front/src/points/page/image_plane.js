@@ -2,9 +2,9 @@
 
 import { readable, spread } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
-import { Picture } from "../../common/page/canvas.js";
-import { Handle } from "../../common/page/handle.js";
-import { clipTo, dot, drawAxes, drawPath, placed, squareAround, widen } from "../../common/page/image_frame.js";
+import { hull } from "../../common/page/chart_parts.js";
+import { dot, drawPath, squareAround } from "../../common/page/image_frame.js";
+import { FramedImage } from "../../common/page/image_plane.js";
 import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
 import { imagePlaneInWords } from "../model/text.js";
 
@@ -16,41 +16,17 @@ const FAINT = 0.35;
 const HIDDEN = [1, 4];
 
 /** The picture, with a handle for each point that there may be. */
-export class ImagePlane extends Picture {
+export class ImagePlane extends FramedImage {
   constructor(lab, most) {
-    super("image-plane", "Image plane");
-    /** @type {ReturnType<typeof squareAround> | null} */
-    this.square = null;
-    this.handles = Array.from({ length: most }, (_, k) => this.handle(lab, k));
-    this.figure.append(...this.handles.map(({ node }) => node));
+    super(Array.from({ length: most }, (_, k) => handleOf(lab, k)));
   }
 
-  handle(lab, k) {
-    return new Handle({
-      name: `point ${k + 1}`,
-      className: `numbered point-${k}`,
-      text: String(k + 1),
-      label: `Point ${k + 1} at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it`,
-      onMove: (place) => lab.movePoint(k, place),
-      onRest: () => lab.rest(),
-      onKey: ({ key }) => {
-        const step = FARTHER.includes(key) ? DEPTH_STEP : NEARER.includes(key) ? -DEPTH_STEP : 0;
-        if (key === "Delete") lab.removePoint(k);
-        else if (step) lab.moveDepth(k, Number((lab.depthOf(k) + step).toFixed(6)));
-        return step !== 0 || key === "Delete";
-      },
-    });
-  }
-
-  /** Draw what is shown; while the hand holds a point the frame stays where it is. */
   draw(shown, ghost, cursor, theme) {
-    const square = (this.handles.some(({ grip }) => grip) && this.square) || squareOf(shown);
-    this.square = square;
-    const frame = placed(this, square);
-    const pen = this.context;
-    this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
-    pen.save();
-    clipTo(pen, frame.box);
+    const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
+    this.paint(() => squareOf(shown), theme, inside, this.handles.map((_, k) => startOf(shown, k)));
+  }
+
+  trace(pen, frame, shown, ghost, cursor, theme) {
     const [first, last] = trail(shown.time, cursor);
     for (let k = 0; k < shown.points; k++) {
       pen.globalAlpha = FAINT;
@@ -67,17 +43,31 @@ export class ImagePlane extends Picture {
       drawPath(pen, recent(shown, shown.estimated.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
     }
     drawAt(pen, shown, last, frame, theme);
-    pen.restore();
-    this.handles.forEach((handle, k) => handle.stand(startOf(shown, k), frame));
   }
 
-  /** Say what the picture shows, and where the points are at time 0. */
   describe(shown) {
     this.tell(imagePlaneInWords(shown));
     this.handles.forEach((handle, k) => {
       if (k < shown.points) handle.describe(`, depth ${readable(shown.depths[k])} m`);
     });
   }
+}
+
+function handleOf(lab, k) {
+  return {
+    name: `point ${k + 1}`,
+    className: `numbered point-${k}`,
+    text: String(k + 1),
+    label: `Point ${k + 1} at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it`,
+    onMove: (place) => lab.movePoint(k, place),
+    onRest: () => lab.rest(),
+    onKey: ({ key }) => {
+      const step = FARTHER.includes(key) ? DEPTH_STEP : NEARER.includes(key) ? -DEPTH_STEP : 0;
+      if (key === "Delete") lab.removePoint(k);
+      else if (step) lab.moveDepth(k, Number((lab.depthOf(k) + step).toFixed(6)));
+      return step !== 0 || key === "Delete";
+    },
+  };
 }
 
 function startOf({ points, images }, k) {
@@ -98,12 +88,10 @@ function trail(time, cursor) {
 /** A square that holds the paths of all points. */
 function squareOf({ points, images }) {
   const bounds = [0, 1].map((c) => {
-    const found = Array.from({ length: points }, (_, k) =>
-      spread(images, { lowPart: 0, highPart: 1, first: 2 * k + c, width: 2 * points }),
-    ).flatMap((range) => (range ? [range] : []));
-    const range = found.length ? [...found[0]] : [-1, 1];
-    for (const other of found) widen(range, other);
-    return [Math.max(range[0], -3), Math.min(range[1], 3)];
+    const boundsOf = (_, k) => spread(images, { lowPart: 0, highPart: 1, first: 2 * k + c, width: 2 * points });
+    const found = Array.from({ length: points }, boundsOf).filter((range) => range !== null);
+    const [low, high] = found.length ? hull(found) : [-1, 1];
+    return [Math.max(low, -3), Math.min(high, 3)];
   });
   return squareAround(bounds);
 }

@@ -2,7 +2,7 @@
 
 import { readable, short } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
-import { filled, leavingInWords, pathsInWords } from "../../common/model/words.js";
+import { filled, leavingInWords } from "../../common/model/words.js";
 import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];
@@ -57,11 +57,6 @@ function mostOf({ guard }) {
   let most = 0;
   for (let k = 0; k < guard.sizes.length; k++) most = Math.max(most, guard.sizes[k] / Math.abs(guard.determinants[k]));
   return most;
-}
-
-/** The text equivalent of the image plane. */
-export function imagePlaneInWords(shown) {
-  return shown.problem ?? `${pathsInWords(shown).join("; ")}.`;
 }
 
 /** The text equivalent of the view from above. */
