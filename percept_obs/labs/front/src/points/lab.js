@@ -48,14 +48,12 @@ export class PointsLab extends Live {
     this.change({ points: this.settings.points.with(k, place) });
   }
 
-  /** Move a point in the image, with its depth kept. */
   movePoint(k, [y1, y2]) {
     const functions = this.kernels.of(this.settings);
     if (k >= this.settings.points.length || !functions) return;
     this.put(k, Array.from(functions.locate([y1, y2, this.depthOf(k)], new Float64Array(3))));
   }
 
-  /** Move a point along its ray. */
   moveDepth(k, depth) {
     const now = this.depthOf(k);
     const [x, y, z] = this.settings.points[k];
@@ -78,7 +76,6 @@ export class PointsLab extends Live {
     this.change({ points: points.toSpliced(k, 1), hidden: hidden.toSpliced(k, 1) }, true);
   }
 
-  /** A span in which a point may be hidden. */
   someTime() {
     const { duration } = this.settings;
     return [0.2, 0.5].map((part) => Number((part * duration).toFixed(1)));

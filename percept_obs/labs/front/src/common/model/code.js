@@ -4,7 +4,6 @@ import { switchOf } from "./settings.js";
 
 export const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
 
-/** Numbers as a list of Python's. */
 export function list(values) {
   return `[${values.join(", ")}]`;
 }

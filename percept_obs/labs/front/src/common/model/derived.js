@@ -12,7 +12,6 @@ export function derived(rows, name, make) {
   return found.get(name);
 }
 
-/** One column of rows so wide. */
 export function columnOf(rows, width, which) {
   return derived(rows, `column ${which}`, () => column(rows, width, which));
 }

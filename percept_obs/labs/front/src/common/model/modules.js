@@ -17,7 +17,6 @@ export function moduleText(functions) {
     .join("\n");
 }
 
-/** Groups of functions by name. */
 export class Modules {
   constructor(load = importText) {
     this.load = load;

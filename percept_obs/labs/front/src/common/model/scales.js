@@ -80,7 +80,6 @@ export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infin
   return [at(lowPart), at(highPart)];
 }
 
-/** A tick's label. */
 export function tickLabel(value, log) {
   if (!log) return readable(value, 4);
   const power = Math.round(Math.log10(value));

@@ -85,7 +85,6 @@ export class State {
     this.now = { ...this.now, preset: { name, act: -1, before: this.preset?.before ?? null } };
   }
 
-  /** Show an act of the open preset. */
   act(act, settings) {
     const before = this.preset?.before ?? this.settings;
     this.step({ settings, preset: { name: this.preset?.name, act, before } });
@@ -98,7 +97,6 @@ export class State {
     else this.now = { ...this.now, preset: null };
   }
 
-  /** Begin anew. */
   reset(settings) {
     this.cursor = null;
     this.step({ settings, preset: null });

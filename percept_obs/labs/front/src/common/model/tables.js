@@ -38,7 +38,6 @@ export function plantGrid(times) {
   return withSteps(stepGrid(from, PLANT_STEP));
 }
 
-/** Times of samples, a period apart. */
 export function sampleTimes(period, duration) {
   return Float64Array.from({ length: Math.floor(duration / period + 1e-9) + 1 }, (_, k) => period * k);
 }

@@ -3,7 +3,6 @@
 import { readable, short } from "./scales.js";
 import { sampleAt } from "./tables.js";
 
-/** Put values into a text of Python's. */
 export function filled(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
 }
@@ -36,7 +35,6 @@ export function settledInWords({ judged, error, tolerance }, settling, length, {
   });
 }
 
-/** The values under the cursor. */
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const row = (rows) =>

@@ -57,7 +57,6 @@ export class Picture {
     context.restore();
   }
 
-  /** Say what is shown now. */
   tell(text) {
     const whole = `${this.label}: ${text}`;
     if (this.canvas.getAttribute("aria-label") !== whole) this.canvas.setAttribute("aria-label", whole);

@@ -63,7 +63,6 @@ export function linesOf(shown, ghost, theme, label, pick) {
   return lines.toSpliced(lines.length - shown.runs.length, 0, ...truth);
 }
 
-/** A tick for each reset. */
 export function marksOf(shown, theme) {
   return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
 }

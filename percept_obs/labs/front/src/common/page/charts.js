@@ -11,7 +11,6 @@ const BOTTOM = 18;
 /** Length of a reset's mark, which hangs from the top. */
 const MARK = 5;
 
-/** A chart of values over time. */
 export class TimeChart extends Picture {
   constructor(label) {
     super("chart", label);

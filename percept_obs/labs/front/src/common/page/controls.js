@@ -35,7 +35,6 @@ function fits(value, { least = -Infinity, most = Infinity, above = -Infinity, wh
   return !(whole && !Number.isInteger(value)) && !(nonzero && value === 0) && (!allowed || allowed(value));
 }
 
-/** A slider and a field for the same number. */
 export function slider({ name, label, hint, letter, low, high, step, log, unit, get, set, rest, ...limits }) {
   const id = `percept-${++count}`;
   const inside = log ? Math.log10 : (v) => v;
@@ -118,7 +117,6 @@ export function radios({ name, label, choices, possible = (_value) => true, get,
   return { row, show, parts, name };
 }
 
-/** A box to tick. */
 export function checkbox({ name, label, swatch = /** @type {Node | string} */ (""), get, set }) {
   const input = element("input", { type: "checkbox", "data-control": name });
   input.addEventListener("change", () => set(input.checked));
@@ -126,7 +124,6 @@ export function checkbox({ name, label, swatch = /** @type {Node | string} */ ("
   return { row, show: () => (input.checked = get()), parts: [input], name };
 }
 
-/** A block of numbers in fields. */
 export function grid({ name, label, rows, columns, step, names, get, set, rest, ...limits }) {
   const fields = names.map((entry, k) => {
     const field = element("input", { type: "number", step, "aria-label": `${label}: ${entry}` });

@@ -57,12 +57,10 @@ export class Fieldsets {
     };
   }
 
-  /** Sliders for the numbers at some places. */
   numbers(...places) {
     return places.map((place) => this.number(place));
   }
 
-  /** A slider for the number at a place. */
   number(place, more) {
     return this.add(slider(this.bound(place, false, more)));
   }

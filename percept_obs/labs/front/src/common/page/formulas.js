@@ -26,7 +26,6 @@ export class FormulaSheet {
     }
   }
 
-  /** Light up a letter. */
   highlight(owner, letter) {
     for (const node of this.body.querySelectorAll("[data-letter]")) {
       const mine = node.closest("[data-owner]").dataset.owner === owner;

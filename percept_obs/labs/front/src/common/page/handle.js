@@ -87,7 +87,6 @@ export class Handle {
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 
-  /** Say where it stands. */
   describe(more = "") {
     if (!this.at) return;
     this.node.setAttribute("aria-valuenow", this.at[0].toFixed(3));

@@ -29,7 +29,6 @@ export function frameOf(box, scale, centre, [left, top], far) {
   };
 }
 
-/** Draw only inside the box. */
 export function clipTo(pen, { left, top, side, width = side, height = side }) {
   pen.beginPath();
   pen.rect(left, top, width, height);
@@ -72,7 +71,6 @@ function within(ticks, place, low, high) {
   return placed.filter(([, at]) => at >= low && at <= high + 1);
 }
 
-/** Draw a line between two places on a canvas. */
 export function stroke(pen, from, to) {
   pen.beginPath();
   pen.moveTo(...from);

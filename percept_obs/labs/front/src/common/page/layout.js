@@ -3,7 +3,6 @@
 import { button, element } from "./controls.js";
 import { swatch } from "./lines.js";
 
-/** Build the lab's page inside an element. */
 export function build(lab, place, presets) {
   const { planes, charts, panel, formulas } = lab;
   const paragraph = (className, role) => element("p", { class: className, role, hidden: true });

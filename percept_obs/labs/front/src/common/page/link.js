@@ -18,7 +18,6 @@ export class Link {
     for (const [event, listener] of Object.entries(this.listeners)) widget.on(event, listener);
   }
 
-  /** Hand the latest state over. */
   send(settings, summary) {
     this.widget.set("settings", settings);
     this.widget.set("summary", summary);

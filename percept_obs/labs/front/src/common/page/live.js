@@ -73,7 +73,6 @@ export class Live {
     return [...this.planes, ...Object.values(this.charts)];
   }
 
-  /** Put the lab's page inside an element. */
   open(place) {
     const { labels, presets } = this.parts;
     this.charts = Object.fromEntries(Object.entries(labels).map(([name, label]) => [name, new TimeChart(label)]));
@@ -195,7 +194,6 @@ export class Live {
     return settings.kept ? [settings, settings.kept] : [settings];
   }
 
-  /** A promise of all that these settings need. */
   prepare(settings) {
     return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
   }
@@ -209,7 +207,6 @@ export class Live {
     return settings;
   }
 
-  /** The hand lets go. */
   rest() {
     this.state.release();
     return this.settle();
@@ -275,7 +272,6 @@ export class Live {
 
   // What is shown.
 
-  /** Names of the time charts that are shown. */
   chosen() {
     const { problem, settings } = this.shown;
     return problem ? [] : this.model.pictures.filter((name) => settings.pictures.includes(name));
@@ -340,7 +336,6 @@ export class Live {
     return this.parts.pythonOf(this.shown, this.model);
   }
 
-  /** Lines with their names. */
   legend() {
     const { truth, runs } = this.shown;
     return [...(truth ? [["truth", "truth"]] : []), ...runs.map(({ order, title }) => [order, title])];

@@ -2,7 +2,6 @@
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 
-/** Records settings. */
 export class Camera extends PointCamera {
   constructor(model, memory) {
     super(model, memory, 2);
@@ -45,7 +44,6 @@ export class Camera extends PointCamera {
   }
 }
 
-/** The surface's own numbers. */
 export function shapeOf(settings) {
   return settings.surface === "plane" ? settings.normal : [];
 }

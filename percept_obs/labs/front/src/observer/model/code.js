@@ -3,7 +3,6 @@
 import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
 import { switchOf } from "../../common/model/settings.js";
 
-/** Python text for settings that are shown. */
 export function pythonOf(shown, model) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);

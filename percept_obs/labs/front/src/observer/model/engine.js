@@ -11,7 +11,6 @@ import { windowed } from "./measures.js";
 
 const TOLERANCE = 0.05;
 
-/** Runs settings. */
 export class Engine extends Runner {
   constructor(model) {
     super(model);
@@ -52,7 +51,6 @@ export class Engine extends Runner {
     return { ...result, excitation: this.excitation(result, functions), whole: true };
   }
 
-  /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
   inputs(settings, result, functions) {
     const { memory } = this;
     const { time, measured } = result;

@@ -8,7 +8,6 @@ export function keyOf({ surface, outputs }) {
   return `${surface} ${outputs.join("+")}`;
 }
 
-/** All functions of a model. */
 export class Kernels extends PrintedKernels {
   /** The observers that do not exist for these settings' form or recording, with the reasons. */
   refused(settings) {

@@ -5,7 +5,6 @@ import { leavingInWords } from "../../common/model/words.js";
 
 const UNEXCITED = 1e-4;
 
-/** Why: what the settings and the path of the point have to do with it. */
 export function reasons(shown) {
   const { settings, measured, names, hiddenNames } = shown;
   if (shown.problem) return [shown.problem];

@@ -4,7 +4,6 @@ import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
-/** Fieldsets of controls; show() brings all of them to the present settings. */
 export class Panel extends Fieldsets {
   constructor(lab) {
     super(lab);
@@ -21,7 +20,6 @@ export class Panel extends Fieldsets {
     );
   }
 
-  /** The recording that is shown, if one is. */
   track() {
     return this.model.recordings[this.lab.settings.scenario];
   }

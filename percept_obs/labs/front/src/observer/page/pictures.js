@@ -15,7 +15,6 @@ export const LABELS = {
   excitation: "Excitation over time",
 };
 
-/** The parts of one chart. */
 export function chartOf(name, shown, ghost, theme) {
   return BUILD[name](shown, ghost, theme);
 }

@@ -9,7 +9,6 @@ const WEIGHTS = {
   riccati: ({ size, forgetting }) => [`riccati(${size}, ${forgetting})`, ["riccati"]],
 };
 
-/** Python text for settings that are shown. */
 export function pythonOf({ settings, truth, n, points, names: states }, { error }) {
   const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
   const [P, weights] = WEIGHTS[settings.weight](settings);

@@ -8,7 +8,6 @@ import { windowsOf } from "./gramian.js";
 import { decayRate, norms, pointErrors, spansOf } from "./measures.js";
 import { Observer } from "./observer.js";
 
-/** Runs settings. */
 export class PointsEngine {
   constructor(model) {
     this.model = model;

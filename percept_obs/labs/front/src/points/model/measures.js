@@ -1,6 +1,5 @@
 // What is read off a run of many points: the error's size, its decay, when points were not seen.
 
-/** Norm of truth minus estimate at each sample. */
 export function norms(truth, estimate, n) {
   const found = new Float64Array(truth.length / n);
   for (let k = 0; k < found.length; k++) {

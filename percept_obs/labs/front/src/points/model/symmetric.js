@@ -127,7 +127,6 @@ export function pseudoInverse(R, m, n) {
   return inverse;
 }
 
-/** A matrix with so many rows, times a vector. */
 export function product(matrix, x, rows) {
   const width = x.length;
   return Float64Array.from({ length: rows }, (_, i) => {

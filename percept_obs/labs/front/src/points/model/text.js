@@ -48,7 +48,6 @@ export function gramianInWords(shown, { verdicts, unseen }) {
   return along > 1 - 1e-4 ? text + verdicts[one ? "the scale" : "the scale too"] : text;
 }
 
-/** Why: what the settings and the paths of the points have to do with it. */
 export function reasons(shown, model) {
   const { settings } = shown;
   const found = [`${gramianInWords(shown, model)}.`, ...absencesInWords(shown)];
@@ -80,7 +79,6 @@ function absencesInWords({ time, absences, errors, settings }) {
   });
 }
 
-/** The text equivalent of the image plane. */
 export function imagePlaneInWords({ points, images, estimated, absences, time }) {
   const place = (rows, k) => {
     const [y1, y2] = [rows[2 * k], rows[2 * k + 1]];
@@ -98,7 +96,6 @@ export function imagePlaneInWords({ points, images, estimated, absences, time })
   return `${parts.join("; ")}.`;
 }
 
-/** The values under the cursor. */
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const points = Array.from({ length: shown.points }, (_, p) => {
@@ -108,7 +105,6 @@ export function readingAt(shown, cursor) {
   return [`At ${readable(shown.time[k])} s`, `|error| ${readable(shown.size[k])}`, ...points].join(" · ");
 }
 
-/** Numbers that Python is told. */
 export function summaryOf(shown, serial, model) {
   const number = (value) => (Number.isFinite(value) ? value : null);
   return {

@@ -15,7 +15,6 @@ const TRAIL = 5;
 const FAINT = 0.35;
 const HIDDEN = [1, 4];
 
-/** The picture, with a handle for each point that there may be. */
 export class ImagePlane extends FramedImage {
   constructor(lab, most) {
     super(Array.from({ length: most }, (_, k) => handleOf(lab, k)));
@@ -85,7 +84,6 @@ function trail(time, cursor) {
   return [sampleAt(time, Math.max(0, time[last] - TRAIL)), last];
 }
 
-/** A square that holds the paths of all points. */
 function squareOf({ points, images }) {
   const bounds = [0, 1].map((c) => {
     const boundsOf = (_, k) => spread(images, { lowPart: 0, highPart: 1, first: 2 * k + c, width: 2 * points });

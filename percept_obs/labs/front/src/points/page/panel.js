@@ -7,7 +7,6 @@ import { PointList } from "./point_list.js";
 /** What P begins with when a kind is chosen. */
 const OWN_SIZE = { constant: 1, scheduled: 0.3, lyapunov: 1, riccati: 0.01 };
 
-/** Fieldsets of controls; show() brings all of them to the present settings. */
 export class Panel extends Fieldsets {
   constructor(lab) {
     super(lab);

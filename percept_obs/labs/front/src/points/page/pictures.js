@@ -14,7 +14,6 @@ export const LABELS = {
 
 const FLOOR = 1e-9;
 
-/** The parts of one chart. */
 export function chartOf(name, shown, ghost, theme, more) {
   return { ...BUILD[name](shown, ghost, theme, more), bars: name === "gramian" ? [] : barsOf(shown, theme) };
 }

@@ -3,7 +3,6 @@
 import { button, element, slider } from "../../common/page/controls.js";
 import { swatch } from "../../common/page/lines.js";
 
-/** A row for each point that there may be. */
 export class PointList {
   constructor(panel, most) {
     this.panel = panel;

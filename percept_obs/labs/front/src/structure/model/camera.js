@@ -10,7 +10,6 @@ export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w }) {
   return { v_c, v_p, v_c_swing, v_p_swing, rate, w };
 }
 
-/** Records settings. */
 export class StructureCamera extends PointCamera {
   constructor(model, memory) {
     super(model, memory, 3);

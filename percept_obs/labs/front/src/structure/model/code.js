@@ -10,7 +10,6 @@ const MAKERS = {
 };
 const VELOCITIES = ["v_c", "v_p"].flatMap((which) => [1, 2, 3].map((axis) => `${which}${axis}`));
 
-/** Python text for settings that are shown. */
 export function pythonOf(shown, model) {
   const { settings, refusal } = shown;
   const { unknown, earlier, ybar, scale, noise, period } = settings;

@@ -8,7 +8,6 @@ import { keyOf } from "./kernels.js";
 
 const OUTPUTS = ["y1", "y2", "ybar3"];
 
-/** Runs settings. */
 export class StructureEngine extends Runner {
   constructor(model) {
     super(model);
@@ -87,7 +86,6 @@ export class StructureEngine extends Runner {
     return truth;
   }
 
-  /** The observers' steps. */
   lines({ settings: { period, step }, time }) {
     return this.memory.once("grid", [period, step, time.length], () => withSteps(stepGrid(time, step)));
   }

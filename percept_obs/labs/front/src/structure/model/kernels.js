@@ -13,7 +13,6 @@ export function isZero(settings, name) {
   return settings[which][axis] === 0 && settings[`${which}_swing`][axis] === 0;
 }
 
-/** All functions of a model. */
 export class StructureKernels extends PrintedKernels {
   /** Why a choice is impossible; empty if it is not. */
   refusal(settings) {

@@ -7,7 +7,6 @@ import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];
 
-/** Why: what the settings have to do with it. */
 export function reasons(shown, model) {
   if (shown.problem) return [shown.problem];
   if (shown.refusal) return ["This is what is measured. It does not tell the unknowns apart, so nothing is estimated."];
@@ -39,7 +38,6 @@ export function reasons(shown, model) {
   return found;
 }
 
-/** What an observer has found at the end. */
 function endOf(run, shown) {
   const parts = shown.choice.unknown.map((name) => {
     const [found, right] = [run.estimate, shown.truth].map((rows) => plain(quantityOf(shown, rows, name).at(-1)));
@@ -67,7 +65,6 @@ export function sceneInWords(shown) {
   return `the point goes from ${place(0)} to ${place(time.length - 1)} of the camera.`;
 }
 
-/** The values under the cursor. */
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");

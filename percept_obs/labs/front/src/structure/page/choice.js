@@ -19,7 +19,6 @@ const OBJECTS = [
   ["general", "Object moving"],
 ];
 
-/** The part of the lab above its pictures. */
 export class ChoiceOfUnknowns {
   constructor(model, lab) {
     this.model = model;

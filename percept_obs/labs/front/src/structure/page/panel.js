@@ -5,7 +5,6 @@ import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
-/** Fieldsets of controls; show() brings all of them to the present settings. */
 export class StructurePanel extends Fieldsets {
   constructor(lab) {
     super(lab);

@@ -30,7 +30,6 @@ export function chartsOf({ settings, choice, problem, refusal }) {
 
 const MEASURED = ["image", "depth"];
 
-/** The parts of one chart. */
 export function chartOf(name, shown, ghost, theme) {
   const spans = united(shown.runs.flatMap((run) => run.gaps));
   const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];

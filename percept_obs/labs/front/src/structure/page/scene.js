@@ -75,7 +75,6 @@ function placesOf(rows, width, scaleOf) {
   return found;
 }
 
-/** The camera: a triangle that opens forwards. */
 function drawCamera(pen, x, y, theme) {
   pen.beginPath();
   pen.moveTo(x, y);
