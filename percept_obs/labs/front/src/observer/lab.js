@@ -22,13 +22,12 @@ export class ObserverLab extends Live {
       ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
       ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
     });
-    const plane = new ImagePlane({
+    const plane = new ImagePlane(this, {
       name: "foe",
       label: "Focus of expansion",
       tag: "FOE",
       placeOf: (shown) => shown.foe,
       onMove: (foe) => this.moveFoe(foe),
-      onRest: () => this.rest(),
     });
     this.planes = [plane];
     this.formulas = new ObserverFormulas(this.model, {

@@ -21,13 +21,12 @@ export class StructureLab extends Live {
     const computing = { words: WORDS, Kernels: StructureKernels, Engine: StructureEngine };
     const words = { reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
-    const plane = new ImagePlane({
+    const plane = new ImagePlane(this, {
       name: "ybar",
       label: "Start of the point",
       tag: "start",
       placeOf: (shown) => shown.settings.ybar.slice(0, 2),
       onMove: (point) => this.moveStart(point),
-      onRest: () => this.rest(),
     });
     this.planes = [plane, new Scene()];
     this.formulas = new ObserverFormulas(this.model, {

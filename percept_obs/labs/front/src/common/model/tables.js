@@ -139,13 +139,9 @@ export function knownAt(motion, shape, places) {
   const width = motion.rows[0].length + shape.length;
   if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
   const rows = new Float64Array(places.length * width);
-  motion.rows[0].forEach((_, p) => {
-    const line = interpolate(places, motion.times, motion.columns[p]);
-    for (let k = 0; k < places.length; k++) rows[k * width + p] = line[k];
-  });
-  shape.forEach((value, p) => {
-    for (let k = 0; k < places.length; k++) rows[k * width + motion.rows[0].length + p] = value;
-  });
+  const still = shape.map((value) => new Float64Array(places.length).fill(value));
+  const columns = [...motion.columns.map((values) => interpolate(places, motion.times, values)), ...still];
+  columns.forEach((values, p) => values.forEach((value, k) => (rows[k * width + p] = value)));
   return { rows, width, varying: true };
 }
 

@@ -36,8 +36,9 @@ export class FramedImage extends Picture {
 
 /** The image of one point; `placeOf` says of a result where the handle stands. */
 export class ImagePlane extends FramedImage {
-  constructor({ name, label, tag, placeOf, onMove, onRest }) {
-    super([{ name, className: "diamond", label: `${label}: drag it, or use the arrow keys`, onMove, onRest }]);
+  constructor(lab, { name, label, tag, placeOf, onMove }) {
+    const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
+    super([{ name, ...said, onMove, onRest: () => lab.rest() }]);
     this.placeOf = placeOf;
     this.handles[0].node.dataset.tag = tag;
   }

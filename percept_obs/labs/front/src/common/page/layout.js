@@ -3,6 +3,8 @@
 import { button, element } from "./controls.js";
 import { swatch } from "./lines.js";
 
+const CHIP = { class: "chip", "aria-expanded": "false" };
+
 export function build(lab, place, presets) {
   const { planes, charts, panel, formulas } = lab;
   const paragraph = (className, role) => element("p", { class: className, role, hidden: true });
@@ -54,12 +56,7 @@ export function build(lab, place, presets) {
   }
 
   const chips = presets.map(({ name, title }) =>
-    button(title, () => lab.ask(name), {
-      class: "chip",
-      "aria-expanded": "false",
-      "data-preset": name,
-      "data-control": `preset ${name}`,
-    }),
+    button(title, () => lab.ask(name), { ...CHIP, "data-preset": name, "data-control": `preset ${name}` }),
   );
 
   async function copy() {
@@ -77,10 +74,7 @@ export function build(lab, place, presets) {
   const actions = element(
     "div",
     { class: "actions" },
-    undo,
-    redo,
-    back,
-    keep,
+    ...[undo, redo, back, keep],
     button("Copy as code", copy, { "data-control": "copy" }),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
     said,
@@ -92,12 +86,7 @@ export function build(lab, place, presets) {
     "div",
     { class: "percept-lab", "data-lm-suppress-shortcuts": "true" },
     element("div", { class: "bar" }, element("div", { class: "chips", role: "group", "aria-label": "Questions" }, ...chips), actions),
-    card,
-    code,
-    problem,
-    pythonError,
-    notice,
-    lab.head ?? "",
+    ...[card, code, problem, pythonError, notice, lab.head ?? ""],
     element(
       "div",
       { class: "stage" },
@@ -105,9 +94,7 @@ export function build(lab, place, presets) {
       element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
       element("div", { class: "words" }, verdicts, why),
     ),
-    silence,
-    live,
-    panel.body,
+    ...[silence, live, panel.body],
     unfolding("deeper", "What Python adds", true, analysis),
     unfolding("equations", "Equations, with the present numbers", false, formulas.body),
   );
@@ -140,7 +127,9 @@ export function build(lab, place, presets) {
       redo.setAttribute("aria-disabled", String(!future.length));
     },
     words(found) {
-      fillVerdicts(verdicts, found.verdicts);
+      const said = found.verdicts.map(({ which, title, text }) => [which, title, text]);
+      beside(verdicts, said, (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
+      beside(legend, found.legend, (text) => [text]);
       fill(why, found.reasons);
       put(reading, found.reading);
       spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
@@ -148,26 +137,15 @@ export function build(lab, place, presets) {
       put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
       keep.setAttribute("aria-pressed", String(Boolean(settings.kept)));
       code.hidden ||= code.textContent !== lab.copy();
-      const key = JSON.stringify(found.legend);
-      if (legend.dataset.key === key) return;
-      legend.dataset.key = key;
-      legend.replaceChildren(...found.legend.map(([which, text]) => element("li", {}, swatch(which), text)));
     },
-    rested() {
-      put(live, spoken);
-    },
+    rested: () => put(live, spoken),
     notice: (text) => show(notice, text),
     problem: (text) => show(problem, text),
     pythonError: (text) => show(pythonError, text && `Python says: ${text}`),
-    silence(error) {
-      show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it.");
-    },
-    analysis(sentences) {
-      fill(analysis, sentences);
-    },
-    answered(answer) {
-      analysis.classList.toggle("of-others", !answer);
-    },
+    silence: (error) =>
+      show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it."),
+    analysis: (sentences) => fill(analysis, sentences),
+    answered: (answer) => analysis.classList.toggle("of-others", !answer),
     say(text) {
       put(said, text);
       clearTimeout(said.timer);
@@ -187,14 +165,12 @@ function show(node, text) {
   node.hidden = !text;
 }
 
-/** What happened in each run, beside a piece of its line. */
-function fillVerdicts(list, found) {
+/** Put in entries, each beside a piece of its line. */
+function beside(list, found, entryOf) {
   const key = JSON.stringify(found);
   if (list.dataset.key === key) return;
   list.dataset.key = key;
-  list.replaceChildren(
-    ...found.map(({ which, title, text }) => element("li", {}, swatch(which), element("strong", {}, `${title}:`), ` ${text}`)),
-  );
+  list.replaceChildren(...found.map(([which, ...words]) => element("li", {}, swatch(which), ...entryOf(...words))));
 }
 
 function fill(list, texts) {

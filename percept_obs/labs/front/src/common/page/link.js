@@ -22,18 +22,14 @@ export class Link {
     this.widget.set("settings", settings);
     this.widget.set("summary", summary);
     this.sent = { settings, serial: summary.serial };
-    this.save();
-    clearTimeout(this.timer);
-    this.waitingFor = summary.serial;
-    this.timer = setTimeout(() => this.waitingFor !== null && this.onSilence(null), PATIENCE);
-  }
-
-  save() {
     try {
       this.widget.save_changes();
     } catch (error) {
       this.onSilence(error);
     }
+    clearTimeout(this.timer);
+    this.waitingFor = summary.serial;
+    this.timer = setTimeout(() => this.waitingFor !== null && this.onSilence(null), PATIENCE);
   }
 
   /** An answer is about the settings that were sent with its serial; one to others is too late. */

@@ -198,10 +198,6 @@ export class Live {
     return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
   }
 
-  allows(observer, gain, value) {
-    return this.kernels.allows(observer, gain, value);
-  }
-
   /** The settings, or those that take their place where they are impossible. */
   fitted(settings) {
     return settings;

@@ -33,14 +33,12 @@ export class ObserverList {
     });
     const refusal = element("p", { class: "refusal", hidden: true });
     const known = element("div", { class: "known", hidden: true }, ...whatIsKnown(about, gains));
-    const more = button("about", () => {
+    const unfold = () => {
       known.hidden = !known.hidden;
       more.setAttribute("aria-expanded", String(!known.hidden));
-    });
-    more.dataset.control = `about ${name}`;
-    more.className = "about";
-    more.setAttribute("aria-expanded", "false");
-    more.setAttribute("aria-label", `about the ${title} observer`);
+    };
+    const said = { "aria-expanded": "false", "aria-label": `about the ${title} observer` };
+    const more = button("about", unfold, { class: "about", "data-control": `about ${name}`, ...said });
     const showChoice = choice.show;
     choice.show = () => {
       showChoice();
@@ -63,7 +61,7 @@ export class ObserverList {
         hint: gain.condition ? `${gain.meaning}; needs ${gain.condition}` : gain.meaning,
         log: gain.low > 0 && gain.high / gain.low >= 50,
         step: (gain.high - gain.low) / 1000,
-        allowed: (value) => lab.allows(name, gain.name, value),
+        allowed: (value) => lab.kernels.allows(name, gain.name, value),
         get: () => (ways[switchOf(lab.settings, name)].includes(gain.name) ? lab.settings.gains[name][gain.name] : undefined),
         set: (value) => lab.change(changeAt(lab.settings, `gains.${name}.${gain.name}`, value)),
         rest: () => lab.rest(),

@@ -10,6 +10,11 @@ export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w }) {
   return { v_c, v_p, v_c_swing, v_p_swing, rate, w };
 }
 
+/** Whether a velocity swings, so that it is not the same at all times. */
+export function varies({ rate, v_c_swing, v_p_swing }) {
+  return rate !== 0 && [...v_c_swing, ...v_p_swing].some((value) => value !== 0);
+}
+
 export class StructureCamera extends PointCamera {
   constructor(model, memory) {
     super(model, memory, 3);
@@ -20,14 +25,9 @@ export class StructureCamera extends PointCamera {
     return [motionOf(settings), ybar, scale, period, duration];
   }
 
-  /** Whether a velocity swings, so that it is not the same at all times. */
-  varies({ rate, v_c_swing, v_p_swing }) {
-    return rate !== 0 && [...v_c_swing, ...v_p_swing].some((value) => value !== 0);
-  }
-
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
   velocities(settings, swinging, times) {
-    const varying = this.varies(settings);
+    const varying = varies(settings);
     const count = varying ? times.length : 1;
     const rows = new Float64Array(9 * count);
     const x = new Float64Array(5);

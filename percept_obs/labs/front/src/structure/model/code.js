@@ -1,7 +1,8 @@
 // The few lines of Python that make the same run.
 
 import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
-import { isZero } from "./kernels.js";
+import { varies } from "./camera.js";
+import { isZero, valuesAtStart } from "./kernels.js";
 
 const MAKERS = {
   ideal: ["integral_sliding_mode", ""],
@@ -20,10 +21,11 @@ export function pythonOf(shown, model) {
     ...(earlier && !unknown.includes("d_s") ? ['earlier=("d_s",)'] : []),
   ];
   if (refusal) return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
-  const swings = settings.rate !== 0 && [...settings.v_c_swing, ...settings.v_p_swing].some(Boolean);
+  const swings = varies(settings);
+  const constant = (which) => list(valuesAtStart(settings, which, model));
   const make = NOISES[noise.kind];
   const lines = [
-    ...(swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant(settings, "v_c", model)}, ${constant(settings, "v_p", model)})`]),
+    ...(swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant("v_c")}, ${constant("v_p")})`]),
     `depth = 1 / (${scale} * ${ybar[2]})`,
     `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
     `choice = StructureAndMotion(${options.join(", ")})`,
@@ -43,11 +45,6 @@ export function pythonOf(shown, model) {
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
   return `${swings ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
-}
-
-/** Velocities at time 0, which are those at all times. */
-function constant(settings, which, { phases }) {
-  return list(settings[which].map((value, k) => value + settings[`${which}_swing`][k] * Math.sin(phases[which][k])));
 }
 
 function motionThatSwings(settings, phases) {

@@ -140,20 +140,14 @@ export class StructureEngine extends Runner {
       const kernel = this.model.forms[settings.unknown.length].observers[name];
       const x = Float64Array.from([0, ...kernel.gains.map((gain) => settings.gains[name][gain])]);
       const out = new Float64Array(1);
-      const rateAt = (k) => {
+      const rates = steps.map((_, k) => {
         x[0] = grid[k + 1] - grid[0];
         return fastest(x, out)[0];
-      };
-      let first = -1;
-      let most = 0;
-      for (let k = 0; k < steps.length; k++) {
-        const rate = rateAt(k);
-        most = Math.max(most, rate);
-        if (first < 0 && rate * steps[k] >= largestStepRate) first = k;
-      }
+      });
+      const first = rates.findIndex((rate, k) => rate * steps[k] >= largestStepRate);
       if (first < 0) return [];
-      const found = { name, time: grid[first] - grid[0], rate: rateAt(first), step: steps[first] };
-      return [{ ...found, shorter: largestStepRate / most, remedy: kernel.remedy }];
+      const found = { name, time: grid[first] - grid[0], rate: rates[first], step: steps[first] };
+      return [{ ...found, shorter: largestStepRate / rates.reduce((a, b) => Math.max(a, b)), remedy: kernel.remedy }];
     });
   }
 }

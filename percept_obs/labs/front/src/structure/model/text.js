@@ -21,7 +21,9 @@ export function reasons(shown, model) {
   found.push(...leavingInWords(shown));
   for (const run of shown.runs) if (run.divergedAt === null) found.push(endOf(run, shown));
   if (choice.unknown.includes("d_s") && settings.noise.size + settings.noise.depth > 0) {
-    found.push(`An error of the rate is amplified up to ${readable(mostOf(shown), 2)} times, about 1/ȳ3², and noise with it.`);
+    const { sizes, determinants } = shown.guard;
+    const most = sizes.reduce((largest, size, k) => Math.max(largest, size / Math.abs(determinants[k])), 0);
+    found.push(`An error of the rate is amplified up to ${readable(most, 2)} times, about 1/ȳ3², and noise with it.`);
   }
   if (choice.unknown.includes("d_s") && shown.runs.some(({ name }) => ONE_GAIN.includes(name))) {
     found.push(
@@ -49,12 +51,6 @@ function endOf(run, shown) {
 /** A quantity to a micrometre a second, so that what is nothing reads as nothing. */
 function plain(value) {
   return readable(Number(value.toFixed(6)), 4);
-}
-
-function mostOf({ guard }) {
-  let most = 0;
-  for (let k = 0; k < guard.sizes.length; k++) most = Math.max(most, guard.sizes[k] / Math.abs(guard.determinants[k]));
-  return most;
 }
 
 /** The text equivalent of the view from above. */

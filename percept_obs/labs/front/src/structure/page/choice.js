@@ -1,9 +1,9 @@
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { readable } from "../../common/model/scales.js";
-import { checkbox, element } from "../../common/page/controls.js";
-import { FormulaSheet } from "../../common/page/formulas.js";
-import { isZero, keyOf } from "../model/kernels.js";
+import { button, checkbox, element } from "../../common/page/controls.js";
+import { FormulaSheet, lettered } from "../../common/page/formulas.js";
+import { isZero, keyOf, valuesAtStart } from "../model/kernels.js";
 
 const GROUPS = [
   { title: "Scale", names: ["d_s"] },
@@ -28,7 +28,7 @@ export class ChoiceOfUnknowns {
     this.cases = [];
     this.value = element("span", { class: "value" });
     this.determinant = new FormulaSheet();
-    this.boxes = GROUPS.map(({ title, names }) => ({ title, boxes: names.map((name) => this.box(name)) }));
+    this.boxes = GROUPS.flatMap(({ names }) => names.map((name) => this.box(name)));
     this.earlier = checkbox({
       name: "earlier",
       label: "d_s comes from an earlier stage, so that θ holds d_s v",
@@ -46,9 +46,10 @@ export class ChoiceOfUnknowns {
   }
 
   groups() {
-    return this.boxes.map(({ title, boxes }) =>
-      element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...boxes.map((box) => box.row)),
-    );
+    return GROUPS.map(({ title, names }) => {
+      const rows = this.boxes.filter(({ name }) => names.includes(name.slice(6))).map(({ row }) => row);
+      return element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...rows);
+    });
   }
 
   box(name) {
@@ -74,17 +75,11 @@ export class ChoiceOfUnknowns {
     const cell = (camera, object) =>
       corollaries
         .filter((c) => c.camera === camera && c.object === object)
-        .map((corollary) => {
-          const press = element("button", {
-            type: "button",
-            class: "case",
-            "data-control": `corollary ${corollary.number}`,
-            "aria-label": `Corollary ${corollary.number}`,
-            title: corollary.words,
-            onclick: () => this.lab.change(structuredClone(corollary.settings), true),
-          });
-          press.append(String(corollary.number));
-          this.cases.push([corollary.number, press]);
+        .map(({ number, words, settings }) => {
+          const said = { "data-control": `corollary ${number}`, "aria-label": `Corollary ${number}`, title: words };
+          const choose = () => this.lab.change(structuredClone(settings), true);
+          const press = button(String(number), choose, { class: "case", ...said });
+          this.cases.push([number, press]);
           return press;
         });
     return element(
@@ -105,7 +100,7 @@ export class ChoiceOfUnknowns {
     const key = JSON.stringify([keyOf(settings), refusal, corollary]);
     if (key !== this.shownFor) {
       this.shownFor = key;
-      for (const { boxes } of this.boxes) for (const box of boxes) box.show();
+      for (const box of this.boxes) box.show();
       this.earlier.show();
       this.earlier.row.hidden = settings.unknown.includes("d_s");
       for (const [number, press] of this.cases) press.setAttribute("aria-pressed", String(number === corollary));
@@ -155,15 +150,10 @@ export class ChoiceOfUnknowns {
   /** The determinant's number at the start of the run. */
   fill({ settings, guard, truth }) {
     const { ybar, scale, w } = settings;
-    const at = { d_s: scale, ybar3: truth[2], y1: ybar[0], y2: ybar[1], w1: w[0], w2: w[1], w3: w[2] };
-    this.determinant.putIn((_, letter) => at[letter] ?? this.velocity(settings, letter));
+    const [v_c, v_p] = ["v_c", "v_p"].map((which) => valuesAtStart(settings, which, this.model));
+    const at = { d_s: scale, ybar3: truth[2], y1: ybar[0], y2: ybar[1], ...lettered({ w, v_c, v_p }) };
+    this.determinant.putIn((_, letter) => at[letter]);
     const text = ` = ${readable(guard.determinants[0])} at the start`;
     if (this.value.textContent !== text) this.value.textContent = text;
-  }
-
-  /** A velocity at the start, as its letter says. */
-  velocity(settings, name) {
-    const [which, axis] = [name.slice(0, 3), Number(name.slice(3)) - 1];
-    return settings[which][axis] + settings[`${which}_swing`][axis] * Math.sin(this.model.phases[which][axis]);
   }
 }
