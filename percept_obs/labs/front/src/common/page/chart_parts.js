@@ -7,6 +7,12 @@ export function line(name, time, values, colour, dash) {
   return { name, time, values, colour, dash };
 }
 
+/** A line of what is shown, behind it the same of the kept run; `pick` gives times and values of a result. */
+export function withKept(name, shown, ghost, theme, pick) {
+  const kept = ghost ? [line(`kept ${name}`, ...pick(ghost), theme.kept, KEPT)] : [];
+  return [...kept, line(name, ...pick(shown), theme.ink, SOLID)];
+}
+
 /** A range around the lines that are sure, which lets others leave it by as much as it is high, and no further. */
 export function rangeAround(lines, certain) {
   const bounds = lines.map((l) => [l, spread(l.values)]).filter(([, b]) => b);

@@ -2,8 +2,8 @@
 
 import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { KEPT, SOLID } from "../../common/page/lines.js";
-import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
+import { SOLID } from "../../common/page/lines.js";
+import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range" };
 
@@ -51,12 +51,8 @@ const BUILD = {
     return { title, lines, scale: decades(lines, 1e-6, 1e2), level: shown.tolerance, marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {
-    const { excitation } = shown;
-    const lines = [line("excitation", excitation.time, excitation.smallest, theme.ink, SOLID)];
-    if (ghost?.excitation) {
-      lines.unshift(line("kept excitation", ghost.excitation.time, ghost.excitation.smallest, theme.kept, KEPT));
-    }
-    const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(excitation.window)} s`;
+    const lines = withKept("excitation", shown, ghost, theme, ({ excitation: { time, smallest } }) => [time, smallest]);
+    const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(shown.excitation.window)} s`;
     return { title, lines, scale: decades(lines, 1e-12, 1e4) };
   },
 };

@@ -2,7 +2,7 @@
 
 import { columnOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { decades, line, rangeAround } from "../../common/page/chart_parts.js";
+import { decades, line, rangeAround, withKept } from "../../common/page/chart_parts.js";
 import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/lines.js";
 
 export const LABELS = {
@@ -19,10 +19,10 @@ export function chartOf(name, shown, ghost, theme, more) {
 }
 
 const BUILD = {
-  error({ time, size, fit }, ghost, theme, { bound }) {
-    const lines = [line("error", time, size, theme.ink, SOLID)];
-    if (ghost) lines.unshift(line("kept error", ghost.time, ghost.size, theme.kept, KEPT));
-    const end = time.at(-1);
+  error(shown, ghost, theme, { bound }) {
+    const { size, fit } = shown;
+    const lines = withKept("error", shown, ghost, theme, (result) => [result.time, result.size]);
+    const end = shown.time.at(-1);
     if (fit) {
       const ends = [fit.begin, end];
       const values = ends.map((t) => Math.exp(fit.level - fit.rate * t));
@@ -34,15 +34,12 @@ const BUILD = {
     return { title: "Error |ρ|, all of the state", lines, scale: decades(lines, 1e-8, 1e6) };
   },
   depth(shown, ghost, theme) {
-    const { time, points } = shown;
-    const lines = [];
-    const each = (make) => Array.from({ length: points }, (_, k) => lines.push(make(k)));
-    for (let k = 0; ghost && k < ghost.points; k++) {
-      lines.push(line(`kept depth of point ${k + 1}`, ghost.time, columnOf(ghost.estimated.depths, ghost.points, k), theme.kept, KEPT));
-    }
-    each((k) => line(`true depth of point ${k + 1}`, time, columnOf(shown.depths, points, k), theme.lines[k], SOLID));
-    each((k) => line(`depth of point ${k + 1}`, time, columnOf(shown.estimated.depths, points, k), theme.lines[k], DASHES[k]));
-    const certain = lines.filter(({ name }) => name.startsWith("true"));
+    const each = (called, { time, points }, rows, lookOf) =>
+      Array.from({ length: points }, (_, k) => line(`${called} of point ${k + 1}`, time, columnOf(rows, points, k), ...lookOf(k)));
+    const kept = ghost ? each("kept depth", ghost, ghost.estimated.depths, () => [theme.kept, KEPT]) : [];
+    const certain = each("true depth", shown, shown.depths, (k) => [theme.lines[k], SOLID]);
+    const estimated = each("depth", shown, shown.estimated.depths, (k) => [theme.lines[k], DASHES[k]]);
+    const lines = [...kept, ...certain, ...estimated];
     return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
   },
   points({ time, errors }, ghost, theme) {
@@ -52,14 +49,11 @@ const BUILD = {
     });
     return { title: "Error of each point in m", lines, scale: decades(lines, 1e-8, 1e6) };
   },
-  gramian({ gramian }, ghost, theme, { unseen }) {
-    const { time, smallest, largest, window } = gramian;
-    const floored = (values) => values.map((value) => Math.max(value, FLOOR));
+  gramian(shown, ghost, theme, { unseen }) {
+    const { time, smallest, largest, window } = shown.gramian;
+    const floored = ({ gramian }) => [gramian.time, gramian.smallest.map((value) => Math.max(value, FLOOR))];
     const limit = line("limit of what is seen", time, largest.map((value) => unseen * value), theme.warning, BOUND);
-    const lines = [line("smallest eigenvalue", time, floored(smallest), theme.ink, SOLID)];
-    if (ghost) {
-      lines.unshift(line("kept smallest eigenvalue", ghost.gramian.time, floored(ghost.gramian.smallest), theme.kept, KEPT));
-    }
+    const lines = withKept("smallest eigenvalue", shown, ghost, theme, floored);
     const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
     const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
     const title = `Gramian (14) over ${readable(window)} s: smallest eigenvalue${low ? "; dotted: too little" : ""}`;

@@ -28,7 +28,8 @@ export class ChoiceOfUnknowns {
     this.cases = [];
     this.value = element("span", { class: "value" });
     this.determinant = new FormulaSheet();
-    this.boxes = GROUPS.flatMap(({ names }) => names.map((name) => this.box(name)));
+    /** @type {ReturnType<typeof checkbox>[]} */
+    this.boxes = [];
     this.earlier = checkbox({
       name: "earlier",
       label: "d_s comes from an earlier stage, so that θ holds d_s v",
@@ -47,8 +48,8 @@ export class ChoiceOfUnknowns {
 
   groups() {
     return GROUPS.map(({ title, names }) => {
-      const rows = this.boxes.filter(({ name }) => names.includes(name.slice(6))).map(({ row }) => row);
-      return element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...rows);
+      const boxes = names.map((name) => this.box(name));
+      return element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...boxes);
     });
   }
 
@@ -66,7 +67,8 @@ export class ChoiceOfUnknowns {
     const [letter, index] = name.split("_");
     box.row.lastChild.innerHTML = `<math><msub><mi>${letter}</mi><mi>${index}</mi></msub></math>`;
     box.parts[0].setAttribute("aria-label", `${name} is known`);
-    return box;
+    this.boxes.push(box);
+    return box.row;
   }
 
   /** Table 1: how the camera and the object move, with the corollaries of each cell. */
@@ -117,16 +119,13 @@ export class ChoiceOfUnknowns {
       return;
     }
     const choice = this.model.unknowns[keyOf(settings)];
-    const theta = element("div", { class: "line" });
     const column = choice.theta.map((entry) => `<mtr><mtd>${entry}</mtd></mtr>`).join("");
+    const [theta, letters, numbers] = ["", "", " with-numbers"].map((kind) => element("div", { class: `line${kind}` }));
     theta.innerHTML = `<math><mi>θ</mi><mo>=</mo><mtable class="matrix">${column}</mtable></math>`;
-    const letters = element("div", { class: "line" });
     letters.innerHTML = `<math displaystyle="true">${choice.determinant}</math>`;
-    const numbers = element("div", { class: "line with-numbers" });
-    if (choice.square) {
-      numbers.innerHTML = `<math displaystyle="true">${choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>")}</math>`;
-      this.determinant.putNumbers(numbers, "");
-    }
+    const right = choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>");
+    if (choice.square) numbers.innerHTML = `<math displaystyle="true">${right}</math>`;
+    this.determinant.putNumbers(numbers, "");
     numbers.append(this.value);
     this.told.replaceChildren(
       element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice)}`),

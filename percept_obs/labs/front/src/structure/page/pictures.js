@@ -2,8 +2,8 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
-import { around, decades, line, linesOf, marksOf, runLines } from "../../common/page/chart_parts.js";
+import { DASHES, SOLID } from "../../common/page/lines.js";
+import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
 
 export const LABELS = {
@@ -76,8 +76,7 @@ const BUILD = {
   },
   determinant(shown, ghost, theme) {
     const size = (values) => derived(values, "size", () => values.map(Math.abs));
-    const lines = [line("determinant", shown.time, size(shown.guard.determinants), theme.ink, SOLID)];
-    if (ghost) lines.unshift(line("kept determinant", ghost.time, size(ghost.guard.determinants), theme.kept, KEPT));
+    const lines = withKept("determinant", shown, ghost, theme, ({ time, guard }) => [time, size(guard.determinants)]);
     const guarded = shown.runs.find((run) => run.name in GUARDED);
     if (guarded) {
       const largest = shown.settings.gains[guarded.name].largest_amplification;
