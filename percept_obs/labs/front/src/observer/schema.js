@@ -15,11 +15,7 @@ export const WORDS = {
   believed: { A: { label: "Believed A" }, b: { name: "believed {}", label: "believed {}" } },
   pictures: {
     choices: {
-      outputs: "image coordinates",
-      inverse: "inverse distance",
-      distance: "distance",
-      error: "error",
-      excitation: "excitation",
+      outputs: "image coordinates", inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
     },
   },
 };

@@ -14,13 +14,8 @@ export const WORDS = {
   hold: HOLD,
   pictures: {
     choices: {
-      unknowns: "the unknowns",
-      error: "error",
-      image: "image coordinates",
-      depth: "scaled inverse depth",
-      innovation: "innovation",
-      determinant: "determinant",
-      range: "range",
+      unknowns: "the unknowns", error: "error", image: "image coordinates", depth: "scaled inverse depth",
+      innovation: "innovation", determinant: "determinant", range: "range",
     },
   },
 };

@@ -1,10 +1,6 @@
 // What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
 
-/**
- * A lab's model: the parts that were printed for it, compressed, and what Python hands over besides.
- *
- * @returns {Promise<Record<string, any>>}
- */
+/** @returns {Promise<Record<string, any>>} a lab's model: what was printed for it, and what Python hands over besides */
 export async function modelOf(texts, given) {
   const unpacked = new Blob([texts]).stream().pipeThrough(new DecompressionStream("gzip"));
   const model = {};

@@ -18,11 +18,7 @@ export class TimeChart extends Picture {
     this.place = null;
   }
 
-  /**
-   * Draw the parts of a chart over a span of time, with the cursor.
-   *
-   * @param {import("../../types.js").ChartParts & Record<string, any>} parts
-   */
+  /** @param {import("../../types.js").ChartParts & Record<string, any>} parts with a span of time and the cursor */
   draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
     const { width, height } = this.fit();
     const bottom = last ? BOTTOM : 6;

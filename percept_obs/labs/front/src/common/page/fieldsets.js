@@ -84,26 +84,25 @@ export class Fieldsets {
     return this.add(radios(this.bound(place, true, more)));
   }
 
-  /** Boxes to tick for the names at a place; one of them stays. */
-  names(place, refusal) {
+  /** How to read and change whether a name is among those at a place, of which one stays. */
+  among(place, all, name, refusal) {
     const { lab } = this;
-    const { label, choices } = schemaAt(this.schema, place);
-    const all = Object.keys(choices);
-    const set = (name) => (on) => {
+    const set = (on) => {
       const chosen = all.filter((n) => (n === name ? on : lab.settings[place].includes(n)));
       if (chosen.length) lab.change({ [place]: chosen }, true);
       else this.refuse(refusal);
     };
-    const boxes = all.map((name) =>
-      this.add(
-        checkbox({
-          name: `${place.replace(/s$/, "")} ${name}`,
-          label: choices[name],
-          get: () => lab.settings[place].includes(name),
-          set: set(name),
-        }),
-      ),
-    );
+    return { get: () => lab.settings[place].includes(name), set };
+  }
+
+  /** Boxes to tick for the charts. */
+  pictures() {
+    const { label, choices } = this.schema.pictures;
+    const all = Object.keys(choices);
+    const boxes = all.map((name) => {
+      const bound = this.among("pictures", all, name, "At least one chart stays.");
+      return this.add(checkbox({ name: `picture ${name}`, label: choices[name], ...bound }));
+    });
     return element("div", { class: "choices", role: "group", "aria-label": label }, ...boxes);
   }
 
@@ -132,8 +131,9 @@ export class Fieldsets {
   }
 
   /** Sliders for each number of the list at a place, with letters in the formulas. */
-  litList(place, letters, moreOf = (_k) => ({}), owner = "motion") {
-    return letters.map((letter, k) => this.lit(this.number(`${place}.${k}`, moreOf(k)), letter, owner));
+  litList(place, letter = place, moreOf = (_letter) => ({}), owner = "motion") {
+    const letters = schemaAt(this.schema, place).entries.map((_, k) => `${letter}${k + 1}`);
+    return letters.map((each, k) => this.lit(this.number(`${place}.${k}`, moreOf(each)), each, owner));
   }
 }
 

@@ -24,12 +24,7 @@ export class ObserverList {
       name: `observer ${name}`,
       label: title,
       swatch: swatch(order),
-      get: () => lab.settings.observers.includes(name),
-      set: (on) => {
-        const chosen = this.observers.map(([n]) => n).filter((n) => (n === name ? on : lab.settings.observers.includes(n)));
-        if (chosen.length) lab.change({ observers: chosen }, true);
-        else panel.refuse("At least one observer stays.");
-      },
+      ...panel.among("observers", Object.keys(panel.model.observers), name, "At least one observer stays."),
     });
     const refusal = element("p", { class: "refusal", hidden: true });
     const known = element("div", { class: "known", hidden: true }, ...whatIsKnown(about, gains));

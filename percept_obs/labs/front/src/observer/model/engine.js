@@ -17,11 +17,7 @@ export class Engine extends Runner {
     this.camera = new Camera(model, this.memory);
   }
 
-  /**
-   * What is shown of settings, with the functions that Kernels.of() gave for them; whole, or as far as is drawn.
-   *
-   * @returns {import("../../types.js").ObserverResult}
-   */
+  /** @returns {import("../../types.js").ObserverResult} what is shown of settings: whole, or as far as is drawn */
   run(settings, functions, whole = true) {
     const { coordinates: names } = this.model.surfaces[settings.surface];
     const form = this.model.forms[keyOf(settings)];

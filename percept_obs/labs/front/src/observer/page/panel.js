@@ -56,7 +56,7 @@ export class Panel extends Fieldsets {
         this.choice("surface", { choices: Object.fromEntries(named(model.surfaces)) }),
         this.onlyIf(({ surface }) => surface === "plane", element("div", {}, ...this.each("normal"))),
         this.number("duration"),
-        ...this.litList("b", ["b1", "b2", "b3"]),
+        ...this.litList("b"),
         this.matrix("A"),
         ...this.each("X0"),
       ),
@@ -90,7 +90,6 @@ export class Panel extends Fieldsets {
   }
 
   showing() {
-    const pictures = this.names("pictures", "At least one chart stays.");
-    return this.fieldset("Pictures", { class: "pictures" }, pictures, ...this.numbers("window", "threshold"));
+    return this.fieldset("Pictures", { class: "pictures" }, this.pictures(), ...this.numbers("window", "threshold"));
   }
 }

@@ -16,11 +16,7 @@ export class PointsEngine {
     this.observer = new Observer(this.camera);
   }
 
-  /**
-   * What is shown of settings, with the functions that PointsKernels.of() gave; whole, or as far as is drawn.
-   *
-   * @returns {import("../../types.js").PointsResult}
-   */
+  /** @returns {import("../../types.js").PointsResult} what is shown of settings: whole, or as far as is drawn */
   run(settings, functions, whole = true) {
     const scene = this.scene(settings, functions);
     const { points, n, layout } = scene;

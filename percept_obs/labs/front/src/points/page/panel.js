@@ -54,7 +54,7 @@ export class Panel extends Fieldsets {
       share("turning"),
       share("spin", ({ state }) => state !== "independent"),
       share("input"),
-      ...this.litList("velocity", ["v1", "v2", "v3"], (k) => ({ letter: letters[`v${k + 1}`] }), ""),
+      ...this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), ""),
       element("div", { class: "buttons" }, still, aim),
     );
   }
@@ -75,7 +75,6 @@ export class Panel extends Fieldsets {
   }
 
   showing() {
-    const pictures = this.names("pictures", "At least one chart stays.");
-    return this.fieldset("Pictures", {}, pictures, ...this.numbers("duration", "window"));
+    return this.fieldset("Pictures", {}, this.pictures(), ...this.numbers("duration", "window"));
   }
 }

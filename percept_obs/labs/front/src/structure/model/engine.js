@@ -14,11 +14,7 @@ export class StructureEngine extends Runner {
     this.camera = new StructureCamera(model, this.memory);
   }
 
-  /**
-   * What is shown of settings, with the functions that StructureKernels.of() gave; whole, or as far as is drawn.
-   *
-   * @returns {import("../../types.js").StructureResult}
-   */
+  /** @returns {import("../../types.js").StructureResult} what is shown of settings: whole, or as far as is drawn */
   run(settings, functions, whole = true) {
     const { refusal } = functions;
     const { scale, tolerance } = settings;

@@ -17,13 +17,8 @@ export class StructurePanel extends Fieldsets {
       this.motion(),
       this.measuring(),
       this.running(),
-      this.fieldset("Pictures", { class: "pictures" }, this.names("pictures", "At least one chart stays.")),
+      this.fieldset("Pictures", { class: "pictures" }, this.pictures()),
     );
-  }
-
-  /** Sliders for a vector whose letters stand in the formulas. */
-  vector(place) {
-    return this.litList(place, [1, 2, 3].map((axis) => `${place}${axis}`));
   }
 
   motion() {
@@ -41,12 +36,12 @@ export class StructurePanel extends Fieldsets {
       "What is true",
       { class: "point" },
       this.number("scale"),
-      ...this.vector("v_c"),
-      ...this.vector("v_p"),
+      ...this.litList("v_c"),
+      ...this.litList("v_p"),
       this.add(varying),
       this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
       ...this.each("ybar"),
-      ...this.vector("w"),
+      ...this.litList("w"),
     );
   }
 
