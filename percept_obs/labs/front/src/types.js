@@ -4,7 +4,6 @@
 
 /**
  * @typedef {Record<string, any>} Settings  all that defines what is shown; their schema says what each may be
- * @typedef {Record<string, any>} Model     what Python hands over when a lab opens
  *
  * @typedef {object} ObserverRun  what one observer made of a recording
  * @property {string} name
@@ -84,8 +83,6 @@
  * @property {{first: number, last: number, begin: number, end: number}[][]} absences  of each point: samples and times
  * @property {number | null} divergedAt  in s
  * @property {Gramian | null} gramian
- *
- * @typedef {ObserverResult | StructureResult | PointsResult} Result
  */
 
 /**

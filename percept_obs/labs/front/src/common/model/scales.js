@@ -58,8 +58,7 @@ export function logScale(low, high) {
   const bottom = Math.floor(Math.log10(low) + 1e-9);
   const top = Math.max(bottom + 1, Math.ceil(Math.log10(high) - 1e-9));
   const every = Math.ceil((top - bottom) / 4);
-  const ticks = [];
-  for (let power = bottom; power <= top; power += every) ticks.push(10 ** power);
+  const ticks = Array.from({ length: Math.floor((top - bottom) / every) + 1 }, (_, k) => 10 ** (bottom + k * every));
   return { low: 10 ** bottom, high: 10 ** top, ticks, log: true };
 }
 

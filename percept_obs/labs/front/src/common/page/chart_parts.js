@@ -47,8 +47,7 @@ export function chartInWords({ title, lines }) {
   const parts = lines.map(({ name, values }) => {
     const finite = values.filter(Number.isFinite);
     if (!finite.length) return `${name}: nothing to show`;
-    const least = finite.reduce((a, b) => Math.min(a, b));
-    const most = finite.reduce((a, b) => Math.max(a, b));
+    const [least, most] = [Math.min, Math.max].map((pick) => finite.reduce((a, b) => pick(a, b)));
     const [first, last] = [finite[0], finite.at(-1)];
     return `${name}: from ${readable(first)} to ${readable(last)}, between ${readable(least)} and ${readable(most)}`;
   });

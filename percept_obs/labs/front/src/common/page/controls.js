@@ -25,10 +25,8 @@ function same(one, other) {
 }
 
 /**
- * Whether a number lies within the limits that a schema sets, and is allowed besides.
- *
  * @param {number} value
- * @param {Partial<import("../../types.js").SettingSchema> & {allowed?: (value: number) => boolean}} limits
+ * @param {Partial<import("../../types.js").SettingSchema> & {allowed?: (value: number) => boolean}} limits  of a schema
  */
 function fits(value, { least = -Infinity, most = Infinity, above = -Infinity, whole, nonzero, allowed }) {
   if (!Number.isFinite(value) || value < least || value > most || value <= above) return false;
@@ -45,14 +43,8 @@ export function slider({ name, label, hint, letter, low, high, step, log, unit, 
   field.dataset.control = `${name} number`;
   const symbol = letter ? [element("span", { class: "letter", "aria-hidden": "true" })] : [];
   if (letter) symbol[0].innerHTML = `<math>${letter}</math>`;
-  const text = unit ? `${label} (${unit})` : label;
-  const row = element(
-    "div",
-    { class: "control", title: hint },
-    element("label", { for: id }, ...symbol, element("span", {}, text)),
-    range,
-    field,
-  );
+  const text = element("label", { for: id }, ...symbol, element("span", {}, unit ? `${label} (${unit})` : label));
+  const row = element("div", { class: "control", title: hint }, text, range, field);
   const take = (value) => {
     const good = fits(value, limits);
     field.setAttribute("aria-invalid", String(!good));

@@ -14,9 +14,14 @@ export class Panel extends Fieldsets {
       element("div", { class: "observe" }, this.measuring(), this.fieldset("Observe with", {}, ...this.list.rows)),
       this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
       this.point(),
-      this.camera(),
+      this.fieldset(
+        "Camera",
+        { class: "camera" },
+        this.simulated(this.choice("noise.kind"), ...this.numbers("noise.size", "seed", "period", "dropout")),
+        this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
+      ),
       this.belief(),
-      this.showing(),
+      this.fieldset("Pictures", { class: "pictures" }, this.pictures(), ...this.numbers("window", "threshold")),
     );
   }
 
@@ -63,15 +68,6 @@ export class Panel extends Fieldsets {
     );
   }
 
-  camera() {
-    return this.fieldset(
-      "Camera",
-      { class: "camera" },
-      this.simulated(this.choice("noise.kind"), ...this.numbers("noise.size", "seed", "period", "dropout")),
-      this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
-    );
-  }
-
   belief() {
     const { lab } = this;
     const wrong = checkbox({
@@ -87,9 +83,5 @@ export class Panel extends Fieldsets {
       ...[0, 1, 2].map((k) => this.numberIf(`start.values.${k}`, ({ start }) => start.mode === "chosen")),
       this.simulated(this.add(wrong), ...this.each("believed.b"), this.matrix("believed.A")),
     );
-  }
-
-  showing() {
-    return this.fieldset("Pictures", { class: "pictures" }, this.pictures(), ...this.numbers("window", "threshold"));
   }
 }

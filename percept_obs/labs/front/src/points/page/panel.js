@@ -18,9 +18,21 @@ export class Panel extends Fieldsets {
       this.fieldset("The state holds", { class: "state" }, this.inSight("state")),
       this.weight(),
       this.motion(),
-      this.start(),
-      this.camera(),
-      this.showing(),
+      this.fieldset(
+        "The estimate",
+        {},
+        this.choice("start"),
+        this.numberIf("depth", ({ start }) => start === "rays"),
+        this.numberIf("error", ({ start }) => start === "error"),
+      ),
+      this.fieldset(
+        "Camera",
+        {},
+        this.choice("noise.kind"),
+        ...this.numbers("noise.size", "seed", "period", "dropout", "view"),
+        this.choice("hold"),
+      ),
+      this.fieldset("Pictures", {}, this.pictures(), ...this.numbers("duration", "window")),
     );
     this.controls.push(this.list);
   }
@@ -57,24 +69,5 @@ export class Panel extends Fieldsets {
       ...this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), ""),
       element("div", { class: "buttons" }, still, aim),
     );
-  }
-
-  start() {
-    return this.fieldset(
-      "The estimate",
-      {},
-      this.choice("start"),
-      this.numberIf("depth", ({ start }) => start === "rays"),
-      this.numberIf("error", ({ start }) => start === "error"),
-    );
-  }
-
-  camera() {
-    const numbers = this.numbers("noise.size", "seed", "period", "dropout", "view");
-    return this.fieldset("Camera", {}, this.choice("noise.kind"), ...numbers, this.choice("hold"));
-  }
-
-  showing() {
-    return this.fieldset("Pictures", {}, this.pictures(), ...this.numbers("duration", "window"));
   }
 }

@@ -28,11 +28,8 @@ export class PointList {
     hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
     const times = ["from", "to"].map((word, end) => this.time(k, word, end));
     const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s");
-    const remove = button("×", () => lab.removePoint(k), {
-      class: "remove",
-      "data-control": `remove ${k + 1}`,
-      "aria-label": `remove point ${k + 1}`,
-    });
+    const said = { "data-control": `remove ${k + 1}`, "aria-label": `remove point ${k + 1}` };
+    const remove = button("×", () => lab.removePoint(k), { class: "remove", ...said });
     const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide"));
     const head = element("div", { class: "head" }, swatch(k), element("strong", {}, `point ${k + 1}`), hiding, remove);
     const row = element("div", { class: "one", role: "group", "aria-label": `Point ${k + 1}` }, head, span, depth.row);

@@ -15,8 +15,19 @@ export class StructurePanel extends Fieldsets {
       element("div", { class: "observe" }, this.fieldset("Observe with", {}, ...this.list.rows)),
       this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
       this.motion(),
-      this.measuring(),
-      this.running(),
+      this.fieldset(
+        "What is measured",
+        { class: "camera" },
+        this.choice("noise.kind"),
+        ...this.numbers("noise.size", "noise.depth", "bias", "drift", "seed"),
+        this.timing("period"),
+        this.timing("duration"),
+      ),
+      this.fieldset(
+        "How the observers run",
+        { class: "start" },
+        ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")],
+      ),
       this.fieldset("Pictures", { class: "pictures" }, this.pictures()),
     );
   }
@@ -45,17 +56,6 @@ export class StructurePanel extends Fieldsets {
     );
   }
 
-  measuring() {
-    return this.fieldset(
-      "What is measured",
-      { class: "camera" },
-      this.choice("noise.kind"),
-      ...this.numbers("noise.size", "noise.depth", "bias", "drift", "seed"),
-      this.timing("period"),
-      this.timing("duration"),
-    );
-  }
-
   /** A time that must not ask the page for more steps than it can take. */
   timing(place) {
     const allowed = (value) => {
@@ -63,17 +63,6 @@ export class StructurePanel extends Fieldsets {
       return duration / Math.min(period, step) <= this.model.mostSteps;
     };
     return this.number(place, { allowed });
-  }
-
-  running() {
-    return this.fieldset(
-      "How the observers run",
-      { class: "start" },
-      this.choice("start"),
-      this.choice("hold"),
-      this.timing("step"),
-      this.number("tolerance"),
-    );
   }
 }
 
