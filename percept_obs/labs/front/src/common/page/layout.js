@@ -127,8 +127,8 @@ export function build(lab, place, presets) {
       redo.setAttribute("aria-disabled", String(!future.length));
     },
     words(found) {
-      const said = found.verdicts.map(({ which, title, text }) => [which, title, text]);
-      beside(verdicts, said, (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
+      const verdictOf = ({ which, title, text }) => [which, title, text];
+      beside(verdicts, found.verdicts.map(verdictOf), (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
       beside(legend, found.legend, (text) => [text]);
       fill(why, found.reasons);
       put(reading, found.reading);
