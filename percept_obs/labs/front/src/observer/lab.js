@@ -10,9 +10,8 @@ import { Engine, translationTowards } from "./model/engine.js";
 import { Kernels, keyOf } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
 import { reasons } from "./model/text.js";
-import { Panel } from "./page/panel.js";
+import { Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
-import { WORDS } from "./schema.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 

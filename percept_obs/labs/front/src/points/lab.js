@@ -8,9 +8,8 @@ import { PointsKernels } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
 import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
 import { ImagePlane } from "./page/image_plane.js";
-import { Panel } from "./page/panel.js";
+import { Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
-import { WORDS } from "./schema.js";
 
 /** The equations of the observer and of the motion, with the numbers that sliders set. */
 class Formulas extends FormulaSheet {

@@ -11,10 +11,9 @@ import { keyOf, StructureKernels } from "./model/kernels.js";
 import { PRESETS } from "./model/presets.js";
 import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
-import { StructurePanel } from "./page/panel.js";
+import { StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { Scene } from "./page/scene.js";
-import { WORDS } from "./schema.js";
 
 export class StructureLab extends Live {
   constructor(widget, place, model) {

@@ -29,8 +29,7 @@ export const PRESETS = presetsOf([
   {
     name: "drop",
     title: "Drop y2",
-    question:
-      "Without y2 each sample is one number, and two coordinates are hidden. Can one number at a time tell both?",
+    question: "Without y2 each sample is one number, and two coordinates are hidden. Can one number at a time tell both?",
     acts: [
       {
         changes: { outputs: ["y1"] },

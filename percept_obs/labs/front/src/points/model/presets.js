@@ -39,8 +39,7 @@ export const PRESETS = presetsOf([
     acts: [
       {
         button: "Show it in one body",
-        answer:
-          "It goes on shrinking: X₂ = r + d₂, and r is corrected by what points 1 and 3 show. Only d₂ is left to itself.",
+        answer: "It goes on shrinking: X₂ = r + d₂, and r is corrected by what points 1 and 3 show. Only d₂ is left to itself.",
       },
       {
         button: "Now without a body",

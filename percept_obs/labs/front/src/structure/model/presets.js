@@ -39,8 +39,7 @@ export const PRESETS = presetsOf([
       {
         button: "Know one of them",
         changes: { unknown: ["v_p2"] },
-        answer:
-          "If the camera's is known, the object's follows. Three equations for one unknown: two more unknowns could be told.",
+        answer: "If the camera's is known, the object's follows. Three equations for one unknown: two more unknowns could be told.",
       },
     ],
   },

@@ -1,9 +1,29 @@
 // The controls of the structure lab: each reads from the settings and changes them.
 
+import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
 import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
 import { ObserverList } from "../../common/page/observer_list.js";
+
+/** What the page calls the settings. */
+export const WORDS = {
+  v_c: { label: "camera {}" },
+  v_p: { label: "object {}" },
+  v_c_swing: { name: "swing {}", label: "swing of {}" },
+  v_p_swing: { name: "swing {}", label: "swing of {}" },
+  ybar: { name: "start {}", label: "start {}" },
+  w: { label: "turning {}" },
+  noise: NOISE,
+  start: { choices: { own: "the first sample", zero: "zero" } },
+  hold: HOLD,
+  pictures: {
+    choices: {
+      unknowns: "the unknowns", error: "error", image: "image coordinates", depth: "scaled inverse depth",
+      innovation: "innovation", determinant: "determinant", range: "range",
+    },
+  },
+};
 
 export class StructurePanel extends Fieldsets {
   constructor(lab) {
