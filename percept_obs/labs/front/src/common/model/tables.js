@@ -101,7 +101,7 @@ export function held(columns, times, grid, index, hold, exact, room = fresh) {
       let last = NaN;
       for (let k = 0; k + 1 < index.length; k++) {
         if (values[k] === values[k]) last = values[k];
-        for (let at = 3 * index[k] * outputs + m; at < 3 * index[k + 1] * outputs; at += outputs) table[at] = last;
+        for (let at = index[k] * row + m; at < index[k + 1] * row; at += outputs) table[at] = last;
       }
       return;
     }
