@@ -46,13 +46,12 @@ export class FormulaSheet {
   }
 
   putNumbers(line, owner) {
-    const space = "http://www.w3.org/1998/Math/MathML";
     for (const operator of line.querySelectorAll("mo")) {
       // Between numbers an invisible sign of multiplication would join them.
       if (operator.textContent === "\u2062") operator.textContent = "·";
     }
     for (const marked of line.querySelectorAll("[data-letter]")) {
-      const node = document.createElementNS(space, "mn");
+      const node = document.createElementNS("http://www.w3.org/1998/Math/MathML", "mn");
       const letter = marked.dataset.letter;
       marked.replaceChildren(node);
       this.numbers.push({ node, owner, letter });

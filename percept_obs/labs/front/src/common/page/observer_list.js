@@ -88,13 +88,8 @@ export class ObserverList {
 
 function whatIsKnown(about, gains) {
   const conditions = gains.filter((gain) => gain.condition).map((gain) => `${gain.condition}: ${gain.reason}`);
-  const facts = [
-    ["Source", [about?.source]],
-    ["Needs", [about?.needs]],
-    ["Claim", [about?.claim]],
-    ["Gains", conditions],
-  ];
-  const rows = facts.flatMap(([term, texts]) => {
+  const facts = { Source: [about?.source], Needs: [about?.needs], Claim: [about?.claim], Gains: conditions };
+  const rows = Object.entries(facts).flatMap(([term, texts]) => {
     const told = texts.filter(Boolean).map((text) => element("dd", {}, text));
     return told.length ? [element("dt", {}, term), ...told] : [];
   });

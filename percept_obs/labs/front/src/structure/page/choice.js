@@ -10,14 +10,8 @@ const GROUPS = [
   { title: "Velocity of the camera", names: ["v_c1", "v_c2", "v_c3"] },
   { title: "Velocity of the object", names: ["v_p1", "v_p2", "v_p3"] },
 ];
-const KINDS = [
-  ["dynamic", "Camera partly unknown"],
-  ["general", "Range known"],
-];
-const OBJECTS = [
-  ["semigeneral", "Object still, then moving"],
-  ["general", "Object moving"],
-];
+const KINDS = { dynamic: "Camera partly unknown", general: "Range known" };
+const OBJECTS = { semigeneral: "Object still, then moving", general: "Object moving" };
 
 export class ChoiceOfUnknowns {
   constructor(model, lab) {
@@ -74,24 +68,24 @@ export class ChoiceOfUnknowns {
   /** Table 1: how the camera and the object move, with the corollaries of each cell. */
   table() {
     const { corollaries } = this.model;
-    const cell = (camera, object) =>
-      corollaries
-        .filter((c) => c.camera === camera && c.object === object)
-        .map(({ number, words, settings }) => {
-          const said = { "data-control": `corollary ${number}`, "aria-label": `Corollary ${number}`, title: words };
-          const choose = () => this.lab.change(structuredClone(settings), true);
-          const press = button(String(number), choose, { class: "case", ...said });
-          this.cases.push([number, press]);
-          return press;
-        });
+    const cell = (camera, object) => {
+      const inside = corollaries.filter((c) => c.camera === camera && c.object === object);
+      const presses = inside.map(({ number, words, settings }) => {
+        const said = { "data-control": `corollary ${number}`, "aria-label": `Corollary ${number}`, title: words };
+        const choose = () => this.lab.change(structuredClone(settings), true);
+        const press = button(String(number), choose, { class: "case", ...said });
+        this.cases.push([number, press]);
+        return press;
+      });
+      return element("td", {}, ...presses);
+    };
+    const row = (camera) => Object.keys(OBJECTS).map((object) => cell(camera, object));
     return element(
       "table",
       { class: "cases" },
       element("caption", {}, "The paper's cases, corollaries 1 to 7"),
-      element("tr", {}, element("td"), ...OBJECTS.map(([, words]) => element("th", { scope: "col" }, words))),
-      ...KINDS.map(([camera, words]) =>
-        element("tr", {}, element("th", { scope: "row" }, words), ...OBJECTS.map(([object]) => element("td", {}, ...cell(camera, object)))),
-      ),
+      element("tr", {}, element("td"), ...Object.values(OBJECTS).map((words) => element("th", { scope: "col" }, words))),
+      ...Object.entries(KINDS).map(([camera, words]) => element("tr", {}, element("th", { scope: "row" }, words), ...row(camera))),
     );
   }
 
