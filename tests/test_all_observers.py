@@ -127,6 +127,7 @@ def test_dixons_observer_started_at_the_truth_stays_near(scenario):
     assert np.abs(run.innovation).max() < 0.05
 
 
+@pytest.mark.slow
 @each(["linear_approximation"])
 @given(scenario=motions())
 @example(scenario=replace(EQ35, duration=5.0))
@@ -226,6 +227,7 @@ def test_on_a_line_of_the_image_the_output_that_rests_tells_nothing():
 SLOPE = PerspectiveSystem(affine(), chained()).measure("y1")
 
 
+@pytest.mark.slow
 def test_with_the_slope_alone_only_filters_follow_eq35():
     """The chained surface with y1 = X/Y alone (Ma 2005, (32)); no gain between 1 and 1000 saves De Luca's observer."""
     recording = record(scenarios.ma2005_eq35(chained()), 20)

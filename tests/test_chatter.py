@@ -32,6 +32,7 @@ def test_chatter_of_dixons_observer_at_the_stated_steps():
     np.testing.assert_allclose(table["y3"], [0.114, 0.030, 0.0076], rtol=0.02)
 
 
+@pytest.mark.slow
 def test_a_boundary_layer_does_not_chatter():
     table = errors(range_identification, "hyperbolic tangent", 3)
     np.testing.assert_allclose(table["y3"], 0.005, atol=1e-4)

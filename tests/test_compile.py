@@ -106,6 +106,7 @@ def test_javascript_agrees_over_a_step_where_the_right_hand_side_switches(monkey
     )
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_resets_updates_and_functions_agree_in_javascript(node):
     flow = (sp.sin(x) * sp.exp(-(x**2)) + sp.tanh(u) + sp.sqrt(1 + x**2) - sp.sign(x) * sp.Abs(x) / 3 + sp.pi / x**3,)

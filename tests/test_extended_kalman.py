@@ -77,6 +77,7 @@ def test_the_claimed_covariance_is_consistent(form):
     assert np.mean(outside) < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [("y1",), ("y2",), ("y1", "y2")], ids="+".join)
 def test_it_converges_on_a_sphere_with_any_outputs(names):
     """Also with one output, which has no canonical form there."""

@@ -50,6 +50,7 @@ def test_one_point_and_constant_coefficients_give_the_earlier_observer():
     np.testing.assert_allclose(run.conditions().printed, np.linalg.eigvalsh(A.T @ P + P @ A)[-1])
 
 
+@pytest.mark.slow
 def test_points_of_their_own_do_not_disturb_each_other():
     """Two independent points in one state: the error of each is that of its own observer."""
     A, v = sp.Matrix(3, 3, sp.symbols("a:9", real=True)), sp.Matrix(sp.symbols("v:3", real=True))
@@ -82,6 +83,7 @@ def test_the_inequalities_are_told_apart(name):
     assert ("(15) holds throughout" in found.verdict()) == printed
 
 
+@pytest.mark.slow
 def test_the_error_in_the_metric_of_p_never_grows():
     """V = rho^T P rho decreases wherever one of the inequalities holds."""
     recording = record(moving_body(), 10)

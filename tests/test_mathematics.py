@@ -89,6 +89,7 @@ def test_starting_from_the_first_sample_cures():
         assert abs(run.error[-1, 2]) < 0.15
 
 
+@pytest.mark.slow
 def test_the_filter_converges_with_one_output():
     for seed in range(10):
         run = track(record(EQ35, camera=NOISY, seed=seed), ekf(ONE), ZERO)
@@ -127,6 +128,7 @@ def test_the_correction_with_samples_of_one_millisecond():
     assert (final < 0.05).all()
 
 
+@pytest.mark.slow
 def test_the_bias_does_not_depend_on_the_sample_rate():
     """Without the correction, ten times as many samples do not help."""
     resets, _ = ends(0.0, range(3), period=0.001)

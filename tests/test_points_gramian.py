@@ -23,6 +23,7 @@ def recording(points, duration=60.0, period=0.01):
     return record(moving_body(points), duration, Camera(period))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("points", "at_start", "least", "when"), [(1, 2.44, 0.749, 7.2), (2, 0.90, 0.277, 47.8)])
 def test_the_smallest_eigenvalue(points, at_start, least, when):
     found = gramian(recording(points), 8)

@@ -19,6 +19,7 @@ def decay(gain):
     return -np.linalg.eigvals(np.array(matrix, dtype=float)).real.max()
 
 
+@pytest.mark.slow
 def test_the_best_gain_is_critical_damping():
     found = ray_error()
     omega, k = found.turning, found.gain

@@ -53,6 +53,7 @@ def chosen(absence):
     return min(runs, key=lambda run: median(run, 2, CHOSEN_ON) + median(run, 3, CHOSEN_ON))
 
 
+@pytest.mark.slow
 def test_the_landmarks_are_those_of_the_tracks():
     recording = landmarks()
     sightings = recording.sightings(OUT_OF_SIGHT)
@@ -124,6 +125,7 @@ def test_a_constant_p_learns_no_depth_here():
         assert median(run, 2, range(12)) > 0.8
 
 
+@pytest.mark.slow
 def test_two_seconds_show_every_landmark_in_view():
     """(14) holds for each landmark by itself while it is followed; for all of them at once it fails, some are away."""
     recording = load_utias_points(utias_folder(), [17])

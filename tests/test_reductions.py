@@ -49,6 +49,7 @@ def stepped(observer, start, samples, period, finer=1):
     return trace.states[::finer]
 
 
+@pytest.mark.slow
 @each_form
 @pytest.mark.parametrize("switch", ["fraction", "hyperbolic tangent"])
 def test_a_wide_boundary_layer_makes_the_sliding_mode_observer_linear(form, switch):
