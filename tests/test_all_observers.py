@@ -149,7 +149,7 @@ def test_halving_the_step_divides_the_error_by_sixteen(name, form, scenario):
     period = 0.2 if scenario is EQ35 else 0.25
     recording = record(scenario, camera=Camera(period=period))
     observer = SMOOTH[name](FORMS[form])
-    steps = (period / n for n in (16, 32, 256))
+    steps = (period / n for n in (32, 64, 256))  # so short that the next order of the error matters little
     coarse, fine, reference = (
         track(recording, observer, ZERO, step=step, language="python").state[-1] for step in steps
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Mapping
+from inspect import cleandoc
 from typing import Any
 
 import anywidget
@@ -25,10 +26,10 @@ FROM_THE_PAGE = ("settings", "summary")
 
 REFUSES = """
 
-    Raises
-    ------
-    ValueError
-        If a setting is unknown or makes no sense."""
+Raises
+------
+ValueError
+    If a setting is unknown or makes no sense."""
 """The end of every lab's docstring."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
@@ -78,7 +79,7 @@ class Lab(anywidget.AnyWidget):
         """Let the docstring list the settings."""
         super().__init_subclass__()
         if cls.__doc__:  # anywidget makes subclasses without one
-            cls.__doc__ = cls.__doc__.replace("{settings}", cls.schema.listed() + REFUSES)
+            cls.__doc__ = cleandoc(cls.__doc__).replace("{settings}", cls.schema.listed() + REFUSES)
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""

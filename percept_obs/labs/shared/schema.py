@@ -290,7 +290,7 @@ class Schema(dict[str, Kind]):
         """A line for each setting, for a docstring."""
         told = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
         units = {name: f", in {kind.unit}" if kind.unit else "" for name, kind in self.items()}
-        return "\n    ".join(f"{name} : {told[name]}{units[name]}" for name in self)
+        return "\n".join(f"{name} : {told[name]}{units[name]}" for name in self)
 
 
 def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:
