@@ -1,11 +1,15 @@
 """From sympy to code that runs, in Python, numba and JavaScript."""
 
+from percept_obs.compile.arrays import Array, Flags, Indices
 from percept_obs.compile.functions import executed, function_source, right_hand_side, vectorised
 from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
 from percept_obs.compile.loop import source
 from percept_obs.compile.text import NotCompilable, Printed
 
 __all__ = [
+    "Array",
+    "Flags",
+    "Indices",
     "Language",
     "NotCompilable",
     "Printed",

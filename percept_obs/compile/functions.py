@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
-
-Array = NDArray[np.float64]
 
 
 def vectorised(

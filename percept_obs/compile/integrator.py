@@ -8,9 +8,9 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from percept_obs.compile.arrays import Array, Indices
+
 Shares = tuple[Fraction, ...]
 
 
@@ -75,7 +75,7 @@ def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> A
     return moved(WEIGHTS)
 
 
-def numbers() -> tuple[Array, Array, NDArray[np.intp]]:
+def numbers() -> tuple[Array, Array, Indices]:
     """The method for loops over numbers: a_ij of shape (stages, stages), 0 above the diagonal, b_i, and the places."""
     square = [[*row, *[0] * (len(WEIGHTS) - len(row))] for row in COUPLING]
     return np.array(square, dtype=float), np.array(WEIGHTS, dtype=float), np.array(PLACES)

@@ -10,13 +10,13 @@ from importlib.util import find_spec
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile.arrays import Array, Flags
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.loop import source
 
-Array = NDArray[np.float64]
 Language = Literal["python", "numba"]
 
 WORTH_COMPILING = 200_000
@@ -83,7 +83,7 @@ class Trace:
     """
 
     states: Array
-    resets: NDArray[np.bool_]
+    resets: Flags
     diverged: int | None
 
 

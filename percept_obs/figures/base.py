@@ -18,11 +18,10 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 
-Array = NDArray[np.float64]
 P = ParamSpec("P")
 Drawing = Generator[str, None, Sequence[Axes]]
 """Sentences about what is being drawn, empty ones where there is nothing to say, and in the end the axes."""

@@ -9,9 +9,8 @@ import numpy as np
 import sympy as sp
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Flags, vectorised
 from percept_obs.figures import look, words
 from percept_obs.figures.base import Array
 from percept_obs.observability.pointwise import instantaneous
@@ -41,7 +40,7 @@ def blind_radius(system: PerspectiveSystem, measured: tuple[str, ...], threshold
     return abs(threshold) / float(growth) ** 0.5 if growth.is_number and growth > 0 else np.nan
 
 
-def inside(ax: Axes, places: Array) -> NDArray[np.bool_]:
+def inside(ax: Axes, places: Array) -> Flags:
     """Which places are in the picture."""
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     return ((places > low) & (places < high)).all(axis=1)

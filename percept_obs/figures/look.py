@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from percept_obs.compile import Array
 
 WIDTH = 7.2  # inches, a notebook's column
 
@@ -34,6 +33,6 @@ def style(number: int) -> dict[str, Any]:
     }
 
 
-def dots(values: NDArray[np.float64], **others: Any) -> dict[str, Any]:
+def dots(values: Array, **others: Any) -> dict[str, Any]:
     """The look of samples, smaller where there are many."""
     return {**SAMPLES, "markersize": 3 if len(values) > 1000 else 5, **others}

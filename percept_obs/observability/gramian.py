@@ -9,8 +9,8 @@ from itertools import accumulate
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.windowed import check_window
 from percept_obs.points.conditions import conditions
@@ -19,8 +19,6 @@ from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 Piece = tuple[Array, Array]
 
 LARGEST_TABLE = 2e7

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 from sympy.solvers.solveset import NonlinearError
 
-from percept_obs.compile import right_hand_side, vectorised
+from percept_obs.compile import Array, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.inversion import Unobservable
@@ -162,7 +161,7 @@ class Observer:
         outputs: Mapping[str, float],
         given: Mapping[str, float],
         parameters: Mapping[sp.Symbol, float] | None = None,
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """The state at the first sample.
 
         Parameters

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array
 from percept_obs.points.luenberger import LuenbergerObserver
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-6
 """By which, relatively, an inequality may be missed and still counts as met."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from percept_obs.compile import Array
 
 NEGLIGIBLE = 1e-9
 """A direction that changes the outputs less than this, relatively, is not seen."""

@@ -10,18 +10,15 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, Indices, vectorised
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
 from percept_obs.recording import Recording
 from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 DRAWS = 4
 """Values that a motion's symbols are given at random, to find what no motion lets a camera see."""

@@ -11,16 +11,14 @@ from functools import cache
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Indices, executed
 from percept_obs.compile import Language as Language
 from percept_obs.compile import choose as choose_for_steps
-from percept_obs.compile import executed
 from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, numbers
 from percept_obs.points.block import PointBlock
 from percept_obs.points.form import PointsForm
 
-Array = NDArray[np.float64]
 Law = tuple[bool, float, float, Array]
 """Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P + pull: these three."""
 
@@ -48,18 +46,18 @@ class Arrays(NamedTuple):
     block : PointBlock
     """
 
-    rows: NDArray[np.intp]
-    columns: NDArray[np.intp]
-    which: NDArray[np.intp]
-    begins: NDArray[np.intp]
-    axes: NDArray[np.intp]
-    states: NDArray[np.intp]
+    rows: Indices
+    columns: Indices
+    which: Indices
+    begins: Indices
+    axes: Indices
+    states: Indices
     entries: Array
     shape: Array
     block: PointBlock
 
 
-def arrays(form: PointsForm, states: NDArray[np.intp], points: NDArray[np.intp]) -> Arrays:
+def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
     """Some states and points of a form as the loop takes them; the states' rates must not need others."""
     n = form.states
     place = np.full(n + 1, -1)

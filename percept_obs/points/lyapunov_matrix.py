@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Signal
-
-Array = NDArray[np.float64]
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""
@@ -52,7 +51,7 @@ class LyapunovMatrix:
         return self.schedule is not None and self.schedule.constant
 
     @property
-    def couples(self) -> NDArray[np.bool_]:
+    def couples(self) -> Flags:
         """Which states P may couple, shape (n, n)."""
         if self.schedule is None:
             return np.asarray((self.start != 0) | (self.decrease != 0))

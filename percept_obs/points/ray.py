@@ -7,14 +7,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array
 from percept_obs.points.block import point_block
 from percept_obs.points.form import PointsForm
 from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.surfaces import pinhole
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

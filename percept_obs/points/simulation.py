@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile import Array
 from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import advance, arrays, choose
 from percept_obs.recording import Scene, step_grid
 from percept_obs.system.motion import Motion
-
-Array = NDArray[np.float64]
 
 
 class LeavesEveryBound(ValueError):

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Flags, Indices
 from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
 from percept_obs.points.kernel import Language, advance, arrays, choose
@@ -19,8 +19,6 @@ from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course
 from percept_obs.tracking.following import DoesNotFit, follow
-
-Array = NDArray[np.float64]
 
 KEPT = 100
 """Samples, about, at which P is kept and its conditions are looked at."""
@@ -105,13 +103,13 @@ class _Task:
     matrix: LyapunovMatrix
     coefficients: Array
     held: Array
-    began: NDArray[np.bool_]
+    began: Flags
     sight: FirstSight | None
-    kept: NDArray[np.intp]
+    kept: Indices
     language: Language
 
 
-def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices, Indices]]:
     """States, and the points that they make, that nothing couples with the others: neither A, nor C, nor P."""
     from scipy.sparse.csgraph import connected_components
 
@@ -126,9 +124,7 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[NDArray
     return [(np.flatnonzero(label == k), np.flatnonzero(owner == k)) for k in range(count)]
 
 
-def _follow(
-    task: _Task, states: NDArray[np.intp], points: NDArray[np.intp], x: Array
-) -> tuple[Array, Array, float | None]:
+def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Array, Array, float | None]:
     """Estimates at all samples, P at the kept ones, and when the estimate diverged."""
     matrix, along = task.matrix, task.along
     time, grid, index = along.recording.time, along.grid, along.index
@@ -161,9 +157,7 @@ def _follow(
     return state, at_kept, None
 
 
-def _begin(
-    task: _Task, sample: int, states: NDArray[np.intp], points: NDArray[np.intp], x: Array, P: Array
-) -> tuple[Array, Array]:
+def _begin(task: _Task, sample: int, states: Indices, points: Indices, x: Array, P: Array) -> tuple[Array, Array]:
     """The estimate and P with the points that begin at a sample on their rays."""
     recording, form, sight = task.along.recording, task.form, task.sight
     if sight is None:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
 
-Array = NDArray[np.float64]
 Seed = np.random.Generator | int
 
 
@@ -138,7 +138,7 @@ class Camera:
         outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach)] = np.nan
         return outputs, self.noise.variance
 
-    def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         """Which samples are lost by chance, the first ones never."""
         lost = generator.random(shape) < self.dropout
         lost[0] = False

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from percept_obs.compile import Array, Indices
 
 
-def step_grid(times: Array, longest: float) -> tuple[Array, NDArray[np.int_]]:
+def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     """Divide the intervals between times into equal steps no longer than given.
 
     Returns

@@ -9,13 +9,11 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -144,7 +142,7 @@ class Recording:
             )
 
     @property
-    def seen(self) -> NDArray[np.bool_]:
+    def seen(self) -> Flags:
         """Where all outputs of a point were sampled, shape (K,) or (K, p)."""
         return np.asarray(np.isfinite(self.outputs).all(axis=-1))
 

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from percept_obs.compile import Table, solve
+from percept_obs.compile import Array, Table, solve
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
@@ -19,8 +19,6 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

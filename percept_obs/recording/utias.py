@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.spatial.transform import Rotation
 
+from percept_obs.compile import Array, Flags
 from percept_obs.recording import Recording, Sighting
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.surfaces import pinhole
@@ -45,8 +45,6 @@ HALF_WINDOW = 0.30  # s, of the fit to the camera's poses
 FEWEST_POSES = 5  # in a fit
 
 PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
-
-Values = NDArray[np.float64]
 
 
 class DatasetUnavailable(ConnectionError):
@@ -81,26 +79,26 @@ class UtiasTables:
         Distance from the left to the right camera in metres.
     """
 
-    time: Values
-    position: Values
+    time: Array
+    position: Array
     orientation: Rotation
-    velocity: Values
-    angular_velocity: Values
-    landmarks: Values
+    velocity: Array
+    angular_velocity: Array
+    landmarks: Array
     tracks: tuple[Sighting, ...]
-    pixels: Values
-    stereo_depth: Values
-    focal: Values
-    centre: Values
+    pixels: Array
+    stereo_depth: Array
+    focal: Array
+    centre: Array
     baseline: float
 
     @cached_property
-    def points(self) -> Values:
+    def points(self) -> Array:
         """The landmarks in the camera's frame, in metres, from the fitted poses, shape (K, L, 3)."""
         to_camera = self.orientation.inv()
         return np.stack([to_camera.apply(landmark - self.position) for landmark in self.landmarks], axis=1)
 
-    def recording(self, rows: slice, columns: int | list[int], view: View, truth: Values, source: str) -> Recording:
+    def recording(self, rows: slice, columns: int | list[int], view: View, truth: Array, source: str) -> Recording:
         """Some samples of one landmark or of several, with what is known of them in all cases."""
         return Recording(
             self.time[rows],
@@ -260,7 +258,7 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _camera_path(recorded: dict[str, Any]) -> tuple[Values, Rotation, Values, Values]:
+def _camera_path(recorded: dict[str, Any]) -> tuple[Array, Rotation, Array, Array]:
     """Position, orientation, velocity and angular velocity of the left camera."""
     world_from_body = Rotation.from_rotvec(recorded["theta_vk_i"].T)
     # from_matrix() takes the nearest rotation, so C_c_v need not be orthonormal to the last digit.
@@ -277,7 +275,7 @@ def _camera_path(recorded: dict[str, Any]) -> tuple[Values, Rotation, Values, Va
     return position, orientation, orientation.inv().apply(position_rate), angular_velocity
 
 
-def _local_fit(time: Values, position: Values, attitude: Rotation, k: int) -> Values:
+def _local_fit(time: Array, position: Array, attitude: Rotation, k: int) -> Array:
     """Values (row 0) and rates (row 1) at t_k of the quadratics fitted to p and phi = log(R_k^T R)."""
     distance = np.abs(time - time[k])
     near = np.flatnonzero(distance <= HALF_WINDOW)
@@ -285,11 +283,11 @@ def _local_fit(time: Values, position: Values, attitude: Rotation, k: int) -> Va
         near = np.argsort(distance, kind="stable")[:FEWEST_POSES]
     rotation = (attitude[k].inv() * attitude[near]).as_rotvec()
     powers = np.vander(time[near] - time[k], 3, increasing=True)
-    coefficients: Values = np.linalg.lstsq(powers, np.hstack([position[near], rotation]), rcond=None)[0]
+    coefficients: Array = np.linalg.lstsq(powers, np.hstack([position[near], rotation]), rcond=None)[0]
     return coefficients[:2]
 
 
-def _tracks(time: Values, seen: NDArray[np.bool_]) -> tuple[Sighting, ...]:
+def _tracks(time: Array, seen: Flags) -> tuple[Sighting, ...]:
     """Landmarks seen at consecutive samples, long enough and without a gap; `seen` has the shape (K, L)."""
     tracks = []
     for landmark, column in enumerate(seen.T):

@@ -9,16 +9,14 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import OnePoint, View
-
-Array = NDArray[np.float64]
 
 y1, y2, ybar3 = OUTPUTS = sp.symbols("y1 y2 ybar3", real=True)
 d_s = sp.Symbol("d_s", real=True)

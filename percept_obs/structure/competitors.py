@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from percept_obs.observers import (
     Observer,
@@ -25,8 +24,6 @@ from percept_obs.tracking.following import track
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
 
 
 def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:

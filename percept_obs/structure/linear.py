@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile import Array
 from percept_obs.structure.choice import StructureAndMotion, d_s
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import rigid
@@ -44,7 +45,7 @@ class LinearView(OnePoint):
         rate = motion.A * sp.ImmutableMatrix(OUTPUTS) + d_s * motion.b
         return self.choice.split(OUTPUTS, rate, self)
 
-    def scaled(self, ybar: ArrayLike) -> NDArray[np.float64]:
+    def scaled(self, ybar: ArrayLike) -> Array:
         """Scaled positions of (y1, y2, ybar3), shape (..., 3); NaN where ybar3 is not positive."""
         ybar = np.asarray(ybar, dtype=float)
         inverse = np.where(ybar[..., 2:] > 0, ybar[..., 2:], np.nan)
@@ -74,16 +75,16 @@ class LinearView(OnePoint):
         """Whether what is derived for this choice holds for the other."""
         return isinstance(other, LinearView) and self.choice.fits(other.choice)
 
-    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse depth in 1/m, shape (...), from xbar and theta; NaN where theta gives no positive d_s."""
         return self.choice.inverse(self._ybar(coordinates))
 
-    def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def locate(self, coordinates: ArrayLike) -> Array:
         """Points in metres, shape (..., 3), from xbar and theta; infinite where no positive inverse depth follows."""
         return self.choice.locate(self._ybar(coordinates))
 
     @staticmethod
-    def _ybar(coordinates: ArrayLike) -> NDArray[np.float64]:
+    def _ybar(coordinates: ArrayLike) -> Array:
         """The choice's coordinates (ybar, theta) from (xbar, theta)."""
         position, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
         depth = np.where(position[..., 2:] > 0, position[..., 2:], np.nan)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from percept_obs.compile import Array, Flags
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class PixelCamera:
         """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2)."""
         return (np.asarray(pixels, dtype=float) - self.centre) / self.focal
 
-    def sees(self, pixels: ArrayLike) -> NDArray[np.bool_]:
+    def sees(self, pixels: ArrayLike) -> Flags:
         """Whether pixel coordinates lie in the image, shape (...)."""
         pixels = np.asarray(pixels, dtype=float)
         if self.size is None:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
 from percept_obs.structure.linear import LinearView
@@ -17,7 +18,6 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
 
-Array = NDArray[np.float64]
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
 

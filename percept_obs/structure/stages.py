@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
@@ -17,8 +17,6 @@ from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-
-Array = NDArray[np.float64]
 
 _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Indices
 from percept_obs.observers.base import Observer, with_point
 from percept_obs.recording import Recording, Scenario, step_grid
 from percept_obs.tracking.following import track
@@ -16,7 +16,6 @@ from percept_obs.tracking.following import track
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 
 METHODS = ("RK45", "LSODA", "Radau")
 """Adaptive solvers of scipy: explicit, switching by stiffness, implicit."""
@@ -94,7 +93,7 @@ class Effort:
 
     method: str
     time: Array
-    evaluations: NDArray[np.int_]
+    evaluations: Indices
     finished: bool
 
     @property

@@ -7,17 +7,14 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.run import Run
-
-Array = NDArray[np.float64]
 
 LARGEST_CONDITION = 1e6
 """A window whose normal equations are conditioned worse than this determines no point."""

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Values = NDArray[np.float64]
+from percept_obs.compile import Array
+
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
 TIME = sp.Symbol("t", real=True)
@@ -34,8 +35,8 @@ class Signal:
         If values are not finite, times do not increase strictly, or their numbers differ.
     """
 
-    samples: Values | Callable[[float], ArrayLike]
-    times: Values | None = None
+    samples: Array | Callable[[float], ArrayLike]
+    times: Array | None = None
 
     def __post_init__(self) -> None:
         if callable(self.samples):
@@ -59,7 +60,7 @@ class Signal:
         """Whether the signal is the same at all times."""
         return not callable(self.samples) and len(self.samples) == 1
 
-    def at(self, times: ArrayLike) -> Values:
+    def at(self, times: ArrayLike) -> Array:
         """Values at the given times.
 
         Parameters
@@ -120,7 +121,7 @@ class Motion:
             return {}
         return dict(zip(self.parameters, self.signal.at(0.0)[0].tolist(), strict=True))
 
-    def known(self, times: ArrayLike) -> Values:
+    def known(self, times: ArrayLike) -> Array:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
         Raises
@@ -273,12 +274,12 @@ def bound(
     return Motion(name, A, b, symbols, Signal(np.hstack(rows), np.asarray(times, dtype=float)))
 
 
-def _row(given: list[Coefficient], time: float) -> Values:
+def _row(given: list[Coefficient], time: float) -> Array:
     """All coefficients at a time, one after the other."""
     return np.hstack([_rows(value(time) if callable(value) else value, block, 1) for value, block in given])
 
 
-def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Values:
+def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
     """One coefficient as rows, repeated when it is constant."""
     array = np.asarray(value, dtype=float)
     shape = block.shape if block.shape[1] > 1 else block.shape[:1]
@@ -297,13 +298,13 @@ def _has_symbols(value: object) -> bool:
     return any(isinstance(e, sp.Basic) and e.free_symbols for e in np.asarray(value, dtype=object).ravel())
 
 
-def _frozen(array: Values, what: str) -> Values:
+def _frozen(array: Array, what: str) -> Array:
     if not np.isfinite(array).all():
         raise ValueError(f"{what} are not finite; remove or repair the NaN or infinite ones")
     return readonly(array)
 
 
-def readonly(values: ArrayLike) -> Values:
+def readonly(values: ArrayLike) -> Array:
     """A copy of numbers that cannot be changed."""
     array = np.array(values, dtype=float)
     array.setflags(write=False)

@@ -8,7 +8,9 @@ from typing import Any, Protocol
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from percept_obs.compile import Array
 
 
 class View(Protocol):
@@ -44,13 +46,13 @@ class View(Protocol):
     def fits(self, other: Any) -> bool:
         """Whether what is derived for this view holds for the other."""
 
-    def outputs(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def outputs(self, coordinates: ArrayLike) -> Array:
         """What a camera sees of points with the given coordinates, shape (..., m) or (..., p, m)."""
 
-    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...) or (..., p), of points with the given coordinates."""
 
-    def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def locate(self, coordinates: ArrayLike) -> Array:
         """Points of space, shape (..., 3) or (..., p, 3), that have the given coordinates."""
 
 
@@ -64,6 +66,6 @@ class OnePoint(ABC):
 
     point_shape: tuple[int, ...] = ()
 
-    def outputs(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def outputs(self, coordinates: ArrayLike) -> Array:
         """What is measured, shape (..., m): the first of the coordinates, of shape (..., n)."""
         return np.asarray(coordinates, dtype=float)[..., : len(self.image_coordinates)]

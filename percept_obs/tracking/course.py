@@ -7,12 +7,11 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import EACH, by_step, instants
 from percept_obs.recording import Recording
 
-Array = NDArray[np.float64]
 Hold = Literal["zero", "first", "exact"]
 
 
@@ -33,7 +32,7 @@ class Course:
 
     recording: Recording
     grid: Array
-    index: NDArray[np.int_]
+    index: Indices
     hold: Hold
     longest_hold: float
 

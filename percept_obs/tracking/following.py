@@ -9,9 +9,8 @@ from functools import singledispatch
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percept_obs.compile import Language, Table, solve, vectorised
+from percept_obs.compile import Array, Indices, Language, Table, solve, vectorised
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
 from percept_obs.observers.base import Observer
@@ -21,7 +20,6 @@ from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course, Hold, last_samples
 from percept_obs.tracking.run import Run
 
-Array = NDArray[np.float64]
 Start = Mapping[str, float] | Sequence[float] | None
 
 
@@ -149,9 +147,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
-def _estimates(
-    observer: Observer, inputs: Sequence[Array], time: Array, first: Array
-) -> tuple[Array, NDArray[np.int_]]:
+def _estimates(observer: Observer, inputs: Sequence[Array], time: Array, first: Array) -> tuple[Array, Indices]:
     """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
     They follow from state, outputs and parameters at the samples, the seconds since the first one, and the first one.

@@ -11,9 +11,9 @@ from types import MappingProxyType
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.system.view import OnePoint
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
@@ -95,7 +95,7 @@ class ImagingSurface(OnePoint):
         used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
-    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+    def project(self, points: ArrayLike) -> Array:
         """Coordinates of points of space.
 
         Parameters
@@ -129,11 +129,11 @@ class ImagingSurface(OnePoint):
             )
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
-    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...): the last of the coordinates, of shape (..., n)."""
         return np.asarray(coordinates, dtype=float)[..., -1]
 
-    def locate(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def locate(self, coordinates: ArrayLike) -> Array:
         """Points of space that have the given coordinates: the ray over the inverse distance.
 
         Parameters
@@ -157,9 +157,7 @@ class ImagingSurface(OnePoint):
         inverse = coordinates[..., -1:]
         return np.divide(ray, inverse, out=np.full_like(ray, np.inf), where=inverse > 0)
 
-    def _evaluate(
-        self, symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr], values: NDArray[np.float64]
-    ) -> list[NDArray[np.float64]]:
+    def _evaluate(self, symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr], values: Array) -> list[Array]:
         missing = [str(s) for s in self.parameters if s not in self.values]
         if missing:
             raise ValueError(f"the {self.name} has no values for {', '.join(missing)}; give them numbers first")
