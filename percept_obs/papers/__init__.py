@@ -15,6 +15,7 @@ from percept_obs.papers import (
     inaba2005_observer,
     inaba2005_proof,
     inaba2005_theorem,
+    ma2005_appendix,
     ma2005_examples,
     ma2005_observability,
     ma2005_observers,
@@ -32,6 +33,7 @@ MA2005 = Ledger(
         *ma2005_observers.ENTRIES,
         *ma2005_observability.ENTRIES,
         *ma2005_proofs.ENTRIES,
+        *ma2005_appendix.ENTRIES,
         *ma2005_examples.ENTRIES,
     ),
 )

@@ -166,6 +166,13 @@ def one_more_dimension(printed: Printed) -> Finding:
     return judged(all(gains), Verdict.FALSE, numbers)
 
 
+def solvable(number: int, page: str, note: str, *needed: str) -> Entry:
+    """What a corollary says of its determinant: that it vanishes where the named velocity does, or nowhere."""
+    says = f"solvable if {needed[0]} is not 0" if needed else "always solvable"
+    section, check = COROLLARIES[number - 1].section, nonsingular(number, *needed)
+    return Entry(f"corollary {number}", page, section, says, (), check, Verdict.HOLDS, note)
+
+
 INVERSE_G = Omega_g.inv() * ghat
 AXES = "for any order of the axes"
 
@@ -212,16 +219,7 @@ ENTRIES = (
         holds_in(1),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 1",
-        "6",
-        "IV.A",
-        "solvable if v_ci is not 0",
-        (),
-        nonsingular(1, "v_ci"),
-        Verdict.HOLDS,
-        f"determinant +-ybar3^4 v_ci, {AXES}",
-    ),
+    solvable(1, "6", f"determinant +-ybar3^4 v_ci, {AXES}", "v_ci"),
     Entry(
         "(26)",
         "7",
@@ -240,16 +238,7 @@ ENTRIES = (
         holds_in(2),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 2",
-        "7",
-        "IV.B",
-        "always solvable",
-        (),
-        nonsingular(2),
-        Verdict.HOLDS,
-        "determinant -ybar3^4; it takes d_s > 0 and the camera's velocity of now",
-    ),
+    solvable(2, "7", "determinant -ybar3^4; it takes d_s > 0 and the camera's velocity of now"),
     Entry(
         "(28)",
         "7",
@@ -273,16 +262,7 @@ ENTRIES = (
         holds_in(3),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 3",
-        "7",
-        "V.A",
-        "solvable if v_ck is not 0",
-        (),
-        nonsingular(3, "v_ck"),
-        Verdict.HOLDS,
-        f"determinant +-ybar3^4 v_ck, {AXES}",
-    ),
+    solvable(3, "7", f"determinant +-ybar3^4 v_ck, {AXES}", "v_ck"),
     Entry(
         "(30)",
         "8",
@@ -306,16 +286,7 @@ ENTRIES = (
         holds_in(4),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 4",
-        "8",
-        "V.B",
-        "solvable if v_cj is not 0",
-        (),
-        nonsingular(4, "v_cj"),
-        Verdict.HOLDS,
-        f"determinant +-ybar3^4 v_cj, {AXES}; v_ci drops out of it",
-    ),
+    solvable(4, "8", f"determinant +-ybar3^4 v_cj, {AXES}; v_ci drops out of it", "v_cj"),
     Entry(
         "(32)",
         "9",
@@ -334,16 +305,7 @@ ENTRIES = (
         holds_in(5),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 5",
-        "9",
-        "VI.A",
-        "always solvable",
-        (),
-        nonsingular(5),
-        Verdict.HOLDS,
-        "determinant -d_s^3 ybar3^4",
-    ),
+    solvable(5, "9", "determinant -d_s^3 ybar3^4"),
     Entry(
         "(34)",
         "10",
@@ -367,16 +329,7 @@ ENTRIES = (
         holds_in(6),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 6",
-        "10",
-        "VI.B",
-        "always solvable",
-        (),
-        nonsingular(6),
-        Verdict.HOLDS,
-        f"determinant +-d_s^3 ybar3^4, {AXES}",
-    ),
+    solvable(6, "10", f"determinant +-d_s^3 ybar3^4, {AXES}"),
     Entry(
         "Assumption 11",
         "10",
@@ -411,16 +364,7 @@ ENTRIES = (
         holds_in(7),
         Verdict.HOLDS,
     ),
-    Entry(
-        "corollary 7",
-        "11",
-        "VI.C",
-        "always solvable",
-        (),
-        nonsingular(7),
-        Verdict.HOLDS,
-        f"determinant +-d_s^3 ybar3^4, {AXES}",
-    ),
+    solvable(7, "11", f"determinant +-d_s^3 ybar3^4, {AXES}"),
     Entry(
         "Remark 2",
         "11",
