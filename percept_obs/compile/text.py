@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import sympy as sp
 from sympy.functions.elementary.piecewise import ExprCondPair
-from sympy.logic.boolalg import Boolean, BooleanFunction
+from sympy.logic.boolalg import Boolean
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
@@ -17,17 +17,11 @@ Printed = Literal["python", "javascript"]
 LARGEST_PRODUCT = 8
 """Integer powers up to this are printed as products, the same in every language."""
 
-_FUNCTIONS = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.tan: "tan",
-    sp.exp: "exp",
-    sp.log: "log",
-    sp.tanh: "tanh",
-    sp.cosh: "cosh",
-    sp.sinh: "sinh",
-    sp.atan2: "atan2",
-}
+FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh, sp.atan2)
+"""Functions that have the same name in sympy, Python and JavaScript."""
+
+KNOWN = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, *FUNCTIONS)
+"""What is printed alike, besides numbers and some powers."""
 
 
 class NotCompilable(ValueError):
@@ -41,11 +35,8 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
             power_fits = isinstance(node, sp.Pow) and (
                 (node.exp.is_Integer and abs(node.exp) <= LARGEST_PRODUCT) or abs(node.exp) == sp.Rational(1, 2)
             )
-            plain = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.Piecewise, ExprCondPair, sp.Rel, Boolean)
-            known = isinstance(node, (*plain, BooleanFunction)) or node.func in _FUNCTIONS
             finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
-            constant = isinstance(node, sp.NumberSymbol)
-            if not (power_fits or known or finite or constant):
+            if not (power_fits or finite or isinstance(node, KNOWN)):
                 raise NotCompilable(f"{node} cannot be printed alike in Python and JavaScript; write it otherwise")
             if isinstance(node, sp.Piecewise):
                 for branch in node.args:
@@ -93,7 +84,7 @@ class _Printer(PythonCodePrinter):
     _print_Pi = _print_Exp1 = _print_NumberSymbol
 
     def _print_Function(self, expr: sp.Function) -> str:
-        return f"{self.words['math']}.{_FUNCTIONS[expr.func]}({', '.join(map(self._print, expr.args))})"
+        return f"{self.words['math']}.{expr.func.__name__}({', '.join(map(self._print, expr.args))})"
 
     def _print_Abs(self, expr: sp.Abs) -> str:
         return f"{self.words['abs']}({self._print(expr.args[0])})"
@@ -124,7 +115,7 @@ class _Printer(PythonCodePrinter):
         return f"({self._print(expr.lhs)} {expr.rel_op} {self._print(expr.rhs)})"
 
 
-for _function in _FUNCTIONS:
+for _function in FUNCTIONS:
     setattr(_Printer, f"_print_{_function.__name__}", _Printer._print_Function)
 
 

@@ -75,11 +75,9 @@ class InstantaneousObservability:
         return centre, sp.Abs(threshold) / sp.sqrt(self.growth)
 
     def _repr_latex_(self) -> str:
-        verdict = (
-            r"\text{an instant can suffice}"
-            if self.suffices
-            else (rf"\text{{rank }} {self.rank} < {len(self.form.x2)}\text{{: no instant suffices}}")
-        )
+        verdict = r"\text{an instant can suffice}"
+        if not self.suffices:
+            verdict = rf"\text{{rank }} {self.rank} < {len(self.form.x2)}\text{{: no instant suffices}}"
         return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict}$"
 
 

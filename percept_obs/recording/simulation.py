@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import Array, Table, solve
+from percept_obs.compile import Array, Flags, Table, solve
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
@@ -63,15 +63,25 @@ class Scenario(Scene):
         array of shape (K, 3)
             Metres.
         """
-        times = np.asarray(times, dtype=float)
-        grid, last = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
+        points = self._path(times)
+        bounded = np.isfinite(points).all(axis=1)
+        if not bounded.all():
+            when = np.asarray(times)[np.argmin(bounded)]
+            raise BehindCamera(f"the point leaves every bound at {when:.4g} s; shorten the duration")
+        return points
+
+    def in_front(self, times: ArrayLike) -> Flags:
+        """At which times, as `points` takes them, the point is in front of the camera, shape (K,)."""
+        return self.surface.distances(self._path(times)) > 0
+
+    def _path(self, times: ArrayLike) -> Array:
+        """Positions of the point, NaN from where it left every bound on."""
+        grid, last = step_grid(np.concatenate([[0.0], np.asarray(times, dtype=float)]), PLANT_STEP)
         steps, known = np.diff(grid), self.motion.known(instants(grid))
         table = Table(steps, np.zeros((len(steps), EACH + 1, 0)), known, np.zeros((len(grid), 0)))
-        equations = _point_in_motion(self.motion.A, self.motion.b, self.motion.parameters)
-        trace = solve(equations, self.position, table)
-        if trace.diverged is not None:
-            raise BehindCamera(f"the point leaves every bound at {grid[trace.diverged]:.4g} s; shorten the duration")
-        return trace.states[last[1:]]
+        return solve(
+            point_in_motion(self.motion.A, self.motion.b, self.motion.parameters), self.position, table
+        ).states[last[1:]]
 
     @property
     def view(self) -> View:
@@ -91,20 +101,12 @@ class Scenario(Scene):
         BehindCamera
             If the point is not in front of the camera at one of the times.
         """
-        times = np.asarray(times, dtype=float)
         points = self.points(times)
         try:
             return self.surface.project(points)
-        except BehindCamera:
-            self._say_when(times, points)
-            raise
-
-    def _say_when(self, times: Array, points: Array) -> None:
-        for time, point in zip(times, points, strict=True):
-            try:
-                self.surface.project(point)
-            except BehindCamera as error:
-                raise BehindCamera(f"in the scenario {self.name!r}, at {time:.4g} s, {error}") from None
+        except BehindCamera as error:
+            when = np.asarray(times)[np.argmin(self.surface.distances(points) > 0)]
+            raise BehindCamera(f"in the scenario {self.name!r}, at {when:.4g} s, {error}") from None
 
 
 def record(scenario: Scene, duration: float | None = None, camera: Camera | None = None, seed: Seed = 0) -> Recording:
@@ -166,5 +168,6 @@ def _signal(scene: Scene) -> Callable[[Array], Array]:
 
 
 @lru_cache(maxsize=64)
-def _point_in_motion(A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, parameters: tuple[sp.Symbol, ...]) -> Equations:
+def point_in_motion(A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, parameters: tuple[sp.Symbol, ...]) -> Equations:
+    """The motion of a single point as equations without outputs."""
     return Equations(POINT, tuple(A * sp.ImmutableMatrix(POINT) + b), (), parameters)

@@ -13,7 +13,6 @@ from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.run import Run
 
 LARGEST_CONDITION = 1e6
@@ -104,7 +103,7 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     values = np.linalg.eigvalsh(matrix)
     good = np.flatnonzero(values[:, 0] * LARGEST_CONDITION > values[:, -1])
     points = np.linalg.solve(matrix[good], right[good][:, :, None])[:, :, 0]
-    (distance,) = vectorised(POINT, (surface.distance,), surface.values)(*points.T)
+    distance = surface.distances(points)
     estimate = np.zeros((count, len(surface.coordinates)))
     estimate[good[distance > 0]] = surface.project(points[distance > 0])
     always = np.zeros(count, dtype=int)

@@ -12,13 +12,13 @@ from types import MappingProxyType
 import sympy as sp
 
 from percept_obs.compile import function_source, source
-from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import formula, markup
 from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
+from percept_obs.recording.simulation import point_in_motion
 from percept_obs.system import surfaces
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
@@ -74,9 +74,8 @@ def with_every_gain(name: str) -> Observer:
 @lru_cache
 def model_for_the_page() -> Texts:
     """What does not depend on the form: the point's loop, the surfaces, the observers."""
-    rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
     return {
-        "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
+        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
         "surfaces": {name: _surface_for_the_page(name) for name in SURFACES},
         "observers": {name: _observer_for_the_page(name) for name in BY_NAME},
     }
@@ -108,11 +107,10 @@ def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
     names = [s.name for s in form.coordinates]
     letters = {s.name: s for s in form.parameters}
     threshold = sp.Symbol("threshold", real=True)
-    try:
-        centre, radius = instantaneous(form).circle(threshold)
+    found, circle = instantaneous(form), None
+    if found.growth is not None:
+        centre, radius = found.circle(threshold)
         circle = function_source((*form.parameters, threshold), (*centre, radius))
-    except ValueError:
-        circle = None
     kernels: dict[str, Texts] = {}
     refused: dict[str, str] = {}
     for name, ways in WAYS.items():

@@ -18,21 +18,9 @@ def as_far_as_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
     """
     try:
         return record(scenario, camera=camera, seed=seed)
-    except BehindCamera:
+    except BehindCamera:  # not asked for beforehand, for that takes as long as recording
         times = camera.times(scenario.duration)
-        return record(scenario, times[samples_in_front(scenario, times) - 1], camera, seed)
-
-
-def samples_in_front(scenario: Scenario, times: np.ndarray) -> int:
-    """How many samples the camera takes before the point leaves the half-space in front of it, by bisection."""
-    seen, unseen = 1, len(times)
-    while unseen - seen > 1:
-        middle = (seen + unseen) // 2
-        try:
-            scenario.coordinates(times[:middle])
-            seen = middle
-        except BehindCamera:
-            unseen = middle
-    if seen < 2:
+    count = int(np.argmin(scenario.in_front(times)))
+    if count < 2:
         raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
-    return seen
+    return record(scenario, times[count - 1], camera, seed)

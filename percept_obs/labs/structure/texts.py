@@ -16,7 +16,6 @@ import sympy as sp
 
 from percept_obs import observers
 from percept_obs.compile import function_source, source
-from percept_obs.compile.equations import Equations
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import formula, markup
 from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
@@ -24,6 +23,7 @@ from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.structure.cases import case_of
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.observers.integral_sliding_mode import IDEAL
+from percept_obs.recording.simulation import point_in_motion
 from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import rigid
@@ -87,10 +87,9 @@ def observer_of(name: str, count: int = LARGEST) -> Observer:
 
 def model_for_the_page() -> Texts:
     """What depends on no choice: the point's loop, the pinhole, the observers, and why choices are refused."""
-    rate = MOTION.A * sp.ImmutableMatrix(POINT) + MOTION.b
     surface = pinhole()
     return {
-        "plant": source(Equations(POINT, tuple(rate), (), MOTION.parameters), "javascript"),
+        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
         "project": function_source(POINT, (*surface.image, surface.distance)),
         "swinging": function_source(SWING, (swinging(*SWING),)),
         "phases": {name: [float(phase) for phase in phases] for name, phases in PHASES.items()},

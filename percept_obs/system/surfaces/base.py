@@ -118,9 +118,9 @@ class ImagingSurface(OnePoint):
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,) or not np.isfinite(points).all():
             raise ValueError(f"points have shape {points.shape}; expected (..., 3), all finite")
-        (distance,) = self._evaluate(POINT, (self.distance,), points)
+        distance = self.distances(points)
         if not (distance > 0).all():
-            where = np.unravel_index(int(np.argmin(distance)), distance.shape) if distance.ndim else ()
+            where = np.unravel_index(int(np.argmin(distance > 0)), distance.shape) if distance.ndim else ()
             point = ", ".join(f"{entry:.4g}" for entry in points[where])
             raise BehindCamera(
                 f"the point ({point}) has the distance {float(distance[where]):.4g} from the {self.name}; only points "
@@ -128,6 +128,10 @@ class ImagingSurface(OnePoint):
                 "it passes"
             )
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
+
+    def distances(self, points: ArrayLike) -> Array:
+        """Depths or ranges in metres, shape (...), of points of shape (..., 3); not positive behind the camera."""
+        return self._evaluate(POINT, (self.distance,), np.asarray(points, dtype=float))[0]
 
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...): the last of the coordinates, of shape (..., n)."""
