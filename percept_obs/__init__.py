@@ -13,12 +13,7 @@ from percept_obs.observers import (
     smo,
     with_point,
 )
-from percept_obs.points import (
-    FirstSight,
-    PointsForm,
-    PointsScenario,
-    luenberger,
-)
+from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
 from percept_obs.structure import StructureAndMotion
 from percept_obs.structure.stages import semigeneral

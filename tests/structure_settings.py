@@ -8,9 +8,8 @@ from functools import lru_cache
 import numpy as np
 from lab_settings import FRONT, whole_model
 
-from percept_obs.labs.structure.cases import case_of
 from percept_obs.labs.structure.lab import runs
-from percept_obs.labs.structure.texts import OBSERVERS
+from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.tracking.following import StepTooLong
 
 EVERY = list(OBSERVERS)

@@ -39,19 +39,13 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
             if not (power_fits or finite or isinstance(node, KNOWN)):
                 raise NotCompilable(f"{node} cannot be printed alike in Python and JavaScript; write it otherwise")
             if isinstance(node, sp.Piecewise):
-                for branch in node.args:
-                    if any(
-                        isinstance(part, sp.log) or (isinstance(part, sp.Pow) and not _is_product(part))
-                        for part in sp.preorder_traversal(branch)
-                    ):
-                        raise NotCompilable(
-                            f"a branch of {node} divides or takes a root; common subexpressions would be evaluated "
-                            "where the branch is not taken, so move the division out of the branch"
-                        )
-
-
-def _is_product(power: sp.Pow) -> bool:
-    return bool(power.exp.is_Integer and power.exp > 0)
+                inside = [part for branch in node.args for part in sp.preorder_traversal(branch)]
+                products = [part for part in inside if part.is_Pow and part.exp.is_Integer and part.exp > 0]
+                if any(isinstance(part, sp.log | sp.Pow) and part not in products for part in inside):
+                    raise NotCompilable(
+                        f"a branch of {node} divides or takes a root; common subexpressions would be evaluated "
+                        "where the branch is not taken, so move the division out of the branch"
+                    )
 
 
 class _Printer(PythonCodePrinter):

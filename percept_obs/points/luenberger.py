@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import sympy as sp
 
@@ -35,16 +35,12 @@ class LuenbergerObserver:
 
     form: PointsForm
     P: LyapunovMatrix
+    about: ClassVar = ABOUT
 
     @property
     def name(self) -> str:
         """The observer's name."""
         return f"Luenberger, {self.P.name}"
-
-    @property
-    def about(self) -> About:
-        """What is known about it."""
-        return ABOUT
 
     @cached_property
     def estimate(self) -> tuple[sp.Symbol, ...]:

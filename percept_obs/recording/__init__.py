@@ -1,7 +1,7 @@
 """Recordings: what a camera leaves behind, from a simulation or from the world."""
 
+from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
-from percept_obs.recording.grid import step_grid
 from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
 

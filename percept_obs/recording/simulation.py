@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, Table, solve
 from percept_obs.compile.equations import Equations
-from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
+from percept_obs.compile.integrator import EACH, PLANT_STEP, instants, step_grid
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
-from percept_obs.recording.grid import step_grid
 from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
@@ -79,9 +78,8 @@ class Scenario(Scene):
         grid, last = step_grid(np.concatenate([[0.0], np.asarray(times, dtype=float)]), PLANT_STEP)
         steps, known = np.diff(grid), self.motion.known(instants(grid))
         table = Table(steps, np.zeros((len(steps), EACH + 1, 0)), known, np.zeros((len(grid), 0)))
-        return solve(
-            point_in_motion(self.motion.A, self.motion.b, self.motion.parameters), self.position, table
-        ).states[last[1:]]
+        equations = point_in_motion(self.motion.A, self.motion.b, self.motion.parameters)
+        return solve(equations, self.position, table).states[last[1:]]
 
     @property
     def view(self) -> View:

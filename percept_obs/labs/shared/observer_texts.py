@@ -44,11 +44,7 @@ def gain_for_the_page(gain: Gain) -> Texts:
     return {
         "name": gain.name,
         "letter": markup(gain.symbol),
-        "value": gain.value,
-        "low": gain.low,
-        "high": gain.high,
-        "unit": gain.unit,
-        "meaning": gain.meaning,
+        **{name: getattr(gain, name) for name in ("value", "low", "high", "unit", "meaning")},
         "allowed": function_source((gain.symbol,), (sp.Piecewise((1, gain.condition), (0, True)),)),
         "condition": "" if gain.condition == sp.true else str(gain.condition),
         "reason": gain.reason,

@@ -16,8 +16,7 @@ from percept_obs.labs.shared.schema import (
     noise,
     vector,
 )
-from percept_obs.labs.structure.cases import case_of
-from percept_obs.labs.structure.texts import OBSERVERS
+from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES
 
 PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
