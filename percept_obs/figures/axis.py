@@ -1,7 +1,5 @@
 """What an axis holds, and in words what it leaves out."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike

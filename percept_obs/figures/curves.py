@@ -1,7 +1,5 @@
 """Curves over time: estimates, errors with their root mean square, and the bands that an observer claims."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

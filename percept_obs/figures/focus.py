@@ -1,7 +1,5 @@
 """The focus of expansion in the image, and where w is small or vanishes, so that an instant tells little."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -3,8 +3,6 @@
 All else is refused with a ValueError.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 

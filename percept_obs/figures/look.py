@@ -1,7 +1,5 @@
 """Colours, lines and markers: the same thing looks the same in every figure."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from percept_obs.compile import Array

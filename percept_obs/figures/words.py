@@ -1,7 +1,5 @@
 """What is seen, in words: how an axis and a sentence name a coordinate, and what happened to a run."""
 
-from __future__ import annotations
-
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike

@@ -1,7 +1,5 @@
 """Print what the page needs for all that the labs offer: ``python -m percept_obs.labs.printing``."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Depth observers that copy the system and feed the innovation back linearly: De Luca's, and Spica's tuning of it."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, family

@@ -1,7 +1,5 @@
 """The extended Kalman filter: continuous flow, correction at every sample."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, family

@@ -1,7 +1,5 @@
 """A family of observers: all that is known of it, in one value that makes an observer of a form."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

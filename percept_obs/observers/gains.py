@@ -1,7 +1,5 @@
 """Constants of an observer that a user may choose, and grids of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The identifier-based observer of Jankovic and Ghosh (1995)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, family

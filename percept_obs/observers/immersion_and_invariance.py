@@ -1,7 +1,5 @@
 """The immersion and invariance observer of Karagiannis and Astolfi."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp

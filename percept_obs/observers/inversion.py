@@ -1,7 +1,5 @@
 """Hidden coordinates from an estimate of what they do to the measured ones, and where they do not follow from it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """The linear approximation observer: a cascade of linear time-varying filters."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, Option, family

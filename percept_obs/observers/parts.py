@@ -1,7 +1,5 @@
 """Parts that observers' equations are made of: estimates, innovation, output injection, bias of noise, a bound."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The range identification observer of Dixon, Fang, Dawson and Flynn (2003)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, family

@@ -1,7 +1,5 @@
 """The sliding mode observer of Chen and Kano (2002)."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.observers.family import Derived, family

@@ -1,7 +1,5 @@
 """What stands for the sign of an innovation where an observer switches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import MappingProxyType
 

@@ -1,7 +1,5 @@
 """What may be set in the observer lab."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

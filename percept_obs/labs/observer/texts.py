@@ -3,8 +3,6 @@
 Printed when the package is built, see printing.py; one form, observer or surface can be printed by itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import lru_cache
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Recordings of a real camera, in the numbers that the page takes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What Python adds to a run in words: excitation, error dynamics, the bias of noise, a filter's consistency."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache, reduce
 

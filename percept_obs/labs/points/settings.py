@@ -1,7 +1,5 @@
 """What may be set in the lab of many points."""
 
-from __future__ import annotations
-
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
 from percept_obs.labs.shared.schema import (
     DROPOUT,

@@ -1,7 +1,5 @@
 """What the page needs to simulate and to observe many points: layouts, the block of one point, known coefficients."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """What Python adds to a run of many points in words: inequalities, the guaranteed decay, what the points would tell."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

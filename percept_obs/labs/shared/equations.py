@@ -1,7 +1,5 @@
 """Observers' equations in the letters of the papers, for w, phi and g of any system, as MathML."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Formulas as MathML in which letters carry the names of what sets them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 

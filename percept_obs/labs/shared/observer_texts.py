@@ -1,7 +1,5 @@
 """An observer in the texts that the page runs and shows: what is known of it, its gains, its loop."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ A line a part: its place in the page's model, a tab, JSON.  The page takes the f
 is first needed, and so does Python.  Written by ``python -m percept_obs.labs.printing``.
 """
 
-from __future__ import annotations
-
 import gzip
 import json
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """How long a simulated point can be seen."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from percept_obs.recording import Camera, Recording, Scenario, record

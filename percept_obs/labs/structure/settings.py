@@ -1,7 +1,5 @@
 """What may be set in the lab of structure and motion."""
 
-from __future__ import annotations
-
 from percept_obs.labs.shared.schema import (
     KEPT,
     SEED,

@@ -4,8 +4,6 @@ Omega_g is Omega3 times a matrix of known signals, whatever the choice.  The loo
 parameters, so that one for each number of unknowns serves every choice.  Printed when the package is built.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 from itertools import combinations, permutations, product

@@ -1,7 +1,5 @@
 """What Python adds to a run of structure and motion in words: how far the unknown quantities are off in the end."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from percept_obs.structure import StructureAndMotion

@@ -1,7 +1,5 @@
 """The image plane on which the dynamics are chained."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z

@@ -1,7 +1,5 @@
 """The image plane of a pinhole camera."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z

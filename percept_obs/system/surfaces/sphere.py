@@ -1,7 +1,5 @@
 """A unit sphere around the camera's centre."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
