@@ -112,10 +112,13 @@ class PartitionedSystem:
         return self.rate[: len(self.x1), :].expand().jacobian(self.x2).T.expand()
 
     def _repr_latex_(self) -> str:
-        lines = [
-            rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {sp.latex(rate)}"
-            for part, rate in ((self.x1, self.rate[: len(self.x1), :]), (self.x2, self.rate[len(self.x1) :, :]))
-        ]
+        n1 = len(self.x1)
+        return self._displayed(sp.latex(self.rate[:n1, :]), sp.latex(self.rate[n1:, :]))
+
+    def _displayed(self, *rates: str) -> str:
+        """The rates of the measured and of the hidden part in LaTeX, one below the other."""
+        parts = zip((self.x1, self.x2), rates, strict=True)
+        lines = (rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {rate}" for part, rate in parts)
         return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
 
 
@@ -200,11 +203,8 @@ class CanonicalForm(PartitionedSystem):
         return Derivation.of(formulas)
 
     def _repr_latex_(self) -> str:
-        x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
-        return (
-            rf"$\displaystyle \begin{{aligned}} \frac{{d}}{{dt}} {sp.latex(x1)} &= {sp.latex(self.w.T)} {sp.latex(x2)} "
-            rf"+ {sp.latex(self.phi)} \\ \frac{{d}}{{dt}} {sp.latex(x2)} &= {sp.latex(self.g)} \end{{aligned}}$"
-        )
+        moved = rf"{sp.latex(self.w.T)} {sp.latex(sp.Matrix(self.x2))} + {sp.latex(self.phi)}"
+        return self._displayed(moved, sp.latex(self.g))
 
 
 def partition(
