@@ -152,11 +152,9 @@ def loop(compiled: Callable[[Any], Any], combine: Any, solve: Any, point: Any) -
         outputs: Array,
         path: Array,
     ) -> tuple[int, Array]:
-        """Step the estimate, and P where it is computed, by the Runge-Kutta method.
+        """Step the estimate, and P where it is computed, by the Runge-Kutta method, with the blocks of `advance`.
 
-        The blocks `coefficients` and `inverses` have a row for each instant of a step, or one row if constant;
-        `outputs` has one for each instant of each step.  The estimates go to `path`.  Returns the first row of `path`
-        at which the estimate was no longer finite, or -1, and the last P.
+        The estimates go to `path`.  Returns its first row at which they were no longer finite, or -1, and the last P.
         """
         n = len(x)
         size = n if law[0] else 0

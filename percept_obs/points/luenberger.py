@@ -35,7 +35,7 @@ class LuenbergerObserver:
 
     form: PointsForm
     P: LyapunovMatrix
-    about: ClassVar = ABOUT
+    about: ClassVar[About] = ABOUT
 
     @property
     def name(self) -> str:
