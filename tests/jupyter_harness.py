@@ -20,8 +20,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import nbformat
+if TYPE_CHECKING:  # it takes two seconds, which every process that collects tests and every kernel would pay
+    import nbformat
 
 NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
 
@@ -167,8 +169,10 @@ def execute(notebook: nbformat.NotebookNode, folder: Path) -> dict[str, dict]:
 
 def _execute_beside(client, program: str) -> None:
     """Run a cell that is not in the notebook."""
-    notebook, cell = client.nb, nbformat.v4.new_code_cell(program)
-    client.nb = nbformat.v4.new_notebook(cells=[cell])
+    from nbformat.v4 import new_code_cell, new_notebook
+
+    notebook, cell = client.nb, new_code_cell(program)
+    client.nb = new_notebook(cells=[cell])
     try:
         client.execute_cell(cell, 0)
     finally:

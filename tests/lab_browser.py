@@ -3,7 +3,6 @@
 import json
 import time
 
-import nbformat
 import numpy as np
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
@@ -50,8 +49,12 @@ STATE = """(which) => {
 
 def write_notebook(folder, name, *cells):
     """A notebook of code cells in the server's folder."""
-    notebook = nbformat.v4.new_notebook(metadata=KERNEL, cells=[nbformat.v4.new_code_cell(c) for c in cells])
-    nbformat.write(notebook, folder / name)
+    code = [
+        {"cell_type": "code", "id": f"c{k}", "metadata": {}, "source": c, "execution_count": None, "outputs": []}
+        for k, c in enumerate(cells)
+    ]
+    notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": KERNEL, "cells": code}
+    (folder / name).write_text(json.dumps(notebook))
 
 
 def open_lab(page, folder, name="lab.ipynb", arguments="", lab="observer_lab"):

@@ -11,7 +11,7 @@ import numpy as np
 import percept_obs.labs
 from percept_obs.labs.observer.lab import runs
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, system_of
-from percept_obs.labs.shared.printed import unpacked
+from percept_obs.labs.shared.printed import file_of, unpacked
 from percept_obs.system.motion import affine
 from percept_obs.tracking.following import StepTooLong, track
 
@@ -20,7 +20,12 @@ FRONT = Path(percept_obs.labs.__file__).parent / "front"
 NOISY = {"kind": "uniform", "size": 0.01}
 SMOOTH = ["identifier_based", "extended_kalman"]
 ALL = list(BY_NAME)
-KEYS = [key_of(surface, outputs) for surface in SURFACES for outputs in system_of(surface).output_choices]
+KEYS = [
+    place.removeprefix("forms/")
+    for place in unpacked(file_of("observer_lab").read_bytes())
+    if place.startswith("forms/")
+]
+"""Names of all forms, as they were printed; deriving them takes a second."""
 B_AT_THE_SIDE = [0.4, 0.3, 0.3]
 PLANE = [0.2, -0.1, 0.9]
 

@@ -10,7 +10,7 @@ from utias_folder import utias_folder
 from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.settings import PICTURES
-from percept_obs.labs.observer.texts import BY_NAME, SURFACES, WAYS, form_of
+from percept_obs.labs.observer.texts import BY_NAME, SURFACES, WAYS, form_of, key_of, system_of
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import BehindCamera, pinhole
@@ -44,11 +44,10 @@ def test_the_model_is_complete_and_is_json(lab):
     assert set(model["observers"]) == set(BY_NAME)
     assert model["opening"] == observer_lab().settings
     assert model["pictures"] == list(PICTURES)
-    assert set(model["forms"]) == set(KEYS)
+    choices = {name: system_of(name).output_choices for name in SURFACES}
+    assert list(model["forms"]) == KEYS == [key_of(name, outputs) for name in SURFACES for outputs in choices[name]]
     for name in SURFACES:
-        assert model["surfaces"][name]["outputs"] == [
-            key.split(" ")[1].split("+") for key in KEYS if key.startswith(f"{name} ")
-        ]
+        assert model["surfaces"][name]["outputs"] == [list(outputs) for outputs in choices[name]]
 
 
 @pytest.mark.parametrize("key", KEYS)

@@ -252,16 +252,35 @@ def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
     return result.as_explicit() if isinstance(result, sp.MatrixExpr) else result
 
 
-def vanishes(expression: sp.Expr) -> bool:
-    """Whether an expression is identically zero, decided exactly."""
+def vanishes(*expressions: sp.Expr) -> bool:
+    """Whether expressions are identically zero, decided exactly.
+
+    One point where one of them is not zero refutes the identity; only the algebra, which takes longer, can prove it.
+    """
+    return not any(map(_is_refuted, expressions)) and all(map(_is_proven, expressions))
+
+
+def _somewhere(expression: sp.Expr) -> sp.Expr:
+    """The expression's value at some rational point."""
+    symbols = sorted(expression.free_symbols, key=str)
+    point = {symbol: sp.Rational(sp.prime(k + 3), 3 + k) for k, symbol in enumerate(symbols)}
+    return expression.xreplace(point).doit()
+
+
+def _is_refuted(expression: sp.Expr) -> bool:
+    """Whether an expression, as it stands, has a rational value other than zero."""
+    if expression.has(_Scalar):
+        return False
+    value = _somewhere(expression)
+    return bool(value.is_Rational and value != 0)
+
+
+def _is_proven(expression: sp.Expr) -> bool:
     expanded = sp.expand(expression)
     expanded = expanded.xreplace({scalar: sp.Dummy(real=True) for scalar in expanded.atoms(_Scalar)})
     if expanded == 0:
         return True
-    symbols = sorted(expanded.free_symbols, key=str)
-    point = {symbol: sp.Rational(sp.prime(k + 3), 3 + k) for k, symbol in enumerate(symbols)}
-    somewhere = expanded.xreplace(point).doit()
-    # One point where it is not zero refutes the identity; only the algebra can prove it.
+    somewhere = _somewhere(expanded)
     if somewhere.is_number and abs(sp.N(somewhere, 30)) > 1e-20:
         return False
     return bool(sp.expand(sp.fraction(sp.together(expanded))[0]) == 0)
@@ -287,7 +306,7 @@ def is_identity(equation: sp.Basic, values: Values) -> bool:
         difference = left - right
     except (ShapeError, TypeError):
         return False
-    return all(map(vanishes, difference)) if isinstance(difference, sp.MatrixBase) else vanishes(difference)
+    return vanishes(*difference) if isinstance(difference, sp.MatrixBase) else vanishes(difference)
 
 
 def identities(*derivations: Callable[[], Values]) -> Check:

@@ -142,17 +142,17 @@ def worth(side: sp.Expr) -> float:
 def exchanged(printed: Printed) -> Finding:
     """(23): the exchange of integrals for |B C rho|^2 = exp(-t), and what its bounds drop."""
     definition, swap, bound, last = printed
-    whole = worth(definition.rhs)
+    kinds = [type(line) for line in printed] == [sp.Equality, sp.Equality, sp.LessThan, sp.LessThan]
+    if not kinds or any(line.lhs != Q1 for line in (definition, swap, bound)):
+        return judged(False)
     exact = float((sp.exp(-1) * (1 - sp.exp(-2))).evalf())
     dropped = float(sp.integrate((2 - (tau - 1)) * sp.exp(-tau), (tau, 1, 3)))
-    same = math.isclose(whole, exact) and math.isclose(worth(swap.rhs), exact)
-    same = same and math.isclose(worth(bound.rhs) - exact, dropped) and math.isclose(worth(last.lhs), worth(bound.rhs))
+    same = math.isclose(worth(definition.rhs), exact) and math.isclose(worth(swap.rhs), exact)
+    same = same and all(math.isclose(worth(side) - exact, dropped) for side in (bound.rhs, last.lhs))
     # With (19) the last line is an equality for gamma1 = T |P(t0)| / 2.
     total = sp.Integral(seen_(t), (t, t0, sp.oo))
     gap = (last.rhs - last.lhs).xreplace({total: Norm(P0) * Norm(rho0) ** 2 / 2, gamma1: T * Norm(P0) / 2})
-    kinds = [type(line) for line in printed] == [sp.Equality, sp.Equality, sp.LessThan, sp.LessThan]
-    names = all(line.lhs == Q1 for line in (definition, swap, bound))
-    return judged(same and kinds and names and vanishes(gap))
+    return judged(same and vanishes(gap))
 
 
 def integral_is_not_enough(printed: Printed) -> Finding:

@@ -133,11 +133,8 @@ def energy_balance(printed: Printed) -> Finding:
     squares = Inner(e1, e1), Inner(e2, e2)
     if definition.lhs != V1 or not definition.rhs.atoms(Inner) <= set(squares):
         return judged(False)
-    balances = []
-    for form in FORMS:
-        values, rate = energy_rate(form, definition.rhs)
-        balances += [is_identity(line, values | {dot(V1): rate}) for line in lines]
-    return judged(all(balances))
+    rates = (energy_rate(form, definition.rhs) for form in FORMS)
+    return judged(all(is_identity(line, values | {dot(V1): rate}) for values, rate in rates for line in lines))
 
 
 def energy_can_grow(printed: Printed) -> Finding:
