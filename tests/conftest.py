@@ -27,6 +27,12 @@ BROWSERS = (
 )
 
 
+def pytest_collection_modifyitems(items):
+    """Files that open a browser first: they take longest, and one at the end would keep a worker waiting."""
+    first = {item.path for item in items if item.get_closest_marker("browser")}
+    items.sort(key=lambda item: item.path not in first)
+
+
 @pytest.fixture(scope="session")
 def node():
     """The path of Node.js."""

@@ -179,25 +179,25 @@ def _execute_beside(client, program: str) -> None:
         client.nb = notebook
 
 
-def silent_pictures(notebook: nbformat.NotebookNode, widgets: dict[str, dict]) -> list[str]:
+def silent_pictures(notebook: dict, widgets: dict[str, dict]) -> list[str]:
     """Pictures of an executed notebook and its widgets that have no alternative text."""
     return [
-        *(f"{cell.id}: {words}" for cell in notebook.cells for words in _silent_in_cell(cell)),
+        *(f"{cell['id']}: {words}" for cell in notebook["cells"] for words in _silent_in_cell(cell)),
         *(f"{state.get('_model_name')}: {words}" for state in widgets.values() for words in _silent_in_widget(state)),
     ]
 
 
-def _silent_in_cell(cell: nbformat.NotebookNode) -> Iterator[str]:
-    if cell.cell_type == "markdown":
-        yield from ("![] without a text" for _ in re.findall(r"!\[\s*\]\(", cell.source))
-        yield from _Pictures(cell.source).silent
+def _silent_in_cell(cell: dict) -> Iterator[str]:
+    if cell["cell_type"] == "markdown":
+        yield from ("![] without a text" for _ in re.findall(r"!\[\s*\]\(", cell["source"]))
+        yield from _Pictures(cell["source"]).silent
     for output in cell.get("outputs", ()):
         data = output.get("data", {})
         if "text/html" in data:  # what is shown where there is a choice
             yield from _Pictures("".join(data["text/html"])).silent
         else:
             images = (kind for kind in data if kind.startswith("image/"))
-            yield from (f"{kind} without alt" for kind in images if not output.metadata.get(kind, {}).get("alt"))
+            yield from (f"{kind} without alt" for kind in images if not output["metadata"].get(kind, {}).get("alt"))
 
 
 def _silent_in_widget(state: dict) -> Iterator[str]:

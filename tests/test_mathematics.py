@@ -84,7 +84,7 @@ def test_a_smaller_gain_converges_with_one_output():
 def test_starting_from_the_first_sample_cures():
     assert track(clean(EQ35), smo(ONE), FROM_SAMPLE, hold="exact").settling_time(0.05) < 40
     for seed in SEEDS:
-        run = track(record(EQ35, camera=NOISY, seed=seed), ibo(ONE), FROM_SAMPLE)
+        run = track(record(EQ35, camera=NOISY, seed=seed), ibo(ONE), FROM_SAMPLE, language="numba")
         assert len(run.resets) == 0
         assert abs(run.error[-1, 2]) < 0.15
 

@@ -1,10 +1,10 @@
 """Each notebook runs top to bottom, survives every control, pins a number, names its pictures; JupyterLab shows it."""
 
 import ast
+import json
 import re
 import shutil
 
-import nbformat
 import pytest
 from jupyter_harness import (
     LOG,
@@ -17,9 +17,7 @@ from jupyter_harness import (
     run_all,
     silent_pictures,
 )
-from lab_browser import assert_equals_python, centre, control, rested, state
-from nbclient.exceptions import CellExecutionError
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
+from lab_browser import assert_equals_python, centre, control, rested, state, write_notebook
 from utias_folder import utias_folder
 
 from percept_obs.labs.observer.lab import observer_lab
@@ -28,11 +26,19 @@ NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
 
 
 def read(name):
-    return nbformat.read(NOTEBOOKS / name, as_version=4)
+    """A notebook as its file has it."""
+    return json.loads((NOTEBOOKS / name).read_text(encoding="utf-8"))
 
 
 def code(notebook):
-    return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+def run_alone(program, folder):
+    """Run a notebook of one cell."""
+    from nbformat.v4 import new_code_cell, new_notebook
+
+    execute(new_notebook(cells=[new_code_cell(program)]), folder)
 
 
 def test_there_are_notebooks():
@@ -42,14 +48,15 @@ def test_there_are_notebooks():
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_of_a_run_is_stored(name):
     notebook = read(name)
-    assert set(notebook.metadata) <= {"kernelspec", "language_info"}
-    assert notebook.metadata.kernelspec.name == "python3"
-    assert set(notebook.metadata.get("language_info", ())) <= {"name"}
-    for cell in notebook.cells:
-        assert not re.fullmatch(r"[0-9a-f]{8}", cell.id), "an id by which a cell is known, not a random one"
+    about = notebook["metadata"]
+    assert set(about) <= {"kernelspec", "language_info"}
+    assert about["kernelspec"]["name"] == "python3"
+    assert set(about.get("language_info", ())) <= {"name"}
+    for cell in notebook["cells"]:
+        assert not re.fullmatch(r"[0-9a-f]{8}", cell["id"]), "an id by which a cell is known, not a random one"
         assert not cell.get("outputs")
         assert cell.get("execution_count") is None
-        assert set(cell.metadata) <= {"tags"}
+        assert set(cell["metadata"]) <= {"tags"}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -61,7 +68,9 @@ def test_a_number_is_pinned(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
-    notebook = read(name)
+    import nbformat
+
+    notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     if "load_utias" in "".join(code(notebook)):
         monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
     widgets = execute(notebook, tmp_path)
@@ -100,26 +109,36 @@ unknown = widgets.ColorPicker()
 
 @pytest.mark.slow
 def test_an_error_in_a_callback_fails_the_test(tmp_path):
+    from nbclient.exceptions import CellExecutionError
+
     with pytest.raises(CellExecutionError) as failure:
-        execute(new_notebook(cells=[new_code_cell(FAILING)]), tmp_path)
-    for words in (
+        run_alone(FAILING, tmp_path)
+    for told in (
         *(f"ArithmeticError: {name}" for name in ("observed", "clicked", "interactive", "put off")),
         "UserWarning: a warning",
         "the lab says: told to the student only",
         "how is a ColorPicker moved?",
     ):
-        assert words in str(failure.value)
+        assert told in str(failure.value)
 
 
 @pytest.mark.slow
 def test_a_warning_of_a_cell_fails_the_test(tmp_path):
+    from nbclient.exceptions import CellExecutionError
+
     with pytest.raises(CellExecutionError, match="UserWarning"):
-        execute(new_notebook(cells=[new_code_cell("import warnings; warnings.warn('a warning')")]), tmp_path)
+        run_alone("import warnings; warnings.warn('a warning')", tmp_path)
 
 
 def shown(data, **metadata):
     """A code cell and what it displayed."""
-    return new_code_cell(id="c", outputs=[new_output("display_data", data=data, metadata=metadata)])
+    output = {"output_type": "display_data", "data": data, "metadata": metadata}
+    return {"cell_type": "code", "id": "c", "source": "", "outputs": [output]}
+
+
+def words(source):
+    """A cell of text."""
+    return {"cell_type": "markdown", "id": "m", "source": source}
 
 
 PNG, NAMED = {"image/png": "AAAA"}, '<img alt="what it shows" src="a.png">'
@@ -128,9 +147,9 @@ PNG, NAMED = {"image/png": "AAAA"}, '<img alt="what it shows" src="a.png">'
 @pytest.mark.parametrize(
     ("cell", "complaints"),
     [
-        (new_markdown_cell("![what it shows](a.png)", id="m"), []),
-        (new_markdown_cell("![ ](a.png)", id="m"), ["m: ![] without a text"]),
-        (new_markdown_cell('<img src="a.png">', id="m"), ["m: <img> without alt"]),
+        (words("![what it shows](a.png)"), []),
+        (words("![ ](a.png)"), ["m: ![] without a text"]),
+        (words('<img src="a.png">'), ["m: <img> without alt"]),
         (shown({"text/html": NAMED} | PNG), []),
         (shown({"text/html": '<p><img alt=" "></p>'}), ["c: <img> without alt"]),
         (shown({"text/html": "<svg></svg>"}), ["c: <svg> without aria-label"]),
@@ -139,7 +158,7 @@ PNG, NAMED = {"image/png": "AAAA"}, '<img alt="what it shows" src="a.png">'
     ],
 )
 def test_a_picture_without_a_text_is_found(cell, complaints):
-    assert silent_pictures(new_notebook(cells=[cell]), {}) == complaints
+    assert silent_pictures({"cells": [cell]}, {}) == complaints
 
 
 @pytest.mark.parametrize(
@@ -154,7 +173,7 @@ def test_a_picture_without_a_text_is_found(cell, complaints):
     ],
 )
 def test_a_widget_without_a_text_is_found(state, complaints):
-    assert silent_pictures(new_notebook(), {"an id": state}) == complaints
+    assert silent_pictures({"cells": []}, {"an id": state}) == complaints
 
 
 @pytest.fixture
@@ -225,9 +244,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(page):
 @pytest.mark.slow
 @pytest.mark.browser
 def test_an_error_in_a_callback_reaches_the_log_console(page, tmp_path):
-    kernel = {"kernelspec": read("00_start.ipynb").metadata.kernelspec}
-    failing = new_notebook(cells=[new_code_cell(FAILING + "slider")], metadata=kernel)
-    nbformat.write(failing, tmp_path / "notebooks/failing.ipynb")
+    write_notebook(tmp_path / "notebooks", "failing.ipynb", FAILING + "slider")
     open_notebook(page, "failing.ipynb")
     run_all(page)
     handle = page.locator(".noUi-handle")

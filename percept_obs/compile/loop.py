@@ -48,7 +48,7 @@ def source(equations: Equations, language: Printed = "python") -> str:
     names = {s: sp.Symbol(f"{letter}{k}", real=True) for letter, group in groups.items() for k, s in enumerate(group)}
     fixed: dict[sp.Expr, sp.Symbol] = {}
     known_gains = {names[symbol] for symbol in equations.gains}
-    variables = [names[symbol] for symbol in (*equations.state, *equations.measured)]
+    variables = tuple(names[symbol] for symbol in (*equations.state, *equations.measured))
 
     def prepared(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
         """The expressions in the loop's names, with what depends on gains only taken out."""
@@ -147,15 +147,17 @@ def source(equations: Equations, language: Printed = "python") -> str:
     return str(text)
 
 
-def _nested(expression: sp.Basic, variables: Sequence[sp.Symbol]) -> sp.Basic:
+@lru_cache(maxsize=4096)
+def _nested(expression: sp.Basic, variables: tuple[sp.Symbol, ...]) -> sp.Basic:
     """Nest sums as in Horner's scheme: the variable that most terms share is multiplied last."""
     if not isinstance(expression, sp.Add):
-        return expression.func(*(_nested(e, variables) for e in expression.args)) if expression.args else expression
-    powers = [term.as_powers_dict() for term in expression.args]
-    sharing = {
-        v: {k for k, power in enumerate(powers) if sp.S(power.get(v, 0)).is_Integer and power.get(v, 0) > 0}
-        for v in variables
-    }
+        inner = tuple(_nested(e, variables) for e in expression.args)
+        return expression if inner == expression.args else expression.func(*inner)
+    sharing: dict[sp.Basic, set[int]] = {v: set() for v in variables}
+    for k, term in enumerate(expression.args):
+        for base, power in term.as_powers_dict().items():
+            if base in sharing and power.is_Integer and power > 0:
+                sharing[base].add(k)
     shared = max(variables, key=lambda v: len(sharing[v]), default=None)
     if shared is None or len(sharing[shared]) < 2:
         return sp.Add(*(_nested(term, variables) for term in expression.args))

@@ -98,15 +98,16 @@ class LuenbergerObserver:
         form, rho = self.form, sp.ImmutableMatrix(self.error)
         x = sp.ImmutableMatrix(form.state)
         at_estimate = dict(zip(self.estimate, x - rho, strict=True))
-        difference = form.motion.A * x + form.motion.b - self.flow.subs(at_estimate, simultaneous=True)
+        difference = form.motion.A * x + form.motion.b - self.flow.xreplace(at_estimate)
         difference = sp.ImmutableMatrix(difference).expand()
         seen = form.B * form.stacked
-        rest = difference.jacobian(form.state) - self.inverse * seen.T * seen
+        without_state = difference.xreplace(dict.fromkeys(form.state, sp.S.Zero))
+        rest = difference - without_state - self.inverse * seen.T * (seen * x)
         images = dict(zip(form.y, form.H(form.state), strict=True))
-        on_rays = (seen * x).subs(images, simultaneous=True).applyfunc(sp.cancel)
+        on_rays = (seen * x).xreplace(images).applyfunc(sp.cancel)
         if any(rest.expand()) or any(on_rays):
             raise ArithmeticError("the state does not drop out of the error's rate; is y the image of C x?")
-        return sp.ImmutableMatrix(difference.subs(dict.fromkeys(form.state, 0)))
+        return sp.ImmutableMatrix(without_state)
 
     def _repr_latex_(self) -> str:
         return (
