@@ -24,7 +24,7 @@ from percept_obs.system.surfaces import BehindCamera
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
-EVENTS, CHUNKS, SAMPLES = 5000, 5, 1000
+EVENTS, CHUNKS, SAMPLES = 5000, 5, 4000
 COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
