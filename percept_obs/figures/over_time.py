@@ -13,6 +13,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 
 @figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
@@ -21,7 +22,7 @@ def runs_over_time(
     labels: Sequence[str] | None = None,
     coordinate: str | None = None,
     axes: Sequence[Axes] | None = None,
-    tolerance: float = 0.05,
+    tolerance: float = TOLERANCE,
 ) -> Drawing:
     """One coordinate as several observers estimate it, and their errors.
 

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from percept_obs.figures import axis, curves, given, look, words
 from percept_obs.figures.base import Array, Drawing, figure, legend_above, rows
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 RESIDUALS: tuple[dict[str, Any], ...] = (
     {"color": look.BLUE, "linestyle": "-"},
@@ -22,7 +23,7 @@ RESIDUALS: tuple[dict[str, Any], ...] = (
 
 
 @figure("it is no run, the number of axes is wrong, or the tolerance is not positive")
-def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = 0.05) -> Drawing:
+def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOLERANCE) -> Drawing:
     """Outputs, estimates and errors of a run over time.
 
     One row a coordinate, with samples as dots, the truth solid and the estimate dashed, in a band of two claimed

@@ -8,6 +8,7 @@ from percept_obs.figures.base import Array
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 
 def finite(values: ArrayLike) -> Array:
@@ -71,7 +72,7 @@ def joined(*sentences: str) -> str:
     return " ".join(filter(None, sentences))
 
 
-def story(run: Run, tolerance: float = 0.05) -> str:
+def story(run: Run, tolerance: float = TOLERANCE) -> str:
     """What happened to a run, in sentences: its verdict, resets, divergence and lost samples."""
     if not tolerance > 0:
         raise ValueError(f"the tolerance is {tolerance}; it must be positive")

@@ -18,6 +18,7 @@ from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
+from percept_obs.system.motion import slack_of
 
 Piece = tuple[Array, Array]
 
@@ -237,17 +238,17 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window)
-    time, images = recording.time, true_images(recording)
+    time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
         None if matrix.computed else np.broadcast_to(matrix.at(time[every]), (len(time[every]), *[form.states] * 2))
     )
     if P_there is None or not conditions(observer, time[every], images[every], P_there).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
-    begins = time[0] + window * np.arange(int((time[-1] - time[0]) / window + 1e-9))
+    begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
     for k, begin in enumerate(begins):
-        inside = np.flatnonzero((time >= begin - 1e-9) & (time <= begin + window + 1e-9))
+        inside = np.flatnonzero((time >= begin - slack) & (time <= begin + window + slack))
         inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
         at = time[inside]
         shares = np.convolve(np.diff(at), [0.5, 0.5])  # of the trapezoidal rule
@@ -297,7 +298,7 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     S, Phi = information(used), _transitions(form, time)
     h = np.diff(time)[:, None, None]
     integrals = h / 2 * (S[:-1] + np.swapaxes(Phi, 1, 2) @ S[1:] @ Phi)
-    ends = np.searchsorted(time, time + window - 1e-9)
+    ends = np.searchsorted(time, time + window - slack_of(time))
     begins = np.flatnonzero(ends < len(time))
 
     front: list[Piece] = []

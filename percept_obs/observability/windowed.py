@@ -9,6 +9,7 @@ import numpy as np
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.motion import from_the_start, slack_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     form, time = form.canonical_form(), recording.time
     check_window(recording, window)
     gathered = cumulative_trapezoid(_information(form, recording), time, axis=0, initial=0)
-    ends = time[time >= time[0] + window - 1e-9]
+    ends = time[from_the_start(recording.elapsed, window)]
     begins = np.maximum(ends - window, time[0])
     flat = gathered.reshape(len(time), -1)
     at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in flat.T], axis=-1)
@@ -75,15 +76,16 @@ def check_window(recording: Recording, window: float) -> None:
     ValueError
         If it is not positive or longer than the recording.
     """
-    length = recording.time[-1] - recording.time[0]
-    if not 0 < window <= length + 1e-9:
+    length = recording.elapsed[-1]
+    if not 0 < window <= length + slack_of(recording.time):
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
 
 
 def _information(form: CanonicalForm, recording: Recording) -> Array:
     """The matrix w w^T at the samples, shape (K, n2, n2)."""
     source = recording.outputs if recording.truth is None else recording.truth
-    columns = [source[:, recording.names.index(name)] for name in form.measured]
+    names = recording.names if source is recording.outputs else tuple(map(str, recording.view.coordinates))
+    columns = [source[:, names.index(name)] for name in form.measured]
     seen = [np.isfinite(column) for column in columns]
     time = recording.time
     outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]

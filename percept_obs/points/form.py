@@ -24,6 +24,10 @@ DRAWS = 4
 """Values that a motion's symbols are given at random, to find what no motion lets a camera see."""
 
 
+JUDGED = "the points' positions"
+"""What verdicts judge of several points; live labs use the same words."""
+
+
 class UnseenDirection(UserWarning):
     """A direction of the state that no image of any point depends on, whatever the camera sees."""
 
@@ -192,6 +196,17 @@ class PointsForm:
         """Inverse depths in 1/m of states of shape (..., n), shape (..., p); negative behind the camera."""
         distance = self.locate(states) @ self.surface_numbers[1]
         return np.divide(1, distance, out=np.full_like(distance, np.inf), where=distance != 0)
+
+    @property
+    def judged(self) -> str:
+        """Where the points are."""
+        return JUDGED
+
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
+        """How far the worst point is from where it is, relative to its distance, shape (K,); see `View`."""
+        true, found = self.locate(truth), self.locate(estimate)
+        off, distance = (np.linalg.norm(rows, axis=-1) for rows in (found - true, true))
+        return np.asarray((off / distance).max(axis=-1))
 
     def outputs(self, states: ArrayLike) -> Array:
         """Image coordinates of states of shape (..., n), shape (..., p, m); NaN behind the camera."""

@@ -16,9 +16,8 @@ from percept_obs.tracking import Run
 Array = NDArray[np.float64]
 
 
-JUDGED = "the state"
 REMEDY = "choose a larger P or shorter steps, and look at conditions() if P is no longer positive definite"
-"""What verdicts say of it, and what to do about a run that diverged; live labs use the same words."""
+"""What to do about a run that diverged; live labs use the same words."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +71,6 @@ class PointsRun(Run):
     def deviation(self) -> Array:
         """Norm of the error rho, truth minus estimate, shape (K,)."""
         return np.asarray(np.linalg.norm(self.error, axis=1))
-
-    @property
-    def judged(self) -> str:
-        """What the verdict judges, in words."""
-        return JUDGED
 
     @property
     def remedy(self) -> str:

@@ -141,6 +141,11 @@ class Recording:
                 "front of the camera, at positive inverse distances, are seen"
             )
 
+    @cached_property
+    def elapsed(self) -> Array:
+        """Seconds since the first sample, shape (K,): the clock in which people are told of times."""
+        return self.time - self.time[0]
+
     @property
     def seen(self) -> Flags:
         """Where all outputs of a point were sampled, shape (K,) or (K, p)."""

@@ -318,6 +318,39 @@ class StructureAndMotion(OnePoint):
         return {name: scale if name == d_s.name else values / scale for name, values in by_name.items()}
 
     @property
+    def judged(self) -> str:
+        """What is unknown; with the scale, the distance."""
+        return ", ".join("the distance" if name == d_s.name else name for name in self.unknown)
+
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
+        """Largest relative error of the unknowns, shape (K,); see `View`.
+
+        That of a velocity is relative to the greatest speed of the point against the camera.
+        """
+        error = np.where(np.isfinite(estimate).all(axis=-1), 0.0, np.nan)
+        if d_s.name in self.unknown:
+            error = super().relative_error(truth, estimate, known)
+        true, found = (self.quantities(rows[:, len(OUTPUTS) :]) for rows in (truth, estimate))
+        speed = self._greatest_speed(truth, known)
+        for name in filter(lambda name: name != d_s.name, self.unknown):
+            off = np.abs(found[name] - true[name])
+            share = np.divide(off, speed, out=np.where(off > 0, np.inf, off), where=bool(speed > 0))
+            error = np.where(np.isinf(error), error, np.maximum(error, share))
+        return error
+
+    def _greatest_speed(self, truth: Array, known: Array) -> float:
+        """Of the point against the camera, |v_p - v_c|, in m/s."""
+        theta = truth[:, len(OUTPUTS) :]
+        M, m = self.translation
+        scale = [self.values[symbol] for symbol in self.parameters]
+        columns = np.broadcast_to(known, (len(theta), known.shape[1])).T
+        scaled = vectorised((*self.form.x2, *self.form.parameters), list(M * sp.ImmutableMatrix(self.form.x2) + m))(
+            *theta.T, *columns, *scale
+        )
+        d = self.scale or theta[:, self.unknown.index(d_s.name)]
+        return float(np.nanmax(np.linalg.norm(np.stack(scaled, axis=-1), axis=-1) / d))
+
+    @property
     def name(self) -> str:
         """What is unknown, in words."""
         return f"scaled pinhole with {', '.join(self.unknown)} unknown"

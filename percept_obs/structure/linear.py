@@ -83,6 +83,17 @@ class LinearView(OnePoint):
         """Points in metres, shape (..., 3), from xbar and theta; infinite where no positive inverse depth follows."""
         return self.choice.locate(self._ybar(coordinates))
 
+    @property
+    def judged(self) -> str:
+        """As of the choice."""
+        return self.choice.judged
+
+    def relative_error(
+        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """As of the choice."""
+        return self.choice.relative_error(self._ybar(truth), self._ybar(estimate), known)
+
     @staticmethod
     def _ybar(coordinates: ArrayLike) -> Array:
         """The choice's coordinates (ybar, theta) from (xbar, theta)."""

@@ -14,7 +14,7 @@ from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.system.motion import Motion, Signal, rigid
+from percept_obs.system.motion import Motion, Signal, rigid, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
@@ -101,7 +101,7 @@ def semigeneral(
         raise ValueError(f"the object moves at {moves_at} s; each stage needs two samples: {begin:.4g} to {end:.4g} s")
     first = seen_as(recording.between(-np.inf, moves_at), choice, motion, scale)
     static = track(first, make(choice.form), **settings)
-    last = static.estimate[static.time >= moves_at - average - 1e-9, -len(choice.unknown) :]
+    last = static.estimate[static.time >= moves_at - average - slack_of(static.time), -len(choice.unknown) :]
     usable = last[np.isfinite(last).all(axis=1)]
     found = {n: float(v) for n, v in choice.quantities(usable.mean(axis=0)).items()} if len(usable) else {}
     if not found.get("d_s", np.nan) > 0:

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
+from percept_obs.system.motion import from_the_start, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,8 +34,9 @@ def compare(
     recordings: Sequence[Recording],
     observers: Mapping[str, Observer] | Sequence[Observer],
     start: Mapping[str, float] | Sequence[float] | None = None,
-    tolerance: float = 0.05,
+    tolerance: float = TOLERANCE,
     after: float = 0.0,
+    coordinates: Sequence[str] = (),
     **settings: Any,
 ) -> pd.DataFrame:
     """Run every observer on every recording, so that all see the same noise.
@@ -46,9 +49,11 @@ def compare(
         A sequence is labelled with the observers' names.
     start : see `track`
     tolerance : float
-        For the settling time of the inverse distance.
+        Bound on the relative error of the distance, or on the absolute errors of the `coordinates`; see `Run.outcome`.
     after : float
-        Seconds from which on errors count for their root mean square and their largest value.
+        Seconds since the first sample from which on errors count for their root mean square and their largest value.
+    coordinates : sequence of str, optional
+        Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
     **settings
         Passed to `track`, such as ``hold`` and ``believed``.
 
@@ -56,8 +61,9 @@ def compare(
     -------
     pandas.DataFrame
         One row for a recording and an observer, with errors of the inverse distance in 1/m: observer, recording,
-        settling_time (s, infinite if it does not settle), final, rms, worst (after the given time), resets,
-        diverged_at (s, infinite if it does not), cost (s of computing for a s of data).
+        outcome (a kind of `Outcome`), settling_time (s, infinite if it ends outside), final, rms, worst (after the
+        given time), resets, diverged_at (s since the first sample, infinite if it does not), cost (s of computing for
+        a s of data).
 
     Raises
     ------
@@ -82,20 +88,22 @@ def compare(
     rows = []
     for recording, label in tqdm([*product(recordings, follow)], desc="runs", delay=2, leave=False):
         (run,), cost = timed(follow[label], [recording])
-        error = np.abs(run.error[:, -1])
-        late = error[recording.time - recording.time[0] >= after - 1e-9]
+        surface, found = recording.imaging_surface, run.outcome(tolerance, *coordinates)
+        error = np.abs(surface.inverse(run.error))
+        late = error[from_the_start(run.elapsed, after)]
         if not len(late):
             raise ValueError(f"no sample of {recording.source!r} lies {after} s or more after its first one")
         rows.append(
             {
                 "observer": label,
                 "recording": recording.source,
-                "settling_time": run.settling_time(tolerance, recording.imaging_surface.inverse_distance.name),
+                "outcome": found.kind,
+                "settling_time": found.settled,
                 "final": _known(error[-1]),
                 "rms": _known(math.sqrt(np.mean(late**2))),
                 "worst": _known(late.max()),
                 "resets": len(run.resets),
-                "diverged_at": math.inf if run.diverged_at is None else run.diverged_at,
+                "diverged_at": math.inf if run.diverged_at is None else run.diverged_at - float(run.time[0]),
                 "cost": cost,
             }
         )
@@ -113,7 +121,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        runs; failed (not settled at the end, or diverged), reset (runs with a reset), diverged; and for
+        runs; failed (not converged), reset (runs with a reset), diverged; and for
         settling_time, final, rms, worst, cost the median with the 16 % and 84 % quantiles (columns name, name_low,
         name_high).
     """
@@ -122,7 +130,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     observers = table.groupby("observer", sort=False)
     found = {
         "runs": observers.size(),
-        "failed": observers["settling_time"].agg(lambda times: np.isinf(times).sum()),
+        "failed": observers["outcome"].agg(lambda kinds: (kinds != "converged").sum()),
         "reset": observers["resets"].agg(lambda counts: (counts > 0).sum()),
         "diverged": observers["diverged_at"].agg(lambda times: np.isfinite(times).sum()),
     }
@@ -198,7 +206,7 @@ def relative_distance_errors(
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
             samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
-            later = samples[run.time[samples] - run.time[sighting.first] >= after - 1e-9]
+            later = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
             if len(later) and (points is None or sighting.point in points):
                 place = (later[0], sighting.point)
                 errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from percept_obs.system.motion import from_the_start
 from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
@@ -165,9 +166,11 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
-        raise ValueError(f"the run diverged at {run.diverged_at:.3g} s; a filter that diverges is not consistent")
+        raise ValueError(
+            f"the run diverged at {run.diverged_at - run.time[0]:.3g} s; a filter that diverges is not consistent"
+        )
     nis = run.nis
-    counted = np.isfinite(nis) & (run.time >= run.time[0] + after)
+    counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
     found = int(counted.sum())
     if not 1 <= samples <= found:
         raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} to average")

@@ -12,6 +12,7 @@ from scipy.linalg import expm
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import slack_of
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.run import Run
 
@@ -91,7 +92,7 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     # from the position at the window's end to that of the sample some places before it
     to_earlier = np.broadcast_to(np.eye(4), (count, 4, 4)).copy()
     for lag in range(count):
-        ends = np.flatnonzero((time[lag:] - time[: count - lag]) <= window + 1e-9) + lag
+        ends = np.flatnonzero((time[lag:] - time[: count - lag]) <= window + slack_of(time)) + lag
         if not len(ends):
             break
         if lag:

@@ -18,6 +18,16 @@ TIME = sp.Symbol("t", real=True)
 """Time in seconds: a motion whose coefficients are expressions in nothing else is known at all times."""
 
 
+def slack_of(times: Values) -> float:
+    """By how many seconds two times may differ and still be the same one: a thousandth of the usual interval."""
+    return 1e-3 * float(np.median(np.diff(times)))
+
+
+def from_the_start(elapsed: Values, after: float) -> NDArray[np.bool_]:
+    """Which samples lie `after` seconds or more behind the first one, shape (K,)."""
+    return np.asarray(elapsed >= after - slack_of(elapsed))
+
+
 @dataclass(frozen=True, eq=False)
 class Signal:
     """Numbers known over time: constant, sampled, or given by a function.
@@ -83,7 +93,7 @@ class Signal:
             return _frozen(rows, "the signal's function values")
         if self.times is None or len(self.samples) == 1:
             return self.samples
-        slack = 1e-9 * max(1.0, float(np.abs(self.times).max()))
+        slack = slack_of(self.times)
         if times.size and (times.min() < self.times[0] - slack or times.max() > self.times[-1] + slack):
             raise ValueError(
                 f"the signal is known from {self.times[0]:.6g} to {self.times[-1]:.6g} s, but is asked for from "

@@ -55,6 +55,28 @@ class View(Protocol):
     def locate(self, coordinates: ArrayLike) -> Array:
         """Points of space, shape (..., 3) or (..., p, 3), that have the given coordinates."""
 
+    @property
+    def judged(self) -> str:
+        """What `relative_error` is an error of, in words."""
+
+    def relative_error(
+        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Largest relative error of what is sought, the same in any unit of length.
+
+        Parameters
+        ----------
+        truth, estimate : arrays of shape (K, n)
+            Coordinates.
+        known : array of shape (K, p) or (1, p)
+            Parameters of the known motion at the same times.
+
+        Returns
+        -------
+        array of shape (K,)
+            Infinite where the estimate is infinitely far away or behind the camera, NaN where there is none.
+        """
+
 
 class OnePoint(ABC):
     """A view of one point, so that there is once what there is once a point; it begins with what can be measured."""
@@ -64,8 +86,26 @@ class OnePoint(ABC):
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
         """Symbols of what can be measured."""
 
+    @abstractmethod
+    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+        """Inverse distances in 1/m, shape (...)."""
+
     point_shape: tuple[int, ...] = ()
 
     def outputs(self, coordinates: ArrayLike) -> Array:
         """What is measured, shape (..., m): the first of the coordinates, of shape (..., n)."""
         return np.asarray(coordinates, dtype=float)[..., : len(self.image_coordinates)]
+
+    @property
+    def judged(self) -> str:
+        """The distance."""
+        return "the distance"
+
+    def relative_error(
+        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """|estimated distance / true distance - 1|, shape (K,); see `View`."""
+        true, found = self.inverse(truth), self.inverse(estimate)
+        there = np.isfinite(estimate).all(axis=-1)
+        error = np.where(there, np.inf, np.nan)
+        return np.abs(np.divide(true, found, out=error + 1, where=there & (found > 0)) - 1)

@@ -22,7 +22,8 @@ from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
 from percept_obs.tracking.following import StepTooLong, track
-from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, TOLERANCE, VERDICTS
 
 
 class ObserverLab(Lab):
@@ -74,6 +75,7 @@ class ObserverLab(Lab):
             pictures=PICTURES,
             verdicts=dict(VERDICTS),
             settledPart=SETTLED_PART,
+            tolerance=TOLERANCE,
             remedy=REMEDY,
         )
 

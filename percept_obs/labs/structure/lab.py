@@ -29,7 +29,8 @@ from percept_obs.structure import (
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
-from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, VERDICTS
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""

@@ -1,6 +1,6 @@
 // What an observer may know at the instants of every step, laid out once; see tracking.py.
 
-import { INSTANTS, PLANT_STEP } from "./integrator.js";
+import { INSTANTS, PLANT_STEP, STEP_ROUNDING } from "./integrator.js";
 
 /** Rows that a step adds to a table of known signals; its end is the next one's start. */
 export const EACH = INSTANTS.length - 1;
@@ -11,7 +11,7 @@ export function stepGrid(times, longest) {
   const counts = new Int32Array(times.length - 1);
   for (let k = 0; k < counts.length; k++) {
     const interval = times[k + 1] - times[k];
-    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - 1e-9)) : 0;
+    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - STEP_ROUNDING)) : 0;
     index[k + 1] = index[k] + counts[k];
   }
   const grid = new Float64Array(index[index.length - 1] + 1);
