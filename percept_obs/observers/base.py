@@ -111,6 +111,32 @@ class Observer:
             raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
         return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
 
+    def in_units(self, length: float = 1.0, time: float = 1.0) -> Observer:
+        """The same observer with its gains' numbers taken to count in other units.
+
+        Parameters
+        ----------
+        length, time : float
+            The units in metres and in seconds, such as 30.0 where a point at 30 m stands for one at 1 m.
+
+        Raises
+        ------
+        ValueError
+            If one of them is not positive and finite.
+
+        Examples
+        --------
+        >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole
+        >>> observer = ibo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"), lyapunov=-0.5)
+        >>> next(gain.value for gain in observer.in_units(length=10.0).gains if gain.name == "lyapunov")
+        -0.005
+        """
+        for name, unit in (("length", length), ("time", time)):
+            if not 0 < unit < math.inf:
+                raise ValueError(f"the unit of {name} is {unit}; it must be positive and finite")
+        scaled = {g.name: g.value * length ** g.powers["m"] * time ** g.powers["s"] for g in self.gains}
+        return self.with_gains(**scaled)
+
     @property
     def gain_values(self) -> dict[sp.Symbol, float]:
         """Numbers of the gains by their letters."""

@@ -58,6 +58,16 @@ class Gain:
         if not self.condition.subs(self.symbol, sp.Float(value)):
             raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
 
+    @property
+    def powers(self) -> dict[str, int]:
+        """Powers of metres, "m", and seconds, "s", in the unit."""
+        above, _, below = self.unit.partition("/")
+        found = {"m": 0, "s": 0}
+        for sign, part in ((1, above), (-1, below.strip("()"))):
+            for name, _, power in (factor.partition("^") for factor in part.split() if factor != "1"):
+                found[name] += sign * int(power or 1)
+        return found
+
     def __str__(self) -> str:
         """Two lines of a docstring."""
         unit = "" if self.unit == "1" else f", in {self.unit}"

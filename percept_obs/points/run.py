@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.points.conditions import Conditions, conditions
-from percept_obs.system.view import View
+from percept_obs.points.form import PointsForm
+from percept_obs.points.information import many_points
 from percept_obs.tracking import Run
+from percept_obs.tracking.information import Fit
 
 Array = NDArray[np.float64]
 
@@ -41,9 +43,9 @@ class PointsRun(Run):
     P: Array
 
     @property
-    def view(self) -> View:
+    def view(self) -> PointsForm:
         """The form that the observer believes in."""
-        view: View = self.observer.form
+        view: PointsForm = self.observer.form
         return view
 
     @property
@@ -76,6 +78,10 @@ class PointsRun(Run):
     def remedy(self) -> str:
         """What to do about it if it diverged."""
         return REMEDY
+
+    @property
+    def _least_squares(self) -> Fit:
+        return many_points(self.view, self.recording)
 
     def decay_rate(self, begin: float = -math.inf, end: float = math.inf) -> float:
         """Rate of the exponential fitted to the error's norm between two times, in 1/s; positive where it shrinks.

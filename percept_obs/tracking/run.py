@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +16,8 @@ from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
 from percept_obs.tracking.course import Hold
-from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, in_words, outcome
+from percept_obs.tracking.information import NOTHING, Fit, Information, gathered, one_point, relative_deviation
+from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, outcome
 
 Array = NDArray[np.float64]
 
@@ -162,6 +163,53 @@ class Run:
         """
         return self.view.relative_error(self.truth, self.estimate, self.recording.motion.known(self.time))
 
+    @cached_property
+    def information(self) -> Information:
+        """What the samples tell at the end, whatever the observer makes of them; it needs no truth."""
+        return gathered(self._least_squares, self.elapsed, self.estimate[-1])
+
+    @property
+    def _least_squares(self) -> Fit:
+        return one_point(self.observer.form, self.recording)
+
+    def trust(self, tolerance: float = TOLERANCE) -> Trust:
+        """Whether the last estimate can be trusted, by what can be known without a truth.
+
+        It can where the samples by themselves tell what is sought to within the tolerance, with two standard
+        deviations, and the estimate is no farther than both together from what they tell.  A wrong scale of the known
+        motion leaves no trace in them.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative, as for `outcome`.
+
+        Examples
+        --------
+        >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+        >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+        >>> track(record(scenarios.ma2005_eq35(), 5), ibo(form)).trust().kind
+        'agrees'
+        """
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+        known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
+        said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
+        if not np.isfinite(last).all():
+            return said("no estimate")
+        if not view.point_shape and not view.inverse(last) > 0:
+            return said("nowhere")
+        if self.observer.covariance is not None:
+            claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
+            said = partial(said, claimed=relative_deviation(view, last, claims, known))
+        found = self.information
+        said = partial(said, information=found)
+        if not 2 * found.deviation <= tolerance:
+            return said("vague" if found.deviation < NOTHING else "hidden")
+        difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
+        agrees = difference <= tolerance + 2 * found.deviation
+        return said("agrees" if agrees else "differs", difference=difference)
+
     @property
     def remedy(self) -> str:
         """What to do about it if it diverged."""
@@ -235,6 +283,7 @@ class Run:
             return VERDICTS["diverged"].format(time=time, remedy=self.remedy)
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=f"{self.elapsed[-1]:.3g}")
+            said += "" if names else str(self.trust(tolerance))
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._besides()

@@ -10,6 +10,8 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.tracking.information import Information
+
 Array = NDArray[np.float64]
 
 REMEDY = "choose smaller gains or shorter steps"
@@ -25,6 +27,9 @@ then hardly ever leave, and what an observer that is off by a fifth never enters
 SETTLED_PART = 0.1
 """Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
 
+FAR_OFF = 10.0
+"""Relative error beyond which no number is told."""
+
 VERDICTS = MappingProxyType(
     {
         "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
@@ -37,6 +42,17 @@ VERDICTS = MappingProxyType(
             "the end to be sure of"
         ),
         "converged": "converged: the {error_of} of {judged} stays within {tolerance} after {time} s",
+        "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",
+        "differs": (
+            "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
+            "to within {within} (2σ)"
+        ),
+        "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
+        "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
+        "no estimate": "; do not trust it: there is no estimate at the end",
+        "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
+        "unexcited": ", hardly excited since {begin} s",
+        "claimed": "; it claims {claimed} (2σ)",
         "relative": "relative error",
         "absolute": "error",
         "reset once": "; driven to the bound and reset once, at {time} s",
@@ -71,6 +87,54 @@ class Outcome:
     def converged(self) -> bool:
         """Whether it stayed inside for at least the last tenth of the run."""
         return self.kind == "converged"
+
+
+@dataclass(frozen=True, eq=False)
+class Trust:
+    """What can be said of the last estimate without a truth; its text begins where a sentence is to go on.
+
+    Parameters
+    ----------
+    kind : str
+        "agrees" (with what the samples tell), "differs", "vague" (they tell too little), "hidden" (they tell nothing),
+        "nowhere" (the estimate is infinitely far away or behind the camera) or "no estimate".
+    judged : str
+        What the estimate is of.
+    length : float
+        Seconds that the run lasts.
+    information : Information, optional
+        What the samples tell.
+    difference : float
+        How far the estimate is from that, relatively; NaN where they tell too little.
+    claimed : float, optional
+        The relative standard deviation that the observer claims, if it claims one.
+    """
+
+    kind: str
+    judged: str
+    length: float
+    information: Information | None = None
+    difference: float = math.nan
+    claimed: float | None = None
+
+    @property
+    def trusted(self) -> bool:
+        """Whether the estimate agrees with what the samples tell well enough."""
+        return self.kind == "agrees"
+
+    def __str__(self) -> str:
+        """What is known, in words."""
+        words = {"judged": self.judged, "difference": percent(self.difference)}
+        if self.information is None:
+            return VERDICTS[self.kind]
+        window, unexcited = self.information.window, self.information.unexcited
+        words |= {"window": f"{window:.3g}", "within": percent(2 * self.information.deviation)}
+        said = VERDICTS[self.kind].format(**words)
+        if unexcited >= SETTLED_PART * self.length:
+            said += VERDICTS["unexcited"].format(begin=f"{self.length - unexcited:.3g}")
+        if self.claimed is not None:
+            said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
+        return said
 
 
 def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:
@@ -108,6 +172,6 @@ def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str]
     )
 
 
-def percent(share: float, digits: int = 2) -> str:
-    """A share in per cent."""
-    return f"{100 * share:.{digits}g} %"
+def percent(share: float, digits: int = 3) -> str:
+    """A share in per cent, with an end to how far off one is told to be."""
+    return f"{100 * share:.{digits}g} %" if share <= FAR_OFF else f"more than {100 * FAR_OFF:g} %"
