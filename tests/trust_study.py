@@ -56,7 +56,11 @@ def judged(seed):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         run = track(recording, observer, guess)
-        blind = track(replace(recording, truth=None, noise_variance=recording.noise_variance if seed % 2 else None, signal=None), observer, guess)
+        blind = track(
+            replace(recording, truth=None, noise_variance=recording.noise_variance if seed % 2 else None, signal=None),
+            observer,
+            guess,
+        )
     error = float(run.relative_error[-1]) if run.diverged_at is None else np.nan
     return error, blind.trust().trusted, f"{observer.name} {observer.form.measured}: {blind.verdict()}"
 
@@ -73,7 +77,9 @@ def figures(seeds):
 
 if __name__ == "__main__":
     missed, alarms, wrong, right, *sentences = figures(range(200))
-    print(f"wrong by more than 20 % and trusted: {missed:.1%} of {wrong}; right within 5 % and not: {alarms:.1%} of {right}")
+    print(
+        f"wrong by more than 20 % and trusted: {missed:.1%} of {wrong}; right within 5 % and not: {alarms:.1%} of {right}"
+    )
     for each in sentences:
         print(*each, sep="\n")
         print("--")

@@ -14,7 +14,7 @@ from percept_obs.compile import Array, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.inversion import Unobservable
-from percept_obs.observers.parts import hats
+from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 
@@ -72,7 +72,8 @@ class Observer:
         Estimates of ``form.coordinates``, from the state, the measured outputs, the parameters and the gains.
     gains : tuple of Gain
     start : tuple of expressions
-        The state at the first sample, from that sample, the estimates asked for (`hats`), parameters and gains.
+        The state at the first sample, from that sample, the estimates asked for (`hats`), whether these are the sample
+        itself (`first_seen`), parameters and gains.
     covariance : matrix of expressions, optional
         Covariance of the estimate, from the state, if the observer claims one.
     about : About, optional
@@ -210,6 +211,8 @@ class Observer:
         asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
         known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
         known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
+        seen = zip(self.form.measured, first_seen(self.form), strict=True)
+        known |= {symbol: float(name not in given) for name, symbol in seen}
         missing = sorted(str(s) for s in sp.Tuple(*self.start).free_symbols - set(known))
         if missing:
             raise ValueError(f"the start of the {self.name} observer needs {', '.join(missing)}; pass parameters=")

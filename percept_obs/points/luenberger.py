@@ -36,6 +36,7 @@ class LuenbergerObserver:
     form: PointsForm
     P: LyapunovMatrix
     about: ClassVar[About] = ABOUT
+    covariance: ClassVar[None] = None
 
     @property
     def name(self) -> str:

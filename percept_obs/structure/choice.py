@@ -16,7 +16,7 @@ from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.system.view import OnePoint, View
+from percept_obs.system.view import DISTANCE, OnePoint, View
 
 y1, y2, ybar3 = OUTPUTS = sp.symbols("y1 y2 ybar3", real=True)
 d_s = sp.Symbol("d_s", real=True)
@@ -320,7 +320,7 @@ class StructureAndMotion(OnePoint):
     @property
     def judged(self) -> str:
         """What is unknown; with the scale, the distance."""
-        return ", ".join("the distance" if name == d_s.name else name for name in self.unknown)
+        return ", ".join(DISTANCE if name == d_s.name else name for name in self.unknown)
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """Largest relative error of the unknowns, shape (K,); see `View`.

@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
 
+DISTANCE = "the distance"
+"""What verdicts judge of a point; live labs use the same words."""
+
 
 class View(Protocol):
     """Measured and hidden coordinates of what is seen.
@@ -99,7 +102,7 @@ class OnePoint(ABC):
     @property
     def judged(self) -> str:
         """The distance."""
-        return "the distance"
+        return DISTANCE
 
     def relative_error(
         self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]

@@ -131,12 +131,15 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, along.grid)
     known = _known(along, believed)
+    given = _named(start, form.coordinates)
     initial = observer.initial_state(
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
-        _named(start, form.coordinates),
+        given,
         dict(zip(form.parameters, known[0].tolist(), strict=True)),
     )
-    table = Table(along.steps, along.held(filled=True)[..., columns], known, along.arriving(samples))
+    arriving = along.arriving(samples)
+    arriving[0, [name not in given for name in form.measured]] = np.nan  # a sample that is the start corrects nothing
+    table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
     at_samples = known if len(known) == 1 else known[EACH * index]

@@ -118,8 +118,8 @@ class Run:
     def nis(self) -> Array:
         """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
 
-        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost, or
-        where P equals R to rounding.  With the residual r after the update, its covariance R - P and
+        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost or is the
+        start itself, or where P equals R to rounding.  With the residual r after the update, its covariance R - P and
         r = R S^-1 (innovation), the squared innovation is r^T (R - P)^-1 r.
 
         Raises

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,11 @@ VERDICTS = MappingProxyType(
     }
 )
 """What a verdict says, by what happened; live labs use the same words.  Times count from the first sample."""
+
+
+def for_the_page() -> dict[str, Any]:
+    """The same words and numbers for live labs."""
+    return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,10 @@ from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, stan
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
+from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, TOLERANCE, VERDICTS
+from percept_obs.tracking.verdict import REMEDY, for_the_page
 
 
 class ObserverLab(Lab):
@@ -73,9 +74,8 @@ class ObserverLab(Lab):
             scenarios={name: {"title": s.name, **known[name]} for name, s in offered.items()},
             recordings={n: track_for_the_page(r, tracks[n].motion.name) for n, r in self._recordings.items()},
             pictures=PICTURES,
-            verdicts=dict(VERDICTS),
-            settledPart=SETTLED_PART,
-            tolerance=TOLERANCE,
+            **for_the_page(),
+            judged=DISTANCE,
             remedy=REMEDY,
         )
 

@@ -52,10 +52,9 @@ def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
 
 
 def _consistency_in_words(run: Run) -> str:
-    if not np.isfinite(run.nis[1:]).any():
-        return f"{run.observer.name}: there is no complete sample after the first to test its innovations by."
-    # the estimate starts from the first sample, which therefore tells nothing
-    found = check_consistency(run, samples=1, after=float(run.time[1] - run.time[0]) / 2)
+    if not np.isfinite(run.nis).any():
+        return f"{run.observer.name}: there is no complete sample besides its start to test its innovations by."
+    found = check_consistency(run, samples=1)
     return f"{run.observer.name}: it is {found.summary}."
 
 
