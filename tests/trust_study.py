@@ -77,9 +77,8 @@ def figures(seeds):
 
 if __name__ == "__main__":
     missed, alarms, wrong, right, *sentences = figures(range(200))
-    print(
-        f"wrong by more than 20 % and trusted: {missed:.1%} of {wrong}; right within 5 % and not: {alarms:.1%} of {right}"
-    )
+    print(f"wrong by more than 20 % and trusted: {missed:.1%} of {wrong}")
+    print(f"right within 5 % and not trusted: {alarms:.1%} of {right}")
     for each in sentences:
         print(*each, sep="\n")
         print("--")
