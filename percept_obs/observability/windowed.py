@@ -8,7 +8,7 @@ import numpy as np
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import from_the_start, slack_of
 
 
@@ -57,9 +57,9 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     """
     from scipy.integrate import cumulative_trapezoid
 
-    form, time = form.canonical_form(), recording.time
+    time = recording.time
     check_window(recording, window)
-    gathered = cumulative_trapezoid(_information(form, recording), time, axis=0, initial=0)
+    gathered = cumulative_trapezoid(information_along(form, recording), time, axis=0, initial=0)
     ends = time[from_the_start(recording.elapsed, window)]
     begins = np.maximum(ends - window, time[0])
     flat = gathered.reshape(len(time), -1)
@@ -81,8 +81,9 @@ def check_window(recording: Recording, window: float) -> None:
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
 
 
-def _information(form: CanonicalForm, recording: Recording) -> Array:
-    """The matrix w w^T at the samples, shape (K, n2, n2)."""
+def information_along(form: PartitionedSystem, recording: Recording) -> Array:
+    """The matrix w w^T at the samples, shape (K, n2, n2); see `windowed`."""
+    form = form.canonical_form()
     source = recording.outputs if recording.truth is None else recording.truth
     names = recording.names if source is recording.outputs else tuple(map(str, recording.view.coordinates))
     columns = [source[:, names.index(name)] for name in form.measured]

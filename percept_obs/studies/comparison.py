@@ -195,13 +195,15 @@ def relative_distance_errors(
     Raises
     ------
     ValueError
-        If the time is negative, no sighting of a run lasts as long, or a recording has no such reference.
+        If the time is negative, no sighting lasts as long, or a recording has no such reference.
     """
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     errors: list[float] = []
+    sources: list[str] = []
     for run in runs:
-        recording, count = run.recording, len(errors)
+        sources.append(repr(run.recording.source))
+        recording = run.recording
         shape = (len(recording.time), -1)
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
@@ -210,8 +212,8 @@ def relative_distance_errors(
             if len(later) and (points is None or sighting.point in points):
                 place = (later[0], sighting.point)
                 errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
-        if len(errors) == count:
-            raise ValueError(f"no sighting in the recording {recording.source!r} lasts {after} s")
+    if not errors:
+        raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s")
     return np.array(errors)
 
 
@@ -220,6 +222,7 @@ def best_setting(
     observers: Iterable[Observer],
     follow: Callable[[Recording, Observer], Run],
     after: Sequence[float] = (2.0,),
+    reference: str = "truth",
 ) -> Observer:
     """The observer whose median relative distance error is least, added up over the given times.
 
@@ -228,18 +231,31 @@ def best_setting(
     Parameters
     ----------
     recordings : sequence of Recording
-        With a truth.
+        With a truth or the reference; those that end too early do not count.
     observers : iterable of Observer
         One structure with different gains, or several structures.
     follow : function of (recording, observer)
         How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
     after : sequence of float
         Seconds since the first sample.
+    reference : str
+        "truth", or the name of a measured distance of the recordings.
+
+    Raises
+    ------
+    ValueError
+        If there are no recordings, observers or times, or no recording lasts as long.
     """
+    observers = list(observers)
+    if not (len(recordings) and observers and len(after)):
+        raise ValueError(
+            f"{len(recordings)} recordings, {len(observers)} observers and {len(after)} times: at least one of each is "
+            "needed to choose the best"
+        )
 
     def score(observer: Observer) -> float:
         runs = [follow(recording, observer) for recording in recordings]
-        total = float(sum(np.median(relative_distance_errors(runs, seconds)) for seconds in after))
+        total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
     return min(observers, key=score)
