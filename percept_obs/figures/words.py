@@ -27,7 +27,7 @@ def span(values: ArrayLike) -> str:
 
 def times(run: Run) -> str:
     """From when to when a run goes."""
-    return f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
+    return f"{run.elapsed[0]:.4g} to {run.elapsed[-1]:.4g} s"
 
 
 def place(coordinates: Array) -> str:
@@ -85,5 +85,5 @@ def story(run: Run, tolerance: float = TOLERANCE) -> str:
         f"{verdict[0].upper()}{verdict[1:]}.",
         f"Before that it was reset {resets}." if diverged and len(run.resets) else "",
         f"From there on {missing} estimates are missing: the curve ends." if missing else "",
-        f"{lost} of {len(run.time)} samples were lost." if lost else "",
+        f"{lost} of {len(run.elapsed)} samples were lost." if lost else "",
     )
