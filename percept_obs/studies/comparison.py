@@ -61,7 +61,7 @@ def compare(
     -------
     pandas.DataFrame
         One row for a recording and an observer, with errors of the inverse distance in 1/m: observer, recording,
-        outcome (a kind of `Outcome`), settling_time (s, infinite if it ends outside), final, rms, worst (after the
+        outcome (a kind of `Outcome`), settling_time (s, infinite if it has not converged), final, rms, worst (after the
         given time), resets, diverged_at (s since the first sample, infinite if it does not), cost (s of computing for
         a s of data).
 
@@ -98,7 +98,7 @@ def compare(
                 "observer": label,
                 "recording": recording.source,
                 "outcome": found.kind,
-                "settling_time": found.settled,
+                "settling_time": found.settled if found.converged else math.inf,
                 "final": _known(error[-1]),
                 "rms": _known(math.sqrt(np.mean(late**2))),
                 "worst": _known(late.max()),
@@ -130,7 +130,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     observers = table.groupby("observer", sort=False)
     found = {
         "runs": observers.size(),
-        "failed": observers["outcome"].agg(lambda kinds: (kinds != "converged").sum()),
+        "failed": observers["settling_time"].agg(lambda times: np.isinf(times).sum()),
         "reset": observers["resets"].agg(lambda counts: (counts > 0).sum()),
         "diverged": observers["diverged_at"].agg(lambda times: np.isfinite(times).sum()),
     }

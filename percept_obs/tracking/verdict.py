@@ -128,6 +128,11 @@ class Trust:
         """Whether the estimate agrees with what the samples tell well enough."""
         return self.kind == "agrees"
 
+    @property
+    def sentence(self) -> str:
+        """What is known, in a sentence."""
+        return f"{str(self).removeprefix('; ')}."
+
     def __str__(self) -> str:
         """What is known, in words."""
         words = {"judged": self.judged, "difference": percent(self.difference)}

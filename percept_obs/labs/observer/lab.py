@@ -110,11 +110,11 @@ class ObserverLab(Lab):
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
         observers = {name: (*seen, name, _way(settings, name)) for name in settings["observers"]}
-        told = [name for name, observer in observers.items() if has_words(observer)]
         try:
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
         except BehindCamera as error:
             return {"sentences": [str(error)]}
+        told = [name for name, observer in observers.items() if recording.truth is None or has_words(observer)]
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(form_of(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:

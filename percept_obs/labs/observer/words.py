@@ -42,11 +42,14 @@ def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """What is to be said of one observer's run; nothing where it diverged."""
     if run.diverged_at is not None:
         return []
+    if run.recording.truth is None:
+        sentences = [f"{run.observer.name}: {run.trust().sentence}"]
+        return [*sentences, _consistency_in_words(run)] if run.observer.covariance is not None else sentences
     if run.observer.covariance is not None:
         spread = f"{2 * np.sqrt(max(0.0, run.covariance[-1, -1, -1])):.2g} (2σ) at the end"
         claim = f"{run.observer.name}: it claims to know the inverse distance to within {spread}."
         return [claim, _consistency_in_words(run)]
-    if run.recording.truth is None or not _can_be_linearised(chosen):
+    if not _can_be_linearised(chosen):
         return []
     return _error_in_words(chosen, run, window)
 
