@@ -27,20 +27,23 @@ from percept_obs import (
     luenberger,
     pinhole,
     record,
+    rigid,
     scenarios,
     smo,
     track,
     windowed,
 )
-from percept_obs.observers import OBSERVERS, range_identification
+from percept_obs.observers import OBSERVERS, linear_approximation, range_identification
 from percept_obs.points import constant, riccati
 from percept_obs.points.scenarios import moving_body
+from percept_obs.recording import Unlikely
 from percept_obs.structure import ScaledDepthCamera
 from percept_obs.structure.scenarios import chwa2019_simulation
 from percept_obs.studies.comparison import best_setting, compare, relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import choose_and_report, own_length, side_by_side
 from percept_obs.system.motion import Signal
+from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.verdict import SETTLED_PART, TOLERANCE, outcome
 
 REST = Scenario("at rest", affine(np.zeros((3, 3)), [0, 0, 0]), (1, 2, 30), 5, pinhole())
@@ -353,3 +356,25 @@ def test_what_makes_no_sense_is_refused():
     recording = Recording(run.time, run.recording.outputs, ("y1", "y2"), pinhole(), run.recording.motion)
     with pytest.raises(ValueError, match="no truth"):
         track(recording, ibo(ONE)).outcome()
+
+
+def test_pixels_and_a_hole_in_the_motion_are_noticed():
+    recording = record(scenarios.ma2005_eq35(), 5)
+    with pytest.warns(Unlikely, match="are they pixels"):
+        replace(recording, outputs=600 + 500 * recording.outputs, signal=None, truth=None)
+    times = np.linspace(0, 5, 101)
+    times = times[(times < 2) | (times > 3.5)]
+    zero = np.zeros(3)
+    with pytest.warns(Unlikely, match=r"between 1.95 and 3.55 s after the first sample the motion was not sampled"):
+        replace(recording, motion=rigid(np.tile(zero, (len(times), 1)), zero, zero, times))
+
+
+@pytest.mark.parametrize(("weight", "resolved"), [(0.0025, False), (0.005, False), (0.0055, True), (0.02, True)])
+def test_a_cascade_that_a_step_does_not_resolve_says_so(weight, resolved):
+    """Its gain begins at P0 / R; the loop blows up where that is more than the step can follow."""
+    recording, observer = record(scenarios.ma2005_eq35(), 1), linear_approximation(BOTH, process_weight=0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = track(recording, observer.with_gains(measurement_weight=weight))
+    assert (run.diverged_at is None) == resolved
+    assert [each.category for each in caught] == ([] if resolved else [StepTooLong])

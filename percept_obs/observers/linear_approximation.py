@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from percept_obs.observers.base import FastestRate
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
@@ -83,7 +84,10 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
         flow += [*rate, *(P_rate[i, j] for i, j in upper)]
         start += [*hats(x), *(P0 * weights[i] if i == j else sp.S.Zero for i, j in upper)]
         previous = dict(zip(form.x2, estimate[n1:], strict=True))
-    return Derived(tuple(state), tuple(flow), tuple(start), estimate)
+    # where w is small P' = Q - P^2 / R, so that the gain P / R falls from P0 / R to sqrt(Q / R)
+    rate = P0 / R + sp.sqrt(Q / R)
+    remedy = "take a larger measurement_weight or a smaller start_weight"
+    return Derived(tuple(state), tuple(flow), tuple(start), estimate, fastest=FastestRate(rate, remedy))
 
 
 def _symmetric(size: int, number: int) -> sp.Matrix:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -14,6 +15,17 @@ from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
+
+
+LARGEST_USUAL = 20.0
+"""Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
+
+HOLE = 10
+"""Times the usual interval of a sampled motion that make a hole in it."""
+
+
+class Unlikely(UserWarning):
+    """What a recording holds can be followed, but is hardly what was meant."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +71,11 @@ class Recording:
     source : str
         Where the recording comes from, its settings and its seed.
 
+    Warns
+    -----
+    Unlikely
+        If the samples look like pixels, or a sampled motion has a hole while it is needed.
+
     Raises
     ------
     BehindCamera
@@ -92,6 +109,28 @@ class Recording:
             if values.shape != expected or not (np.isnan(values) | (np.isfinite(values) & (values > 0))).all():
                 raise ValueError(f"the distances {name!r} must be positive numbers or NaN, of shape {expected}")
         self.motion.known(self.time[[0, -1]])
+        for doubt in self._doubts():
+            warnings.warn(Unlikely(doubt), stacklevel=3)
+
+    def _doubts(self) -> Iterator[str]:
+        """What is hardly meant: pixels for image coordinates, a hole in the motion."""
+        seen = np.abs(self.outputs[np.isfinite(self.outputs)])
+        if isinstance(self.view, ImagingSurface) and len(seen) and np.median(seen) > LARGEST_USUAL:
+            yield (
+                f"half of the samples of {', '.join(self.names)} lie beyond {LARGEST_USUAL:g} focal lengths, up to "
+                f"{seen.max():.4g}: are they pixels? Subtract the principal point and divide by the focal length"
+            )
+        times = None if self.motion.signal is None else self.motion.signal.times
+        if times is None or len(times) < 3:
+            return
+        gaps = np.diff(times)
+        holes = (gaps > HOLE * np.median(gaps)) & (times[1:] > self.time[0]) & (times[:-1] < self.time[-1])
+        for k in np.flatnonzero(holes)[:1]:
+            yield (
+                f"between {times[k] - self.time[0]:.4g} and {times[k + 1] - self.time[0]:.4g} s after the first sample "
+                f"the motion was not sampled, {gaps[k] / np.median(gaps):.3g} times its usual interval; it is taken to "
+                "change evenly there: cut the recording with between(), or fill the hole"
+            )
 
     def _check_times(self) -> None:
         time = self.time

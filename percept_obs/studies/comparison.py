@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
@@ -16,7 +17,7 @@ from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.motion import from_the_start, slack_of
-from percept_obs.tracking.following import track
+from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 
@@ -254,7 +255,9 @@ def best_setting(
         )
 
     def score(observer: Observer) -> float:
-        runs = [follow(recording, observer) for recording in recordings]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
+            runs = [follow(recording, observer) for recording in recordings]
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
