@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.points.form import PointsForm
 from percept_obs.recording import Recording
 from percept_obs.tracking.information import FINEST, ROUNDING, Fit
-
-Array = NDArray[np.float64]
 
 LARGEST_TABLE = 4_000_000
 """Entries at most of the table of transitions; of more samples every so many are taken."""
@@ -74,7 +72,7 @@ def _backwards(form: PointsForm, time: Array) -> Array:
     return np.stack(found)
 
 
-def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, there: NDArray[np.bool_], noise: float) -> float:
+def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, there: Flags, noise: float) -> float:
     """Standard deviation of the position of the point that is known least, relative to its distance."""
     spread = np.linalg.norm(form.blocks @ vectors, axis=1)  # of each point along each direction of the state
     if (spread[:, ~there] > ROUNDING).any():

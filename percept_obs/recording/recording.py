@@ -16,7 +16,6 @@ from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
 
-
 LARGEST_USUAL = 20.0
 """Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
 

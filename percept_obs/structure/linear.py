@@ -88,9 +88,7 @@ class LinearView(OnePoint):
         """As of the choice."""
         return self.choice.judged
 
-    def relative_error(
-        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """As of the choice."""
         return self.choice.relative_error(self._ybar(truth), self._ybar(estimate), known)
 

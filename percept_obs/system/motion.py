@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import Array
+from percept_obs.compile import Array, Flags
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
@@ -18,12 +18,12 @@ TIME = sp.Symbol("t", real=True)
 """Time in seconds: a motion whose coefficients are expressions in nothing else is known at all times."""
 
 
-def slack_of(times: Values) -> float:
+def slack_of(times: Array) -> float:
     """By how many seconds two times may differ and still be the same one: a thousandth of the usual interval."""
     return 1e-3 * float(np.median(np.diff(times)))
 
 
-def from_the_start(elapsed: Values, after: float) -> NDArray[np.bool_]:
+def from_the_start(elapsed: Array, after: float) -> Flags:
     """Which samples lie `after` seconds or more behind the first one, shape (K,)."""
     return np.asarray(elapsed >= after - slack_of(elapsed))
 

@@ -62,9 +62,7 @@ class View(Protocol):
     def judged(self) -> str:
         """What `relative_error` is an error of, in words."""
 
-    def relative_error(
-        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """Largest relative error of what is sought, the same in any unit of length.
 
         Parameters
@@ -90,7 +88,7 @@ class OnePoint(ABC):
         """Symbols of what can be measured."""
 
     @abstractmethod
-    def inverse(self, coordinates: ArrayLike) -> NDArray[np.float64]:
+    def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...)."""
 
     point_shape: tuple[int, ...] = ()
@@ -104,9 +102,7 @@ class OnePoint(ABC):
         """The distance."""
         return DISTANCE
 
-    def relative_error(
-        self, truth: NDArray[np.float64], estimate: NDArray[np.float64], known: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """|estimated distance / true distance - 1|, shape (K,); see `View`."""
         true, found = self.inverse(truth), self.inverse(estimate)
         there = np.isfinite(estimate).all(axis=-1)

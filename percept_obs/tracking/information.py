@@ -7,17 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percept_obs.compile import Table, solve
+from percept_obs.compile import Array, Table, solve
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH, LONGEST_STEP, instants
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
-
-Array = NDArray[np.float64]
 
 ENOUGH = 0.02
 """Relative standard deviation at which no more samples are asked: a longer window only adds what the motion misses."""

@@ -9,11 +9,9 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array
 from percept_obs.tracking.information import Information
-
-Array = NDArray[np.float64]
 
 REMEDY = "choose smaller gains or shorter steps"
 """What to do about a run that diverged."""
