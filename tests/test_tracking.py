@@ -52,7 +52,7 @@ def test_settling_time_is_when_the_error_stays_inside():
     run = track(RECORDING, ibo(BOTH), ZERO)
     settled = run.settling_time(0.05)
     relative = np.abs(run.distance / RECORDING.distance - 1)
-    np.testing.assert_allclose(run.relative_error, relative, rtol=1e-12)
+    np.testing.assert_allclose(run.relative_error, relative, rtol=1e-12, atol=1e-15)
     absolute = np.abs(run.error[:, 2])
     for error, found in ((relative, settled), (absolute, run.settling_time(0.05, "y3"))):
         outside = error >= 0.05

@@ -369,7 +369,7 @@ def test_pixels_and_a_hole_in_the_motion_are_noticed():
         replace(recording, motion=rigid(np.tile(zero, (len(times), 1)), zero, zero, times))
 
 
-@pytest.mark.parametrize(("weight", "resolved"), [(0.0025, False), (0.005, False), (0.0055, True), (0.02, True)])
+@pytest.mark.parametrize(("weight", "resolved"), [(0.0025, False), (0.0055, False), (0.006, True), (0.02, True)])
 def test_a_cascade_that_a_step_does_not_resolve_says_so(weight, resolved):
     """Its gain begins at P0 / R; the loop blows up where that is more than the step can follow."""
     recording, observer = record(scenarios.ma2005_eq35(), 1), linear_approximation(BOTH, process_weight=0)

@@ -84,8 +84,8 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
         flow += [*rate, *(P_rate[i, j] for i, j in upper)]
         start += [*hats(x), *(P0 * weights[i] if i == j else sp.S.Zero for i, j in upper)]
         previous = dict(zip(form.x2, estimate[n1:], strict=True))
-    # where w is small P' = Q - P^2 / R, so that the gain P / R falls from P0 / R to sqrt(Q / R)
-    rate = P0 / R + sp.sqrt(Q / R)
+    # where w is small P' = Q - P^2 / R: a step of 1.74 R / P0, a little below the 2 of a linear decay, makes P negative
+    rate = sp.Rational(7, 6) * P0 / R + sp.sqrt(Q / R)
     remedy = "take a larger measurement_weight or a smaller start_weight"
     return Derived(tuple(state), tuple(flow), tuple(start), estimate, fastest=FastestRate(rate, remedy))
 
