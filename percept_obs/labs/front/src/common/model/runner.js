@@ -15,6 +15,15 @@ export class Runner {
     this.room = (part, length) => this.memory.room(part, length);
   }
 
+  /**
+   * The relative error of what is sought, as the view's relative_error() in Python; each lab seeks something else.
+   *
+   * @returns {Float64Array}
+   */
+  relativeError(_result, _estimate) {
+    throw new Error("a lab says what its verdicts judge");
+  }
+
   /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
   layOut({ time, outputs, measured, sampled }, lines, known, hold, exact, own) {
     const { grid, index } = lines;

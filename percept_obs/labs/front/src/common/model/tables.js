@@ -145,6 +145,13 @@ export function knownAt(motion, shape, places) {
   return { rows, width, varying: true };
 }
 
+/** By how many seconds two times may differ and still be the same one, as slack_of() in Python. */
+export function slackOf(time) {
+  const gaps = Float64Array.from({ length: time.length - 1 }, (_, k) => time[k + 1] - time[k]).sort();
+  const middle = (gaps.length - 1) / 2;
+  return (1e-3 * (gaps[Math.floor(middle)] + gaps[Math.ceil(middle)])) / 2;
+}
+
 /** The last sample that is not after a time. */
 export function sampleAt(time, when) {
   let [low, high] = [0, time.length - 1];
