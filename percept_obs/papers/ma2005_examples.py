@@ -126,7 +126,9 @@ def converges(number: int, *runs: tuple[str, str]) -> Check:
 def slower_with_one_output(printed: Printed) -> Finding:
     """Section 5: on (36) each observer settles later with y1 alone, with every seed."""
     times = {
-        (name, outputs): [followed(36, name, outputs, seed).settling_time(0.05, *FORMS[outputs].hidden) for seed in SEEDS]
+        (name, outputs): [
+            followed(36, name, outputs, seed).settling_time(0.05, *FORMS[outputs].hidden) for seed in SEEDS
+        ]
         for name in OBSERVERS
         for outputs in FORMS
     }
