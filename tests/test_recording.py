@@ -91,7 +91,7 @@ def test_the_numbers_are_those_of_the_reference_mersenne_twister():
 
 @pytest.mark.parametrize("seed", [-1, 1.5, "x", True, 2**32, None])
 def test_a_seed_that_is_none_is_refused(seed):
-    with pytest.raises(ValueError, match="neither a numpy Generator nor a whole number"):
+    with pytest.raises(ValueError, match=r"seed .*whole number"):
         record(scenarios.ma2005_eq35(), 1, NOISY, seed=seed)
 
 

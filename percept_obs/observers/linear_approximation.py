@@ -2,12 +2,16 @@
 
 import sympy as sp
 
+from percept_obs.border import limit, refuse_kind
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
 
 Q, R, P0 = sp.symbols("Q R P0", real=True)
+MOST_ITERATES = 100
+"""Filters in a cascade: their equations are derived within a few seconds."""
+
 WEIGHT, DIVIDES = "it is a weight", "the gain divides by it"
 
 
@@ -54,8 +58,10 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
     With Q = 0 the estimate never settles.
     """
-    if not isinstance(iterates, int) or iterates < 1:
+    refuse_kind("linear_approximation", "iterates", iterates, int)
+    if iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
+    limit(iterates, "iterates", "take fewer", MOST_ITERATES)
     x, n1 = (*form.x1, *form.x2), len(form.x1)
     size = len(x)
     jacobian = form.g.jacobian(form.x2).expand()

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
@@ -28,6 +29,7 @@ MEASURES = ("settling_time", "final", "rms", "worst", "cost")
 """Columns of `compare` of which a summary has the median and quantiles."""
 
 
+@checked
 def compare(
     recordings: Sequence[Recording],
     observers: Mapping[str, Observer] | Sequence[Observer],
@@ -102,6 +104,7 @@ def compare(
     return pd.DataFrame(rows)
 
 
+@checked
 def summary(table: pd.DataFrame) -> pd.DataFrame:
     """What `compare` found, an observer a row.
 
@@ -132,6 +135,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found).rename_axis(None)
 
 
+@checked
 def described(found: pd.DataFrame) -> str:
     """A summary as text: counts, and medians with their quantiles."""
     import pandas as pd
@@ -157,6 +161,7 @@ def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -
     return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
 
 
+@checked
 def relative_distance_errors(
     runs: Iterable[Run],
     after: float,
@@ -195,6 +200,10 @@ def relative_distance_errors(
     for run in runs:
         recording, count = run.recording, len(errors)
         shape = (len(recording.time), -1)
+        there = set(range(recording.seen[0].size))
+        asked = set(points) if isinstance(points, Iterable) else there
+        if not asked <= there:
+            raise ValueError(f"the points {sorted(asked - there)} are not there; there are 0 to {max(there)}")
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
             samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
@@ -203,10 +212,13 @@ def relative_distance_errors(
                 place = (later[0], sighting.point)
                 errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
         if len(errors) == count:
-            raise ValueError(f"no sighting in the recording {recording.source!r} lasts {after} s")
+            raise ValueError(
+                f"no sighting in the recording {recording.source!r} lasts {after} s; after must be shorter"
+            )
     return np.array(errors)
 
 
+@checked
 def best_setting(
     recordings: Sequence[Recording],
     observers: Iterable[Observer],
@@ -228,10 +240,15 @@ def best_setting(
     after : sequence of float
         Seconds since the first sample.
     """
+    candidates = list(observers)
+    if not len(recordings) or not candidates or not len(after):
+        raise ValueError(
+            f"{len(recordings)} recordings, {len(candidates)} observers and {len(after)} times after: each needs some"
+        )
 
     def score(observer: Observer) -> float:
         runs = [follow(recording, observer) for recording in recordings]
         total = float(sum(np.median(relative_distance_errors(runs, seconds)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
-    return min(observers, key=score)
+    return min(candidates, key=score)

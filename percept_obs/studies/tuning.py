@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
@@ -34,6 +35,7 @@ COLUMNS = (
 """Columns of the table."""
 
 
+@checked
 def choose_and_report(
     choosing: Sequence[Recording],
     reporting: Sequence[Recording],
@@ -123,6 +125,7 @@ def choose_and_report(
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
+@checked
 def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     """What `choose_and_report` found as text, an observer a row.
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
@@ -45,6 +46,7 @@ VERDICTS = MappingProxyType(
 """What a verdict says, by what happened; live labs use the same words."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Run:
     """An observer's estimates at the samples of a recording.
