@@ -53,7 +53,7 @@ class Signal:
             return
         samples = _frozen(np.atleast_2d(np.asarray(self.samples, dtype=float)), "the signal's samples")
         object.__setattr__(self, "samples", samples)
-        if not samples.size:
+        if not len(samples):
             raise ValueError("the signal has no samples; give a row of values for each of its times")
         if self.times is None:
             if len(samples) != 1:
@@ -257,7 +257,7 @@ def linear(
     n = states if states is not None else (shown or [0])[0]
     if n < 1:
         raise ValueError(f"the linear motion has {n} states, or nothing shows how many; pass states=, at least 1")
-    different = [size for size in shown if size != n]
+    different = [size for size in shown if states is not None and size != n]
     if different:
         raise ValueError(f"{n} states were asked for, but A or v has {different[0]}; give both for the same states")
     limit(n * n, f"entries of A for {n} states", "describe fewer states", MOST_TERMS)
