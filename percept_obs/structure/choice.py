@@ -117,7 +117,7 @@ class StructureAndMotion(OnePoint):
             strange = [name for name in names if name not in QUANTITIES]
             if strange:
                 raise ImpossibleChoice(
-                    f"{group} names {', '.join(map(str, strange))}: no such quantity; there are {', '.join(QUANTITIES)}"
+                    f"{group}: there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
                 )
             if len(set(names)) != len(names):
                 raise ImpossibleChoice(f"{group} names a quantity twice: {', '.join(names)}")

@@ -23,7 +23,7 @@ class HoleInSignal(UserWarning):
     """Samples of a signal have a gap that is far longer than the others."""
 
 
-LONGEST_HOLE = 0.5
+LONGEST_HOLE = 1.0
 """Seconds between two samples of a signal that pass without a word; longer, and ten times the others, are a hole."""
 
 
