@@ -41,6 +41,7 @@ from percept_obs.recording.recording import ArePixels
 from percept_obs.structure.pixels import homography
 from percept_obs.studies.comparison import best_setting, compare, relative_distance_errors
 from percept_obs.system.motion import AreTheseDegrees, HoleInSignal
+from percept_obs.tracking import StepTooLong
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 SHORT = record(scenarios.ma2005_eq35(), 1, Camera(0.1))
@@ -224,6 +225,15 @@ def test_holes_and_pixels_are_told():
     Recording([0, 1, 2], [[0.1, 0.2], [0.1, 0.2], [30, 0.2]], ("y1", "y2"), pinhole(), STILL)
 
 
+def test_a_cascade_that_is_too_stiff_for_its_steps_is_told():
+    recording = record(scenarios.ma2005_eq35(), 0.1, Camera(0.01))
+    with pytest.warns(StepTooLong, match="the linear approximation observer's fastest part decays with 20"):
+        stiff = track(recording, lao(BOTH, process_weight=0, measurement_weight=0.005))
+    assert stiff.diverged_at is not None
+    for gains in lao.candidates:
+        assert track(recording, lao(BOTH, **gains)).diverged_at is None
+
+
 def test_one_point_that_is_not_known_leaves_the_others():
     form = independent_points(STILL, 2)
     state = np.array([1.0, 2, 4, np.nan, 1, 2])
@@ -280,7 +290,7 @@ def test_small_silences_are_broken():
     with pytest.raises(ValueError, match="0 recordings"):
         best_setting([], [ibo(BOTH)], track)
     assert repr(SHORT) == (
-        "<Recording of y1, y2 on the pinhole: 11 samples from 0 to 1 s, with a truth; Ma 2005 (35), 1 s, "
+        "<Recording of y1, y2 (pinhole): 11 samples from 0 to 1 s, with a truth; Ma 2005 (35), 1 s, "
         "Camera(period=0.1, noise=Uniform(bound=0.0), dropout=0.0, reach=inf), seed 0>"
     )
 

@@ -3,6 +3,7 @@
 import sympy as sp
 
 from percept_obs.border import limit, refuse_kind
+from percept_obs.observers.base import FastestRate
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
@@ -36,7 +37,7 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
     ),
     options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
     # only the ratios to the measurement's weight matter, and a large one is stiff
-    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
+    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.04, 0.02, 0.01, 0.007), start_weight=(1,)),
     objection_of=not_quadratic,
     stays_at_truth=False,
 )
@@ -86,7 +87,9 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
         flow += [*rate, *(P_rate[i, j] for i, j in upper)]
         start += [*hats(x), *(P0 if i == j else sp.S.Zero for i, j in upper)]
         previous = dict(zip(form.x2, estimate[n1:], strict=True))
-    return Derived(tuple(state), tuple(flow), tuple(start), estimate)
+    # P begins at P0 and, with Q, tends to sqrt(Q R); the filters' gain is P over R
+    fastest = FastestRate(P0 / R + sp.sqrt(Q / R), "take a smaller start_weight or a larger measurement_weight")
+    return Derived(tuple(state), tuple(flow), tuple(start), estimate, fastest=fastest)
 
 
 def _symmetric(size: int, number: int) -> sp.Matrix:

@@ -107,7 +107,7 @@ class Recording:
 
     def __repr__(self) -> str:
         return (
-            f"<Recording of {', '.join(self.names)} on the {self.view.name}: {len(self.time)} samples from "
+            f"<Recording of {', '.join(self.names)} ({self.view.name}): {len(self.time)} samples from "
             f"{self.time[0]:.6g} to {self.time[-1]:.6g} s, {'with' if self.truth is not None else 'without'} a truth; "
             f"{self.source or 'no source'}>"
         )
