@@ -181,6 +181,10 @@ def _spinning(time):
     return [np.sin(time), np.cos(time), 0.3]
 
 
+EXTREME = (CANARY, *(value for value in STRANGE if isinstance(value, int | float) and abs(value) in (10**12, np.inf)))
+"""What every argument meets."""
+
+
 def _pinhole():
     surface = po.pinhole()
     return surface.name, surface.image, surface.distance, surface.ray
@@ -200,7 +204,11 @@ def drawn(count, seed=0):
         for value in (*ALIEN, *STRANGE, recorded(), po.pinhole)
         if not (callable(value) and key in ("follow", "measured", "P"))  # any function is right there, and may fail
     ]
-    return random.Random(seed).sample(every, count)
+    draw = random.Random(seed)
+    draw.shuffle(every)
+    # what is too large, not a number, or text comes first: every argument meets it
+    every.sort(key=lambda call: not any(call[-1] is value for value in EXTREME))
+    return every[:count]
 
 
 def recorded():
