@@ -93,6 +93,11 @@ def test_numbers_of_all_kinds_are_numbers(period):
     assert record(scenarios.ma2005_eq35(), np.int64(1), Camera(period)).outputs.shape == (11, 2)
 
 
+def test_exact_numbers_of_formulas_stay_exact():
+    _, radius = instantaneous(BOTH).circle(sp.Rational(1, 7))
+    assert radius.atoms(sp.Float) == set()
+
+
 @pytest.mark.parametrize(
     "value", ["x", "1", b"1", 1j, np.complex64(1), math.nan, math.inf, sp.oo, sp.nan, sp.I, True, None]
 )

@@ -9,8 +9,8 @@ from dataclasses import dataclass, is_dataclass
 from functools import cached_property, wraps
 from importlib import import_module
 from numbers import Real
-from types import FunctionType, MappingProxyType
-from typing import Any, TypeVar, get_type_hints
+from types import FunctionType, MappingProxyType, NoneType
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,8 @@ EXAMPLES = MappingProxyType(
 )
 """What makes a value of a class, by the name of the class."""
 
+PACKAGE = __name__.partition(".")[0]
+
 LATER = MappingProxyType({"pd": "pandas"})
 """Modules that annotations name and that are loaded where they are needed only."""
 
@@ -73,14 +75,24 @@ def checked(thing: Thing) -> Thing:
 
 
 def _guarded(function: Any, name: str, annotated: Any = None) -> Any:
-    arguments = _Arguments(function, name, annotated or function)
+    arguments, passed = _Arguments(function, name, annotated or function), set[tuple[Any, ...]]()
 
     @wraps(function)
     def called(*args: Any, **kwargs: Any) -> Any:
+        types = (*map(type, args), *kwargs, *map(type, kwargs.values()))
+        if types in passed:
+            return function(*args, **kwargs)
         given = arguments.checked(args, kwargs)
+        if all(isinstance(each, str) or _tells_all(each) for each in types):
+            passed.add(types)
         return function(*given.args, **given.kwargs)
 
     return called
+
+
+def _tells_all(kind: type) -> bool:
+    """Whether the type of a value alone decides of which kind it is, so that it is looked at once."""
+    return kind in (float, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
 
 
 @dataclass(frozen=True)
@@ -118,7 +130,8 @@ class _Arguments:
             for name, each in each_named:
                 if not fits(each, kind):
                     raise WrongKind(self._complaint(name, each, kind, given, place is place.VAR_POSITIONAL))
-            if is_real(value) and not isinstance(value, int | float | np.number):
+            plain = isinstance(value, int | float | np.number)
+            if not plain and float in (kind, *get_args(kind)) and is_real(value):
                 given.arguments[key] = float(value)
         return given
 
