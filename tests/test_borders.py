@@ -24,6 +24,7 @@ from percept_obs import (
     cli,
     ekf,
     ibo,
+    instantaneous,
     linear,
     luenberger,
     pinhole,
