@@ -90,6 +90,12 @@ def _guarded(function: Any, name: str, annotated: Any = None) -> Any:
     return called
 
 
+def _only_a_float_fits(value: Any, kind: Any) -> bool:
+    """Whether a number of another type stands for a float, rather than for itself in a formula or an array."""
+    alternatives = {kind, *get_args(kind)}
+    return float in alternatives and not any(fits(value, each) for each in alternatives - {kind, float})
+
+
 def _tells_all(kind: type) -> bool:
     """Whether the type of a value alone decides of which kind it is, so that it is looked at once."""
     return kind in (float, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
@@ -130,8 +136,7 @@ class _Arguments:
             for name, each in each_named:
                 if not fits(each, kind):
                     raise WrongKind(self._complaint(name, each, kind, given, place is place.VAR_POSITIONAL))
-            plain = isinstance(value, int | float | np.number)
-            if not plain and float in (kind, *get_args(kind)) and is_real(value):
+            if is_real(value) and not isinstance(value, int | float | np.number) and _only_a_float_fits(value, kind):
                 given.arguments[key] = float(value)
         return given
 
