@@ -96,7 +96,7 @@ def _only_a_float_fits(value: Any, kind: Any) -> bool:
     return float in alternatives and not any(fits(value, each) for each in alternatives - {kind, float})
 
 
-def _tells_all(kind: type) -> bool:
+def _tells_all(kind: Any) -> bool:
     """Whether the type of a value alone decides of which kind it is, so that it is looked at once."""
     return kind in (float, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
 
