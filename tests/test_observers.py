@@ -179,7 +179,7 @@ def test_noise_bias_of_the_sliding_mode_observer():
         (ibo, {"gain": 0}, "G > 0"),
         (ibo, {"gain": float("nan")}, "not finite"),
         (ibo, {"gain": float("inf")}, "not finite"),
-        (ibo, {"gain": "much"}, "not a number"),
+        (ibo, {"gain": "much"}, "expected a real number"),
         (ibo, {"G": 3}, "no gain G; it has gain, injection, lyapunov"),
         (ibo, {"noise_variance": -1}, "it is a variance"),
         (smo, {"boundary_layer": 0}, "divides by the error"),

@@ -24,6 +24,7 @@ from percept_obs import (
     smo,
     track,
 )
+from percept_obs.border import WrongKind
 
 RECORDING = record(scenarios.ma2005_eq35(), 5)
 
@@ -106,7 +107,7 @@ def test_a_point_must_be_seen_all_the_time():
 
 
 def test_what_is_no_observer_is_refused():
-    with pytest.raises(DoesNotFit, match=r"an observer is needed, such as ibo\(form\)"):
+    with pytest.raises(WrongKind, match=r"expected an observer of a form: call it: identifier_based\(form\)"):
         track(RECORDING, ibo)
 
 

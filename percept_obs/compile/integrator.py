@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.border import limit
 from percept_obs.compile.arrays import Array, Indices
 
 Shares = tuple[Fraction, ...]
@@ -39,7 +40,7 @@ LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
 
 PLANT_STEP = 0.005
-"""Longest step, in seconds, with which a point's motion is integrated."""
+"""Longest step, in seconds, with which the page integrates a point's motion; `recording.path` is exact."""
 
 STEP_ROUNDING = 1e-4
 """Share of the longest step by which one may be longer: a clock that counts from 1970 knows times to 2e-7 s."""
@@ -62,6 +63,7 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
         Where the times stand in the grid.
     """
     intervals = np.diff(times)
+    limit(float((intervals / longest).sum()), "steps", "take longer steps or a shorter time")
     counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - STEP_ROUNDING)), 0).astype(int)
     index = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(counts)), counts)

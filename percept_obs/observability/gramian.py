@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.windowed import check_window
@@ -44,6 +45,7 @@ VERDICTS = MappingProxyType(
 """What may be said of condition (14)."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Gramian:
     """The integral of Phi^T S Phi over windows, from the state at their beginnings.
@@ -124,6 +126,7 @@ class Gramian:
         return text
 
 
+@checked
 def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the images of a window tell of the state: the integral in (14), Inaba et al. 2005.
 
@@ -154,6 +157,7 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
+@checked
 def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the points themselves, with their distances, would tell: the integral of Phi^T C^T C Phi.
 
@@ -174,6 +178,7 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     return _windows(recording, window, form, information)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class DecayBound:
     """What the proof of Theorem 3.4 guarantees of the error, window by window.
@@ -207,6 +212,7 @@ class DecayBound:
             return float(-np.log(self.contraction).mean() / (2 * self.window))
 
 
+@checked
 def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
     """A bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
@@ -235,9 +241,11 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         If there is no truth, P is computed or misses (15), or the window does not fit.
     """
     form, matrix = observer.form, observer.P
+    if not form.fits(recording.view):
+        raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    check_window(recording, window)
+    _check_window(recording, window)
     time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
@@ -271,11 +279,20 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
 
 
+@checked
 def true_images(recording: Recording) -> Array:
     """The images without noise where the truth is known, shape (K, p, m); NaN while a point is not seen."""
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
+
+
+def _check_window(recording: Recording, window: float) -> None:
+    """Refuse a window that does not fit into a recording, or fits between two samples."""
+    check_window(recording, window)
+    shortest = float(np.diff(recording.time).min())
+    if window < shortest * (1 - 1e-9):
+        raise ValueError(f"the window is {window} s, shorter than the {shortest:.4g} s between two samples; widen it")
 
 
 def _transitions(form: PointsForm, time: Array) -> Array:
@@ -292,7 +309,7 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
     window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
     """
-    check_window(recording, window)
+    _check_window(recording, window)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     S, Phi = information(used), _transitions(form, time)

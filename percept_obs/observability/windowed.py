@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
@@ -36,6 +37,7 @@ class Excitation:
         return float(self.smallest.min())
 
 
+@checked
 def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0) -> Excitation:
     """Persistency of excitation along a recording.
 

@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.observers.gains import Gain
@@ -57,6 +58,7 @@ class FastestRate:
     remedy: str
 
 
+@checked
 @dataclass(frozen=True)
 class Observer:
     """An observer of a system with measured and hidden coordinates, as equations.
@@ -208,6 +210,11 @@ class Observer:
             raise ValueError(
                 f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}"
             )
+        unseen = [name for name in self.form.measured if not math.isfinite(outputs.get(name, math.nan))]
+        if unseen:
+            raise ValueError(
+                f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output"
+            )
         asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
         known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
         known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
@@ -254,6 +261,7 @@ class Observer:
         return self.equations.xreplace(out)._repr_latex_()
 
 
+@checked
 def with_point(observer: Observer) -> Observer:
     """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state)."""
     form, eq = observer.form, observer.equations

@@ -8,6 +8,8 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.border import refuse_kind
+
 
 @dataclass(frozen=True)
 class Gain:
@@ -48,10 +50,8 @@ class Gain:
     reason: str = ""
 
     def __post_init__(self) -> None:
-        try:
-            value = float(self.value)
-        except (TypeError, ValueError):
-            raise ValueError(f"{self.name} = {self.value!r} is not a number") from None
+        refuse_kind("the gain", self.name, self.value, float)
+        value = float(self.value)
         object.__setattr__(self, "value", value)
         if not math.isfinite(value):
             raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")

@@ -2,6 +2,7 @@
 
 import sympy as sp
 
+from percept_obs.border import limit, refuse_kind
 from percept_obs.observers.base import FastestRate
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
@@ -10,6 +11,9 @@ from percept_obs.system.forms import CanonicalForm
 
 Q, R, P0, kappa = sp.symbols("Q R P0 kappa", real=True)
 HIDDEN = "how much more both are in the hidden part"
+MOST_ITERATES = 100
+"""Filters in a cascade: their equations are derived within a few seconds."""
+
 WEIGHT, DIVIDES = "it is a weight", "the gain divides by it"
 
 
@@ -34,8 +38,8 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
         Gain(kappa, "hidden_weight", 1, 1e-2, 100, "1/m^2", HIDDEN, kappa > 0, WEIGHT),
     ),
     options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
-    # only the ratios to the measurement's weight matter, and a large one is stiff
-    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
+    # only the ratios to the measurement's weight matter; smaller ones are too stiff for steps of 10 ms
+    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.006), start_weight=(1,)),
     objection_of=not_quadratic,
     stays_at_truth=False,
 )
@@ -57,8 +61,10 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
     With Q = 0 the estimate never settles.
     """
-    if not isinstance(iterates, int) or iterates < 1:
+    refuse_kind("linear_approximation", "iterates", iterates, int)
+    if iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
+    limit(iterates, "iterates", "take fewer", MOST_ITERATES)
     x, n1 = (*form.x1, *form.x2), len(form.x1)
     size = len(x)
     jacobian = form.g.jacobian(form.x2).expand()

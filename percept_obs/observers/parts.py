@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from percept_obs.border import checked
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
@@ -85,6 +86,7 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
 
 
+@checked
 def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.points.conditions import Conditions, conditions
 from percept_obs.points.form import PointsForm
 from percept_obs.points.information import many_points
@@ -22,6 +23,7 @@ REMEDY = "choose a larger P or shorter steps, and look at conditions() if P is n
 """What to do about a run that diverged; live labs use the same words."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PointsRun(Run):
     """Estimates of a state at the samples of a recording of several points.

@@ -11,6 +11,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, Signal, rigid
@@ -69,6 +70,7 @@ def scaled_dynamics() -> ScaledDynamics:
     return ScaledDynamics((camera / d_s).expand(), rotation, (object_ / d_s).expand())
 
 
+@checked
 @dataclass(frozen=True)
 class StructureAndMotion(OnePoint):
     """A choice of what is unknown among the scale, the camera's and the object's velocity.
@@ -115,7 +117,7 @@ class StructureAndMotion(OnePoint):
             strange = [name for name in names if name not in QUANTITIES]
             if strange:
                 raise ImpossibleChoice(
-                    f"there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
+                    f"{group}: there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
                 )
             if len(set(names)) != len(names):
                 raise ImpossibleChoice(f"{group} names a quantity twice: {', '.join(names)}")
@@ -284,7 +286,9 @@ class StructureAndMotion(OnePoint):
 
     def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
-        times = np.asarray(times, dtype=float)
+        times = np.atleast_1d(numbers(times, "the times"))
+        if np.ndim(scale) and np.shape(scale) != times.shape:
+            raise ValueError(f"the scale has the shape {np.shape(scale)}; give one number, or one for each time")
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 

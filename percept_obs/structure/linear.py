@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.structure.choice import StructureAndMotion, d_s
 from percept_obs.system.forms import CanonicalForm
@@ -19,6 +20,7 @@ from percept_obs.system.view import OnePoint
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 
 
+@checked
 @dataclass(frozen=True)
 class LinearView(OnePoint):
     """Scaled positions xbar = (y1, y2, 1) / ybar3 = d_s X, which obey a linear equation.

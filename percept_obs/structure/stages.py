@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
@@ -21,6 +22,7 @@ from percept_obs.tracking.run import Run
 _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class SemigeneralRun:
     """What two observers found, one after the other.
@@ -46,6 +48,7 @@ class SemigeneralRun:
         return np.stack([velocities[name] for name in _OBJECT], axis=-1)
 
 
+@checked
 def semigeneral(
     recording: Recording,
     motion: Motion,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
@@ -31,6 +32,7 @@ MEASURES = ("settling_time", "final", "rms", "worst", "cost")
 """Columns of `compare` of which a summary has the median and quantiles."""
 
 
+@checked
 def compare(
     recordings: Sequence[Recording],
     observers: Mapping[str, Observer] | Sequence[Observer],
@@ -111,6 +113,7 @@ def compare(
     return pd.DataFrame(rows)
 
 
+@checked
 def summary(table: pd.DataFrame) -> pd.DataFrame:
     """What `compare` found, an observer a row.
 
@@ -141,6 +144,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found).rename_axis(None)
 
 
+@checked
 def described(found: pd.DataFrame) -> str:
     """A summary as text: counts, and medians with their quantiles."""
     import pandas as pd
@@ -166,6 +170,7 @@ def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -
     return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
 
 
+@checked
 def relative_distance_errors(
     runs: Iterable[Run],
     after: float,
@@ -206,6 +211,10 @@ def relative_distance_errors(
         sources.append(repr(run.recording.source))
         recording = run.recording
         shape = (len(recording.time), -1)
+        there = set(range(recording.seen[0].size))
+        asked = set(points) if isinstance(points, Iterable) else there
+        if not asked <= there:
+            raise ValueError(f"the points {sorted(asked - there)} are not there; there are 0 to {max(there)}")
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
             samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
@@ -214,10 +223,11 @@ def relative_distance_errors(
                 place = (later[0], sighting.point)
                 errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
     if not errors:
-        raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s")
+        raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s; after must be shorter")
     return np.array(errors)
 
 
+@checked
 def best_setting(
     recordings: Sequence[Recording],
     observers: Iterable[Observer],
@@ -247,11 +257,11 @@ def best_setting(
     ValueError
         If there are no recordings, observers or times, or no recording lasts as long.
     """
-    observers = list(observers)
-    if not (len(recordings) and observers and len(after)):
+    candidates = list(observers)
+    if not (len(recordings) and candidates and len(after)):
         raise ValueError(
-            f"{len(recordings)} recordings, {len(observers)} observers and {len(after)} times: at least one of each is "
-            "needed to choose the best"
+            f"{len(recordings)} recordings, {len(candidates)} observers and {len(after)} times: at least one of "
+            "each is needed to choose the best"
         )
 
     def score(observer: Observer) -> float:
@@ -261,4 +271,4 @@ def best_setting(
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
-    return min(observers, key=score)
+    return min(candidates, key=score)

@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 from scipy.linalg import expm
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
@@ -20,6 +21,7 @@ LARGEST_CONDITION = 1e6
 """A window whose normal equations are conditioned worse than this determines no point."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class LeastSquares:
     """Least squares where a run asks for its observer: what they are called, and what they estimate.
@@ -49,6 +51,7 @@ class LeastSquares:
         return PerspectiveSystem(recording.motion, recording.imaging_surface).measure(*recording.names)
 
 
+@checked
 def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Run:
     """Least-squares position at the end of a window, from all samples in it.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.observability.windowed import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
@@ -38,6 +39,7 @@ COLUMNS = (
 """Columns of the table."""
 
 
+@checked
 def choose_and_report(
     choosing: Sequence[Recording],
     reporting: Sequence[Recording],
@@ -159,6 +161,7 @@ def _at_edge(chosen: Gains, observers: Sequence[Observer]) -> list[str]:
     return [n for n, value in chosen.items() if value in (min(tried[n]), max(tried[n])) and len(set(tried[n])) > 1]
 
 
+@checked
 def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     """What `choose_and_report` found as text, an observer a row.
 

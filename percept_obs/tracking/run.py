@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
@@ -22,6 +23,7 @@ from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, T
 Array = NDArray[np.float64]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Run:
     """An observer's estimates at the samples of a recording.
