@@ -1,5 +1,6 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
+from percept_obs.checking import CannotRead, Review, check
 from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import (
     Observer,
@@ -30,6 +31,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BehindCamera",
     "Camera",
+    "CannotRead",
     "CanonicalForm",
     "DoesNotFit",
     "FirstSight",
@@ -43,12 +45,14 @@ __all__ = [
     "PointsForm",
     "PointsScenario",
     "Recording",
+    "Review",
     "Run",
     "Scenario",
     "StructureAndMotion",
     "Uniform",
     "affine",
     "chained",
+    "check",
     "check_consistency",
     "ekf",
     "extended_kalman",

@@ -2,8 +2,9 @@
 
 import pytest
 import sympy as sp
-from ledger_mutations import say_the_same, slips, symbols_in
+from ledger_mutations import say_the_same
 
+from percept_obs.checking.slips import slips, symbols_in
 from percept_obs.papers import base
 from percept_obs.papers.base import dot, equal
 

@@ -1,0 +1,7 @@
+"""Checking a derivation: reading a formula, deciding whether it is the same, explaining where it is not."""
+
+from percept_obs.checking.matching import Verdict
+from percept_obs.checking.review import Review, check
+from percept_obs.checking.tokens import CannotRead
+
+__all__ = ["CannotRead", "Review", "Verdict", "check"]
