@@ -1,16 +1,17 @@
 """A formula in any form is accepted, a slip is refused, found and named, and the step in which it happened."""
 
+import doctest
 import statistics
 import time
 from collections import Counter
 
 import pytest
 import sympy as sp
-from derivations import cases, equivalent, reviewed
+from derivations import cases, equivalent, few_cases, reviewed
 from examples import AFFINE, BOTH, MOTIONS, ONE
 
 from percept_obs import PerspectiveSystem, check, ibo, instantaneous, pinhole, plane
-from percept_obs.checking import Verdict
+from percept_obs.checking import Verdict, deciding, reading, review
 from percept_obs.papers import MA2005
 from percept_obs.structure import StructureAndMotion
 
@@ -19,12 +20,11 @@ RIGID = PerspectiveSystem(MOTIONS["rigid"], pinhole())
 TURN = {w: -w for w in RIGID.parameters[:3]}
 
 
-def accepted(seeds):
+def accepted(seeds, among):
     """Rewrites that were accepted, what was not, and seconds of each."""
     hows, failed, seconds = Counter(), [], []
-    cases()
     for seed in seeds:
-        how, mine, case = equivalent(seed)
+        how, mine, case = equivalent(seed, among)
         start = time.process_time()
         right = check(mine, case.target).right
         seconds.append(time.process_time() - start)
@@ -35,12 +35,12 @@ def accepted(seeds):
 
 
 def test_equivalent_forms_are_accepted():
-    assert accepted(range(300, 330))[1] == []
+    assert accepted(range(300, 330), few_cases())[1] == []
 
 
 @pytest.mark.slow
 def test_300_equivalent_forms_are_accepted():
-    hows, failed, seconds = accepted(range(300))
+    hows, failed, seconds = accepted(range(300), cases())
     late = sum(s > 0.02 for s in seconds)
     print(
         f"\n{dict(hows)}\n{1e3 * statistics.median(seconds):.1f} ms, at worst {1e3 * max(seconds):.0f}, {late} over 20"
@@ -50,9 +50,9 @@ def test_300_equivalent_forms_are_accepted():
     assert late <= 15
 
 
-def shares(count, slips):
+def shares(count, slips, among):
     """What share of formulas with slips was refused, with the right line, term and slip; and seconds."""
-    found = [reviewed(seed, slips) for seed in range(count)]
+    found = [reviewed(seed, slips, among) for seed in range(count)]
     for one in found:
         if not (one.refused and one.line and one.term and (one.slip or slips > 1)):
             print(one.about)
@@ -63,7 +63,7 @@ def shares(count, slips):
 
 
 def test_a_slip_is_refused_and_found():
-    told, _ = shares(20, 1)
+    told, _ = shares(12, 1, few_cases())
     assert told["refused"] == told["line"] == 1
     assert told["term"] >= 0.9
     assert told["slip"] >= 0.8
@@ -71,7 +71,7 @@ def test_a_slip_is_refused_and_found():
 
 @pytest.mark.slow
 def test_300_slips_are_refused_found_and_named():
-    told, seconds = shares(300, 1)
+    told, seconds = shares(300, 1, cases())
     assert told["refused"] == told["line"] == 1
     assert told["term"] >= 0.95
     assert told["slip"] >= 0.85
@@ -81,11 +81,17 @@ def test_300_slips_are_refused_found_and_named():
 
 @pytest.mark.slow
 def test_100_pairs_of_slips_are_refused_and_found():
-    told, seconds = shares(100, 2)
+    told, seconds = shares(100, 2, cases())
     assert told["refused"] == 1
     assert told["term"] >= 0.8
     assert statistics.median(seconds) < 0.5
     assert max(seconds) < 2
+
+
+@pytest.mark.parametrize("module", [deciding, reading, review])
+def test_examples_in_docstrings_run(module):
+    assert doctest.testmod(module).attempted
+    assert not doctest.testmod(module).failed
 
 
 @pytest.mark.parametrize(

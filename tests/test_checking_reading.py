@@ -1,9 +1,11 @@
 """A formula is read as it is meant, or refused with its place and what is allowed; nothing is ever executed."""
 
 import math
+import random
 import re
 import sys
 import time
+from collections import Counter
 
 import pytest
 import sympy as sp
@@ -300,3 +302,18 @@ def test_system_texts_are_bounded_in_time():
         assert review.right is False
         assert str(review.hint(3))
     assert time.process_time() - start < 8
+
+
+def test_whatever_is_typed_is_read_or_refused():
+    words = r"y1 y2 yhat1 a13 + - * / ^ ( ) [ ] { } , ; = < != 2 0 1/2 sin sqrt log( e^ pi ' ² ^T \frac \sqrt \left[ \right] \left| "
+    words += r"\begin{matrix} \end{matrix} \begin{cases} & \\ \text{for} \hat{y}_{1} \dot _ {1} \sin \cdot d/dt J( y1' λ ŷ _{ oo"
+    draw = random.Random(0)
+    outcomes = Counter()
+    for _ in range(3000):
+        text = " ".join(draw.choices([*words.split(), ""], k=draw.randint(1, 12)))
+        try:
+            outcomes["read"] += bool(read(text, LETTERS, ["y1dot"]))
+        except CannotRead:
+            outcomes["refused"] += 1
+    assert outcomes["read"] > 30
+    assert outcomes["refused"] > 2000

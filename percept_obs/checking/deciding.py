@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
@@ -198,6 +199,15 @@ def _positive(polynomial: sp.Expr) -> bool:
     signs = {c > 0 for _, c in terms}
     even = all(power % 2 == 0 for powers, _ in terms for power in powers)
     return even and len(signs) == 1 and any(not any(powers) for powers, _ in terms)
+
+
+@lru_cache(maxsize=1 << 14)
+def degree(e: sp.Basic) -> int:
+    """How high the powers of letters are, at most."""
+    inner = [degree(part) for part in e.args] or [1]
+    if e.is_Pow and e.exp.is_Rational:
+        return inner[0] * max(1, abs(int(e.exp.p)))
+    return sum(inner) if e.is_Mul else max(inner)
 
 
 def size(e: sp.Basic) -> int:

@@ -154,7 +154,7 @@ def _signed(number: sp.Expr) -> str:
 
 def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
     before, after, kind = show(slip.before), show(slip.after), slip.kind
-    where = f" in {show(slip.term)}" if slip.term not in (slip.before, slip.after) else ""
+    where = f" in {show(slip.term)}" if slip.term not in (slip.before, slip.after) and kind not in THROUGHOUT else ""
     if kind in ("letter", "other letter", "throughout"):
         hats = {"hat" in getattr(side, "name", "") for side in (slip.before, slip.after)}
         what = "the hat: " if len(hats) == 2 else "the index: " if kind != "other letter" else ""

@@ -13,14 +13,17 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from math import prod
 from typing import Any
 
 import sympy as sp
 
+from percept_obs.checking.deciding import degree
 from percept_obs.checking.points import key
-from percept_obs.checking.tokens import CannotRead, Token, tokens
+from percept_obs.checking.tokens import Cursor, Token
 
-DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER = 30, 20, 60, 40
+DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER = 40, 20, 60, 40
 
 FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
     **{
@@ -95,43 +98,18 @@ def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) 
     return _Parser(text, letters, labels).lines()
 
 
-class _Parser:
+class _Parser(Cursor):
     def __init__(self, text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str]) -> None:
-        self.text, self.letters, self.labels = text, dict(letters), set(labels)
-        self.tokens, self.at, self.depth = tokens(text), 0, 0
-        self.degrees: dict[sp.Basic, int] = {}
-
-    @property
-    def now(self) -> Token:
-        return self.tokens[self.at]
-
-    def takes(self, *kinds: str) -> Token | None:
-        """The next word if it is of one of these kinds; then it is passed."""
-        token = self.now
-        if token.kind not in kinds:
-            return None
-        self.at += 1
-        return token
-
-    def needs(self, kind: str, what: str) -> Token:
-        token = self.takes(kind)
-        if token is None:
-            raise self.refusal(what)
-        return token
-
-    def refusal(self, what: str, at: Token | None = None) -> CannotRead:
-        return CannotRead(self.text, (at or self.now).position, what)
+        super().__init__(text)
+        self.letters, self.labels, self.depth = dict(letters), set(labels), 0
 
     def lines(self) -> list[Reading]:
         found: list[Reading] = []
-        while True:
-            while self.takes("line", ","):
-                pass
-            if self.now.kind == "end":
-                break
-            found += self.line()
-            if self.now.kind not in ("line", ",", "end"):
-                raise self.refusal(self.stray())
+        while self.now.kind != "end":
+            if not self.takes("line", ","):
+                found += self.line()
+                if self.now.kind not in ("line", ",", "end"):
+                    raise self.refusal(self.stray())
         if not found:
             raise self.refusal('there is no formula; type one, such as "y1 + 2 y2"')
         return found
@@ -148,10 +126,9 @@ class _Parser:
         name, end = self.label()
         if not name:
             self.at = start
-            left = self.sum()
-            relation = self.takes(*_RELATIONS)
-            if relation:
-                return [Reading("", _RELATIONS[relation.kind](left, self.sum(), evaluate=False))]
+            first, left = self.now, self.sum()
+            if self.now.kind in _RELATIONS:
+                return [Reading("", self.relation(left, first))]
             if not self.takes("="):
                 return [Reading("", left)]
             return [Reading("", sp.Eq(left, self.sum(), evaluate=False))]
@@ -181,16 +158,14 @@ class _Parser:
             power = self.takes("name")
             names[-1] += power.text if power and power.text == "T" else " "
             self.takes("}")
-        if names and names[0] == "J" and self.takes("("):
-            self.at += 2
+        if names == ["J"] and self.takes("("):
+            self.takes("name")
+            self.takes(")")
         joined = ",".join(key(f"{name}dot") if rate else name for name in names)
         return (joined, first) if names and " " not in joined and self.takes("=") else ("", first)
 
-    def sum(self) -> sp.Expr:
-        self.depth += 1
-        if self.depth > DEEPEST:
-            raise self.refusal(f"brackets are nested more than {DEEPEST} deep; write the formula flatter")
-        terms = []
+    def sum(self) -> Any:
+        terms: list[Any] = []
         sign = self.takes("+", "-")
         while True:
             start = self.now
@@ -200,14 +175,10 @@ class _Parser:
                 raise self.refusal("matrices of different shapes, or a matrix and a number, have no sum", start)
             sign = self.takes("+", "-")
             if sign is None:
-                break
-        self.depth -= 1
-        matrices = isinstance(terms[0], sp.MatrixBase)
-        return sum(terms[1:], terms[0]) if matrices else sp.Add(*terms)
+                return sum(terms[1:], terms[0]) if isinstance(terms[0], sp.MatrixBase) else sp.Add(*terms)
 
-    def product(self) -> sp.Expr:
-        result, divided = self.power(), False
-        factors = [result]
+    def product(self) -> Any:
+        factors, divided = [self.power()], False
         while True:
             operator = self.takes("*", "/")
             if operator is None:
@@ -216,33 +187,33 @@ class _Parser:
                 if divided:
                     raise self.refusal("after a / it is not clear what is below it; write brackets or *")
             start, negative = self.now, operator is not None and self.takes("-") is not None
-            factor = self.power()
-            factor = -factor if negative else factor
+            factor = -self.power() if negative else self.power()
             divided = operator is not None and operator.kind == "/"
-            if divided:
-                if isinstance(factor, sp.MatrixBase) or factor == 0:
-                    raise self.refusal("a matrix or zero cannot stand below a fraction", start)
-                factor = 1 / factor
-            factors.append(factor)
+            factors.append(1 / self.divisor(factor, start) if divided else factor)
+            self.refuse_sizes(factors, start)
         if any(isinstance(factor, sp.MatrixBase) for factor in factors):
-            return self.matrix_product(factors)
+            return prod(factors[1:], start=factors[0])
         return sp.Mul(*factors)
 
-    def matrix_product(self, factors: Sequence[Any]) -> Any:
-        result = factors[0]
-        for factor in factors[1:]:
-            if getattr(result, "shape", (0, 0))[1:] != getattr(factor, "shape", (0, 0))[:1] and isinstance(
-                result, sp.MatrixBase
-            ) == isinstance(factor, sp.MatrixBase):
-                raise self.refusal("the sizes of these matrices do not fit")
-            result = result * factor
-        return result
+    def divisor(self, value: Any, start: Token) -> sp.Expr:
+        if isinstance(value, sp.MatrixBase) or value == 0:
+            raise self.refusal("a matrix or zero cannot stand below a fraction", start)
+        return value
+
+    def scalar(self, value: Any, start: Token) -> sp.Expr:
+        if isinstance(value, sp.MatrixBase):
+            raise self.refusal("a matrix cannot stand here", start)
+        return value
+
+    def refuse_sizes(self, factors: Sequence[Any], start: Token) -> None:
+        shapes = [factor.shape for factor in factors if isinstance(factor, sp.MatrixBase)]
+        if any(left[1] != right[0] for left, right in pairwise(shapes)):
+            raise self.refusal("the sizes of these matrices do not fit", start)
 
     def power(self) -> sp.Expr:
         start = self.now
         base = self.primary()
-        raised = self.takes("raised")
-        if raised:
+        if raised := self.takes("raised"):
             return self.raised(base, sp.Integer(int(raised.text[:4])), start)
         if not self.takes("^"):
             return base
@@ -258,8 +229,8 @@ class _Parser:
         return self.raised(base, exponent, start)
 
     def exponent(self) -> sp.Expr:
-        negative = self.takes("-") is not None
-        value = self.primary()
+        start, negative = self.now, self.takes("-") is not None
+        value = self.scalar(self.primary(), start)
         return -value if negative else value
 
     def raised(self, base: sp.Expr, exponent: sp.Expr, start: Token) -> sp.Expr:
@@ -269,28 +240,15 @@ class _Parser:
             raise self.refusal(f"exponents are whole or half numbers up to {LARGEST_POWER}", start)
         if base == 0 and exponent <= 0:
             raise self.refusal("zero has no such power", start)
-        if self.degree(base) * abs(exponent) > LARGEST_DEGREE or (
+        if degree(base) * abs(exponent) > LARGEST_DEGREE or (
             base.is_Rational and max(map(len, map(str, base.as_numer_denom()))) * abs(exponent) > LONGEST_INTEGER
         ):
             raise self.refusal("this power is too large to be compared; there must be a smaller way to write it", start)
         return base**exponent
 
-    def degree(self, e: sp.Basic) -> int:
-        """How high the powers of letters are."""
-        if e not in self.degrees:
-            inner = [self.degree(part) for part in e.args] or [1]
-            self.degrees[e] = (
-                inner[0] * max(1, abs(int(e.exp.p)))
-                if e.is_Pow and e.exp.is_Rational
-                else sum(inner)
-                if e.is_Mul
-                else max(inner)
-            )
-        return self.degrees[e]
-
     def primary(self) -> Any:
         self.depth += 1
-        if self.depth > 2 * DEEPEST:
+        if self.depth > DEEPEST:
             raise self.refusal(f"brackets are nested more than {DEEPEST} deep; write the formula flatter")
         result = self.atom()
         self.depth -= 1
@@ -308,7 +266,7 @@ class _Parser:
             self.needs({"(": ")", "{": "}"}[token.kind], f"the bracket {token.kind} is not closed")
             return inner
         if token.kind == "|left":
-            inner = self.sum()
+            inner = self.scalar(self.sum(), token)
             self.needs("|right", "the bar | is not closed")
             return sp.Abs(inner)
         if token.kind == "[":
@@ -329,11 +287,9 @@ class _Parser:
         if token.text in ("frac", "dfrac", "tfrac"):
             above, below_at = self.group(), self.now
             below = self.group()
-            if below == 0 or isinstance(below, sp.MatrixBase):
-                raise self.refusal("a matrix or zero cannot stand below a fraction", below_at)
-            return above / below
+            return above / self.divisor(below, below_at)
         if token.text == "sqrt":
-            return sp.sqrt(self.group())
+            return sp.sqrt(self.scalar(self.group(), token))
         if token.text in FUNCTIONS:
             return self.function(token)
         raise self.refusal(f"\\{token.text} is not read; there are \\frac, \\sqrt, Greek letters, matrices", token)
@@ -348,7 +304,7 @@ class _Parser:
         exponent = self.exponent() if self.takes("^") else sp.S.One
         if self.now.kind not in ("(", "{"):
             raise self.refusal(f"what {token.text} is taken of stands in brackets: {token.text}(...)")
-        value = FUNCTIONS[token.text](self.atom())
+        value = FUNCTIONS[token.text](self.scalar(self.atom(), token))
         if value.has(sp.zoo, sp.nan, sp.oo):
             raise self.refusal(f"{token.text} has no value there", token)
         return value if exponent == 1 else self.raised(value, exponent, token)
@@ -359,10 +315,8 @@ class _Parser:
             return self.letters[key(name)]
         if name in FUNCTIONS and self.now.kind in ("(", "{", "^"):
             return self.function(token)
-        if name == "pi":
-            return sp.pi
-        if name == "e" and self.now.kind == "^":
-            return sp.E
+        if name == "pi" or (name == "e" and self.now.kind == "^"):
+            return sp.pi if name == "pi" else sp.E
         ways = self.split(name)
         if len(ways) == 1:
             # the letters become words of their own, so that a power belongs to the last of them
@@ -391,20 +345,14 @@ class _Parser:
         """[a, b] is a column, [[a, b], [c, d]] has rows."""
         opened, rows = self.now, []
         while True:
-            if self.takes("["):
-                rows.append(self.entries())
+            nested = self.takes("[")
+            rows.append([self.sum()])
+            while nested and self.takes(","):
+                rows[-1].append(self.sum())
+            if nested:
                 self.needs("]", "the bracket [ is not closed")
-            else:
-                rows.append([self.sum()])
             if not self.takes(",", "line"):
-                break
-        return self.matrix(rows, opened)
-
-    def entries(self) -> list[sp.Expr]:
-        found = [self.sum()]
-        while self.takes(","):
-            found.append(self.sum())
-        return found
+                return self.matrix(rows, opened)
 
     def printed_matrix(self) -> sp.ImmutableMatrix:
         opened, rows = self.now, [[self.sum()]]
@@ -428,9 +376,8 @@ class _Parser:
             words = self.needs("command", "the condition begins with \\text{for} or is \\text{otherwise}")
             branches.append((value, self.condition(words)))
             if not self.takes("row"):
-                break
-        self.needs("end cases", "the cases are not closed")
-        return sp.Piecewise(*branches)
+                self.needs("end cases", "the cases are not closed")
+                return sp.Piecewise(*branches)
 
     def condition(self, words: Token) -> sp.Basic:
         self.needs("{", "\\text{for} or \\text{otherwise} is expected")
@@ -438,8 +385,15 @@ class _Parser:
         self.needs("}", "the brace { is not closed")
         if said == "otherwise":
             return sp.true
-        left = self.sum()
-        relation = self.takes(*_RELATIONS)
-        if words.text != "text" or said != "for" or relation is None:
+        first, left = self.now, self.sum()
+        if words.text != "text" or said != "for" or self.now.kind not in _RELATIONS:
             raise self.refusal("a condition is two sides with <, <=, >, >= or != between them")
-        return _RELATIONS[relation.kind](left, self.sum())
+        return self.relation(left, first)
+
+    def relation(self, left: Any, first: Token) -> sp.Basic:
+        sign = self.needs(self.now.kind, "a relation is expected here")
+        start, right = self.now, self.sum()
+        sides = self.scalar(left, first), self.scalar(right, start)
+        if any(side.has(sp.I) for side in sides):
+            raise self.refusal("a root of a negative number cannot be compared", first)
+        return _RELATIONS[sign.kind](*sides, evaluate=False)

@@ -100,7 +100,8 @@ class Search:
         if self.line.kind == VALUE:
             return added == self.lacking
         if self.line.kind == ZEROS:
-            return bool(same_zeros(slip.formula if len(self.terms) == 1 else self.mine, self.line.formula))
+            old = self.terms[slip.path[0] if self.mine.is_Add else 0] if slip.kind != "missing" else sp.S.Zero
+            return bool(same_zeros(self.mine - old + slip.formula, self.line.formula))
         sums = [(point(self.mine) + a, point(self.line.formula)) for point, a in zip(self.places, added, strict=True)]
         first = sums[0]
         return sums[0][0] % PRIME != 0 and all((s * first[1] - t * first[0]) % PRIME == 0 for s, t in sums[1:])

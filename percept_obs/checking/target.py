@@ -199,7 +199,7 @@ def target_of(thing: Any) -> Target:
         named = {key(word): sp.Symbol(word, real=True) for word in words}
         return _joined(Target(tuple(_line(r.name, r.formula))) for r in read(thing, named))
     if isinstance(thing, Mapping):
-        return _joined(Target(tuple(_line(str(name), explicit(sp.sympify(part))))) for name, part in thing.items())
+        return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
     if isinstance(thing, Sequence) and not isinstance(thing, Derivation):
         return _joined(map(target_of, thing))
     if hasattr(thing, "derivation") and callable(thing.derivation):
@@ -208,6 +208,13 @@ def target_of(thing: Any) -> Target:
         f"nothing can be compared with a {type(thing).__name__}; give a system, a form, an observer, a step of a "
         "derivation, an observability condition, or a formula"
     )
+
+
+def _called(name: str, target: Target) -> Target:
+    """A target with a name; of several lines the names are numbered."""
+    many = len(target.lines) > 1
+    named = (replace(line, name=f"{name}{k if many else ''}") for k, line in enumerate(target.lines, 1))
+    return replace(target, lines=tuple(named))
 
 
 def _joined(targets: Iterable[Target]) -> Target:
@@ -295,10 +302,7 @@ def _(thing: sp.Basic) -> Target:
 def _line(name: str, formula: sp.Basic) -> list[Line]:
     """The lines of an expression, a matrix or a relation."""
     if isinstance(formula, sp.MatrixBase):
-        return [
-            Line(f"{name}{k}" if name and formula.is_Matrix and 1 in formula.shape else "", entry)
-            for k, entry in enumerate(formula, 1)
-        ]
+        return [Line("", entry) for entry in formula]
     if isinstance(formula, Relational):
         return relation_lines(formula)
     if isinstance(formula, sp.And | sp.Or):

@@ -63,6 +63,37 @@ def tokens(text: str) -> list[Token]:
     return [*_Words(text).all(), Token("end", "", len(text))]
 
 
+class Cursor:
+    """The words of a text, one after the other."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.tokens, self.at = text, tokens(text), 0
+
+    @property
+    def now(self) -> Token:
+        """The next word."""
+        return self.tokens[self.at]
+
+    def takes(self, *kinds: str) -> Token | None:
+        """The next word if it is of one of these kinds; then it is passed."""
+        token = self.now
+        if token.kind not in kinds:
+            return None
+        self.at += 1
+        return token
+
+    def needs(self, kind: str, what: str) -> Token:
+        """The next word, of this kind; otherwise the formula is refused."""
+        token = self.takes(kind)
+        if token is None:
+            raise self.refusal(what)
+        return token
+
+    def refusal(self, what: str, at: Token | None = None) -> CannotRead:
+        """What is raised at the next word, or at another one."""
+        return CannotRead(self.text, (at or self.now).position, what)
+
+
 class _Words:
     """A walk through a text."""
 
@@ -148,7 +179,7 @@ class _Words:
         stem = self._stem(accents)
         index = ""
         while self._match(r"\s*_"):
-            found = self._match(r"\s*{([A-Za-z0-9,\s_]*)}|\s*([A-Za-z0-9]+)")
+            found = self._match(r"\s*{([A-Za-z0-9,\s_]+)}|\s*([A-Za-z0-9]+)")
             if not found:
                 raise self._refusal(self.at, "an index is letters and digits, as in y_1 or v_{c1}")
             index += key(found[1] or found[2]).replace(",", "")
