@@ -10,7 +10,7 @@ import sympy as sp
 from derivations import cases, equivalent, few_cases, reviewed
 from examples import AFFINE, BOTH, MOTIONS, ONE
 
-from percept_obs import PerspectiveSystem, check, ibo, instantaneous, pinhole, plane
+from percept_obs import PerspectiveSystem, check, ekf, ibo, instantaneous, pinhole, plane
 from percept_obs.checking import Verdict, deciding, reading, review
 from percept_obs.papers import MA2005
 from percept_obs.structure import StructureAndMotion
@@ -140,6 +140,22 @@ def test_a_right_line_shows_itself_as_mathematics():
     shown = check(RATE, AFFINE)._repr_markdown_()
     assert shown.startswith("**Right, 1 of 3 lines.**")
     assert r"\dot{y_{1}} = " in shown
+
+
+def test_letters_are_matched_by_name():
+    y3, b3 = sp.Symbol("y_3"), sp.Symbol("b_3", positive=True)
+    a31, a32, a33, y1, y2 = sp.symbols("a31 a32 a33 y1 y2", complex=True)
+    assert check({"y3'": -y3 * (a31 * y1 + a32 * y2 + a33 + b3 * y3)}, AFFINE).right
+    assert check({"y3'": -y3 * (a31 * y1 + a32 * y2 + a33 - b3 * y3)}, AFFINE).right is False
+
+
+def test_updates_and_resets_of_observers_are_targets():
+    filter, bounded = ekf(ONE).equations, ibo(ONE).equations
+    assert check(["yhat1 + P11 (y1 - yhat1)/(P11 + R)", *filter.update[0][1:]], filter.update[0]).right
+    wrong = check(["yhat1 - P11 (y1 - yhat1)/(P11 + R)", *filter.update[0][1:]], filter.update[0])
+    assert "the sign" in str(wrong.hint(3))
+    assert check("M^2 gamma^2 <= yhat1^2 + yhat2^2 + yhat3^2", bounded.reset_condition).right
+    assert check("yhat1 M/sqrt(yhat1^2 + yhat2^2 + yhat3^2)", bounded.reset[0]).right
 
 
 def test_lines_may_use_letters_of_their_own():

@@ -305,8 +305,11 @@ def test_system_texts_are_bounded_in_time():
 
 
 def test_whatever_is_typed_is_read_or_refused():
-    words = r"y1 y2 yhat1 a13 + - * / ^ ( ) [ ] { } , ; = < != 2 0 1/2 sin sqrt log( e^ pi ' ² ^T \frac \sqrt \left[ \right] \left| "
-    words += r"\begin{matrix} \end{matrix} \begin{cases} & \\ \text{for} \hat{y}_{1} \dot _ {1} \sin \cdot d/dt J( y1' λ ŷ _{ oo"
+    words = r"""
+        y1 y2 yhat1 a13 + - * / ^ ( ) [ ] { } , ; = < != 2 0 1/2 sin sqrt log( e^ pi ' ² ^T \frac \sqrt \left[ \right]
+        \left| \begin{matrix} \end{matrix} \begin{cases} & \\ \text{for} \hat{y}_{1} \dot _ {1} \sin \cdot d/dt J( y1'
+        λ ŷ _{ oo
+    """
     draw = random.Random(0)
     outcomes = Counter()
     for _ in range(3000):

@@ -93,6 +93,17 @@ def test_another_part_makes_another_rate():
         replace(BOTH, rate=still.rate)
 
 
+@pytest.mark.parametrize("form", [ONE, OTHER, BOTH], ids=lambda form: "+".join(form.measured))
+def test_every_step_that_leads_on_leads_to_the_rate(form):
+    steps = [step for step in form.derivation() if step.leads_on]
+    assert len(steps) == 3
+    assert all(step.onward(list(step.values.values())) == form.rate for step in steps)
+    w, phi, g = ([2 * value for value in step.values.values()] for step in steps)
+    assert steps[0].onward(w) == replace(form, w=2 * form.w).rate
+    assert steps[1].onward(phi) == replace(form, phi=2 * form.phi).rate
+    assert steps[2].onward(g) == replace(form, g=2 * form.g).rate
+
+
 def test_the_form_shows_its_parts():
     assert sp.latex(ONE.w.T) in str(ONE.derivation())
     assert sp.latex(ONE.g) in ONE._repr_latex_()

@@ -140,9 +140,9 @@ def check(mine: Any, target: Any) -> Review:
         it.  Letters are matched by name.  One line or several; a line with a new letter on its left, "q = a31 y1",
         gives that letter a meaning for those after it.  In a mapping, 5 stands for the fifth step of a derivation.
     target : anything that the package derives
-        A system or a form (their rates), an observer (its flow), a matrix such as ``form.w``, a step of a derivation
-        or all of it, a condition of observability (where it fails counts, not its form), relations as the papers
-        print them, or a formula of one's own, in sympy or as text.
+        A system or a form (their rates), an observer (its flow; its updates are ``observer.equations.update``), a
+        matrix such as ``form.w``, a step of a derivation or all of it, a condition of observability (where it fails
+        counts, not its form), relations as the papers print them, or a formula of one's own, in sympy or as text.
 
     Returns
     -------
