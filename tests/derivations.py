@@ -273,7 +273,6 @@ class Found:
 
 AS_FOUND = {
     "dropped": ("missing", "replaced"),
-    "sign": ("sign", "sign of the line"),
     "exponent": ("exponent", "letter"),
 }
 """Kinds of mends that answer to a kind of slip, where there are others than of the same name."""

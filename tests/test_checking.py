@@ -4,6 +4,7 @@ import doctest
 import statistics
 import time
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 import sympy as sp
@@ -12,6 +13,7 @@ from examples import AFFINE, BOTH, MOTIONS, ONE
 
 from percept_obs import PerspectiveSystem, check, ekf, ibo, instantaneous, pinhole, plane
 from percept_obs.checking import Verdict, deciding, reading, review
+from percept_obs.checking.target import target_of
 from percept_obs.papers import MA2005
 from percept_obs.structure import StructureAndMotion
 
@@ -115,6 +117,35 @@ def test_mistakes_of_students_are_named_with_their_step(right, wrong, said):
     assert not any(words in str(review.hint(2)) for words in said)
 
 
+@pytest.mark.parametrize(
+    ("mine", "true", "said"),
+    [
+        ("a + b c", "a - b c", "the sign of b c is wrong"),
+        ("a (b - 2 c)", "a (b - c)", "-2 c should be -c: the factor is wrong"),
+        ("a + y1 yhat2", "a + y1 y2", "the hat: yhat2 stands where y2 belongs in y1 yhat2"),
+        ("a + sqrt(b^3 + c)", "a + sqrt(b^2 + c)", "the exponent 3 should be 2 in b^3"),
+        ("tanh(a) + b", "tanh(a + c) + b", "the term c is missing in a"),
+        ("a/(b + c + 1)", "a/(b + c)", "the term 1 is one too many"),
+        ("a (b + c)", "a (b + c + a b)", "the term a^2 b is missing"),
+        ("a + b + c", "a + b", "the term c is one too many"),
+        ("a + b", "a + b c", "b should be b c"),
+        ("a + b^2 + c", "a + b d + c", "b stands where d belongs in b^2"),
+        ("-a - b", "a + b", "all signs of -a - b are turned"),
+        ("y1^2 - y2 (1 + y1)", "y2^2 - y1 (1 + y2)", "y1 and y2 are swapped"),
+        ("y1^2 + y1 (1 + y1)", "y2^2 + y2 (1 + y2)", "the index: y1 stands everywhere where y2 belongs"),
+        ("a12 y1 + a12^2", "a21 y1 + a21^2", "a12 stands everywhere where a21 belongs"),
+        ("a12 y1 + a31 y2 + a12 a31", "a21 y1 + a13 y2 + a21 a13", "as in the transposed matrix"),
+        ("a + 2 b - sin(c)", "a + b + sin(c)", "the sign of -sin(c) is wrong"),
+        ("a22 y1 - a33 y1 + a33 y1 + b", "a22 y1 - a33 y1 + a22 y2 + b", "a33 y1: you have 0, it is -1"),
+        ("2 y1^2 + b", "y1^2 + y2^2 + b", "the index: y1 stands where y2 belongs in y1^2"),
+    ],
+)
+def test_each_kind_of_slip_is_named(mine, true, said):
+    known = "y1 y2 yhat1 yhat2 a b c d a12 a21 a13 a31 a22 a33"
+    target = replace(target_of(f"f = {true}"), pool=frozenset(sp.symbols(known, real=True)))
+    assert said in str(check(f"f = {mine}", target).hint(3))
+
+
 def test_a_step_is_not_blamed_for_what_is_right_elsewhere():
     other = sp.Eq(sp.Symbol("ydot2"), AFFINE.rate[1])
     told = str(check([RATE.replace("(b1 - b3 y1)", "(b1 + b3 y1)"), other], AFFINE).hint(3))
@@ -173,6 +204,16 @@ def test_what_follows_from_a_wrong_line_is_right_from_there_on():
     assert "this follows from your “The velocity, times the inverse distance”" in str(review.hint(1))
     again = check(wrong | {"y3'": f"y3 ({velocity[2]})"}, AFFINE.derivation())
     assert again.lines[-1].verdict == Verdict.WRONG
+
+
+def test_parts_of_a_form_are_checked_together():
+    right = {2: ONE.w.T, 3: ONE.phi, 4: ONE.g}
+    assert check(right, ONE.derivation()).right
+    wrong = check(right | {4: -ONE.g}, ONE.derivation())
+    assert [line.verdict for line in wrong.lines] == [Verdict.RIGHT] * 3 + [Verdict.WRONG] * 2
+    assert "step" not in str(wrong.hint(3))
+    told = str(check({"y1'": ONE.rate[0] - 2 * ONE.phi[0]}, ONE).hint(3))
+    assert "step 3" in told
 
 
 def test_conventions_are_no_errors():

@@ -281,6 +281,7 @@ x, z, t, u = sp.symbols("x z t u", real=True)
         (sp.sqrt((x + z) ** 2), x + z, False),
         (sp.sqrt((x + z) ** 2), sp.Abs(x + z), True),
         (x * sp.sign(x), sp.Abs(x), True),
+        (sp.Abs(x) * sp.sqrt(x**2 + 1) * sp.sqrt(z**2 + 1), sp.Abs(x) * sp.sqrt(x**2 * z**2 + x**2 + z**2 + 1), True),
         (sp.sign(x**2 - x * z + z**2 + 1), sp.S.One, None),
         (sp.Piecewise((x, x > z), (z, True)), sp.Max(x, z), None),
         (sp.Piecewise((x, x > z), (z, True)), sp.Min(x, z), False),

@@ -162,7 +162,7 @@ def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
     if kind == "left-out factor":
         return f"{show(slip.term)} should be {show(slip.term * slip.after / slip.before)}"
     return {
-        "sign": f"the sign of {before} is wrong",
+        "sign": f"all signs of {before} are turned" if slip.before.is_Add else f"the sign of {before} is wrong",
         "left out": f"{before} should be {after}: an inverse or a transpose is missing",
         "exponent": f"the exponent {before} should be {after}{where}",
         "missing": f"the term {after} is missing{where}",
@@ -170,7 +170,6 @@ def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
         "replaced": f"{before} should be {after}",
         "superfluous": f"the term {before} is one too many",
         "swapped": f"{before} and {after} are swapped",
-        "sign of the line": "all signs are turned",
         "sign throughout": f"{before} has the wrong sign everywhere",
         "signs": f"{before} have the wrong sign everywhere, as in a cross product with the other sign",
         "transpose": f"indices are swapped, as in the transposed matrix: {before} stands where {after} belongs",

@@ -22,7 +22,7 @@ ORDER = (
     *("sign", "left out", "letter", "exponent", "missing", "factor", "superfluous", "other letter", "left-out factor"),
     "replaced",
 )
-THROUGHOUT = ("throughout", "swapped", "sign of the line", "sign throughout", "signs", "transpose")
+THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
 
 
 @dataclass(frozen=True)
@@ -119,10 +119,10 @@ class Search:
         return min(ways, key=lambda slip: (ORDER.index(slip.kind), len(slip.path)), default=None)
 
     def by_ratio(self) -> Iterator[Slip]:
-        """Terms that lack a factor, a letter or a term inside: from what they would have to be multiplied by."""
+        """Terms with a wrong factor, found from what they would have to be multiplied by: a number, a letter, two."""
         u = sp.Symbol("one more", real=True)
         one = self.values(u)
-        for path, node, is_sum in takewhile(lambda _: not self.over, _term_places(self.mine)):
+        for path, node in takewhile(lambda _: not self.over, _term_places(self.mine)):
             moved = self.values(put(self.mine, path, node + u))
             now = self.values(node)
             if moved is None or now is None or one is None or 0 in now:
@@ -134,9 +134,6 @@ class Search:
             if 0 in share:
                 continue
             needed = tuple(d * pow(c, -1, PRIME) % PRIME for d, c in zip(self.lacking, share, strict=True))
-            if is_sum and path and needed in self.products:
-                yield replace(_missing(self.products[needed]), path=path, term=node)
-                continue
             ratio = tuple((d * pow(v, -1, PRIME) + 1) % PRIME for d, v in zip(needed, now, strict=True))
             number = fraction_of(ratio[0]) if len(set(ratio)) == 1 else None
             if number is not None and number != 1:
@@ -165,19 +162,6 @@ class Search:
         yield Slip(kind, mine, true, path, at(self.mine, path), changed)
 
     @cached_property
-    def products(self) -> dict[Values, sp.Expr]:
-        """Products of at most two letters by their values."""
-        letters = [sp.S.One, *sorted(self.letters, key=str)]
-        values = [self.values(s) or () for s in letters]
-        found: dict[Values, sp.Expr] = {}
-        for i, a in enumerate(letters):
-            for j, b in enumerate(letters[: i + 1]):
-                for c in (1, -1, 2, -2):
-                    at = tuple(c * x * y % PRIME for x, y in zip(values[i], values[j], strict=True))
-                    found.setdefault(at, c * a * b)
-        return found
-
-    @cached_property
     def ratios(self) -> dict[Values, tuple[sp.Expr, sp.Expr]]:
         """Quotients of two letters, or of a letter and 1, by their values."""
         letters = [sp.S.One, *sorted(self.letters, key=str)]
@@ -192,12 +176,12 @@ class Search:
         }
 
     def throughout(self) -> Slip | None:
-        """One change in all terms: the sign of the line, a letter for another, two letters swapped, a transpose."""
+        """One change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
         true, mine = self.values(self.line.formula), self.mine
-        candidates: list[tuple[str, object, object, sp.Expr]] = [("sign of the line", mine, -mine, -mine)]
+        candidates: list[tuple[str, sp.Basic, sp.Basic, sp.Expr]] = []
         used = sorted(mine.free_symbols, key=str)
         flips = {a: b for a in used if (b := _transposed(a, self.letters))}
-        if flips:
+        if len(flips) > 1:
             candidates.append(("transpose", *next(iter(flips.items())), mine.xreplace(flips)))
         by_family: dict[object, list[sp.Symbol]] = {}
         for a in used:
@@ -319,10 +303,10 @@ def _named(slip: Slip) -> Slip:
 
 def _term_places(
     e: sp.Basic, path: tuple[int, ...] = (), is_term: bool = True
-) -> Iterator[tuple[tuple[int, ...], sp.Expr, bool]]:
+) -> Iterator[tuple[tuple[int, ...], sp.Expr]]:
     """Places of all terms and sums, outside of functions."""
     if is_term or e.is_Add:
-        yield path, e, bool(e.is_Add)
+        yield path, e
     if e.is_Add or e.is_Mul:
         for k, part in enumerate(e.args):
             yield from _term_places(part, (*path, k), bool(e.is_Add))

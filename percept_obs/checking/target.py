@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, singledispatch
-from itertools import product
+from itertools import count, product
 from typing import Any
 
 import sympy as sp
@@ -118,8 +118,12 @@ class Target:
         """Of the lines that are the derivation's result: which row they are in it."""
         if not self.steps:
             return {}
-        number = self.steps[-1][0]
-        return {row: k for k, row in enumerate(self.blocks.get(f"step{number}", range(len(self.lines))))}
+        number, step = self.steps[-1]
+        rows = self.blocks.get(f"step{number}", range(len(self.lines)))
+        # the last step of a canonical form finds a part of its rate only
+        return (
+            dict(zip(rows, count(), strict=False)) if len(rows) == step.onward(list(step.values.values())).rows else {}
+        )
 
     @cached_property
     def rows(self) -> dict[str, int]:
