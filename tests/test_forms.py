@@ -7,8 +7,10 @@ import sympy as sp
 from examples import AFFINE, BOTH, MOTIONS, ON_SPHERE, ONE, OTHER, SURFACES
 
 from percept_obs import NotAffine, PerspectiveSystem
+from percept_obs.structure import StructureAndMotion
 from percept_obs.system.forms import partition
 
+SQUARE = StructureAndMotion(("v_c1", "v_c2", "v_c3")).form
 OUTPUTS = [("y1",), ("y2",), ("y1", "y2"), ("y2", "y1")]
 
 
@@ -93,11 +95,12 @@ def test_another_part_makes_another_rate():
         replace(BOTH, rate=still.rate)
 
 
-@pytest.mark.parametrize("form", [ONE, OTHER, BOTH], ids=lambda form: "+".join(form.measured))
+@pytest.mark.parametrize("form", [ONE, OTHER, BOTH, SQUARE], ids=["one", "other", "both", "square"])
 def test_every_step_that_leads_on_leads_to_the_rate(form):
     steps = [step for step in form.derivation() if step.leads_on]
     assert len(steps) == 3
     assert all(step.onward(list(step.values.values())) == form.rate for step in steps)
+    assert list(steps[0].values.values()) == list(form.w.T), "in the order in which it is shown"
     w, phi, g = ([2 * value for value in step.values.values()] for step in steps)
     assert steps[0].onward(w) == replace(form, w=2 * form.w).rate
     assert steps[1].onward(phi) == replace(form, phi=2 * form.phi).rate

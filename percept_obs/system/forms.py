@@ -194,13 +194,13 @@ class CanonicalForm(PartitionedSystem):
         """The form in formulas, one part after the other."""
         x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
         hidden, measured = ([s.name for s in part] for part in (self.x2, self.x1))
-        shares = [f"what multiplies {h} in {m}'" for h in hidden for m in measured]
+        shares = [f"what multiplies {h} in {m}'" for m in measured for h in hidden]
         formulas: dict[str, str | tuple[Any, ...]] = {
             "Measured and hidden:": rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}",
             "What multiplies the hidden coordinates in the measured ones' rate:": (
                 equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
-                dict(zip(shares, self.w, strict=True)),
-                lambda w: replace(self, w=sp.ImmutableMatrix(*self.w.shape, w)).rate,
+                dict(zip(shares, self.w.T, strict=True)),
+                lambda turned: replace(self, w=sp.ImmutableMatrix(*self.w.T.shape, turned).T).rate,
             ),
             "What is left of it without them:": (
                 equals(r"\phi", self.phi),
