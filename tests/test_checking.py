@@ -16,6 +16,7 @@ from percept_obs.checking import Verdict, deciding, reading, review
 from percept_obs.checking.target import target_of
 from percept_obs.papers import MA2005
 from percept_obs.structure import StructureAndMotion
+from percept_obs.system.derivation import Derivation
 
 RATE = "y1' = a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 - b3 y1) y3"
 RIGID = PerspectiveSystem(MOTIONS["rigid"], pinhole())
@@ -319,8 +320,11 @@ def _flow(observer):
     [
         ("a11 y1", AFFINE, "a line without a name is none of those asked for: y1', y2', y3'"),
         ("y3 = 1/Z", AFFINE, "the line y3 is none of those asked for"),
+        (None, AFFINE, "a NoneType is no formula"),
+        (sp.nan, AFFINE, "has no finite value; look for a division by zero"),
+        (float("nan"), AFFINE, "has no finite value"),
         (RATE, 3.5, "nothing can be compared with a float"),
-        ("J = 1", AFFINE.derivation()[:0], "the derivation has no formulas of its own"),
+        ("J = 1", Derivation(()), "the derivation has no formulas of its own"),
     ],
 )
 def test_what_does_not_fit_is_refused(mine, target, message):

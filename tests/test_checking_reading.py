@@ -270,6 +270,7 @@ x, z, t, u = sp.symbols("x z t u", real=True)
         ((x + z) ** 3, sp.expand((x + z) ** 3), True),
         (x / z - z / x, (x**2 - z**2) / (x * z), True),
         ((x + z) ** 3, sp.expand((x + z) ** 3) + sp.Rational(1, 10**9), False),
+        (x + PRIME * z, x, False),
         (sp.sin(x + z), sp.sin(x) * sp.cos(z) + sp.cos(x) * sp.sin(z), True),
         (sp.sin(x + z), sp.sin(x) * sp.cos(z) - sp.cos(x) * sp.sin(z), False),
         (sp.cos(2 * sp.atan(x)), (1 - x**2) / (1 + x**2), True),

@@ -2,6 +2,7 @@
 
 from percept_obs.checking.matching import Verdict
 from percept_obs.checking.review import Review, check
+from percept_obs.checking.target import Target, target_of
 from percept_obs.checking.tokens import CannotRead
 
-__all__ = ["CannotRead", "Review", "Verdict", "check"]
+__all__ = ["CannotRead", "Review", "Target", "Verdict", "check", "target_of"]

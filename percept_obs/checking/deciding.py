@@ -1,10 +1,9 @@
 """Whether two formulas say the same, decided in bounded time and without simplifying anything."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
+from itertools import islice
 
 import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
@@ -79,9 +78,9 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
     """Whether two expressions are the same function of their letters; letters are matched by name.
 
     Rational functions are compared at three points modulo a prime of 128 bits.  A "no" is certain.  A "yes" is wrong
-    with a probability below (d / 2^60)^3, with d the degree of the difference's numerator: below 2^-150 for d = 1000.
-    Roots, exponentials and circular functions follow their rules modulo the prime as well; there each answer is
-    borne out by values of sixty digits.
+    with a probability below (d / 2^60)^3, with d the degree of the difference's numerator: below 2^-150 for d = 1000;
+    and a value of sixty digits must bear it out, so that no multiple of the prime passes for zero.  Roots, exponentials
+    and circular functions follow their rules modulo the prime as well; there several values bear each answer out.
 
     Returns
     -------
@@ -96,14 +95,12 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
     """
     if one == other:
         return True
-    places = points(one, other)
     plain = rational(one) and rational(other)
-    seen = [
-        point(one) == point(other) for point, _ in zip(places, range(POINTS if plain else 2 * POINTS), strict=False)
-    ]
-    if plain:
-        return all(seen) if seen else None
-    nearby = _nearly_same(one, other)
+    count = POINTS if plain else 2 * POINTS
+    seen = [point(one) == point(other) for point in islice(points(one, other), count)]
+    if plain and not all(seen):
+        return False
+    nearby = _nearly_same(one, other, 1 if plain else 4 * POINTS)
     if nearby is False:
         return False
     if seen and all(seen):
@@ -111,8 +108,8 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
     return True if nearby and not any(e.has(*KINKED) for e in (one, other)) else None
 
 
-def _nearly_same(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Whether values of sixty digits agree to forty; None if there are too few."""
+def _nearly_same(one: sp.Expr, other: sp.Expr, count: int) -> bool | None:
+    """Whether so many values of sixty digits agree to forty; None if there are too few."""
     found = 0
     first, second = _unevaluated(one), _unevaluated(other)
     letters = first | second if set(first.values()) == set(second.values()) else {}
@@ -126,7 +123,7 @@ def _nearly_same(one: sp.Expr, other: sp.Expr) -> bool | None:
         if difference > 1e-25 * scale:
             return False
         found += difference < 1e-40 * scale
-        if found == 4 * POINTS:
+        if found == count:
             return True
     return None
 

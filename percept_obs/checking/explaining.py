@@ -1,7 +1,5 @@
 """What is wrong with a formula, in words: the slip, the term in which it is, the step in which it happened."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

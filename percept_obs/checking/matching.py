@@ -1,7 +1,5 @@
 """Which line is which, and whether it is right: by itself, by another convention, or from there on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum

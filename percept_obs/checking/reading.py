@@ -8,8 +8,6 @@ power    = primary [ "^" number ]
 primary  = number | name | function "(" sum ")" | "(" sum ")" | matrix | LaTeX's fraction, root, brackets
 """
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

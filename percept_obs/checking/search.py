@@ -1,7 +1,5 @@
 """A search for what mends a formula: single slips by the difference they make, pairs by the sum of two."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

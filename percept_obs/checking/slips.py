@@ -1,7 +1,5 @@
 """Slips: every formula that differs from another one in a single sign, factor, exponent or letter."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress

@@ -90,8 +90,6 @@ class Target:
     lines : tuple of Line
     pool : set of symbols
         Letters that may stand in the lines, besides those that do.
-    shape : pair of int, optional
-        Of a matrix, whose entries the lines are, row by row.
     derivation : function, optional
         Gives the way there, step by step, whose result are the lines.
     nonzero : set of symbols
@@ -102,7 +100,6 @@ class Target:
 
     lines: tuple[Line, ...]
     pool: frozenset[sp.Symbol] = frozenset()
-    shape: tuple[int, int] | None = None
     derivation: Callable[[], Derivation] | None = None
     nonzero: frozenset[sp.Symbol] = frozenset()
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
@@ -121,9 +118,8 @@ class Target:
         number, step = self.steps[-1]
         rows = self.blocks.get(f"step{number}", range(len(self.lines)))
         # the last step of a canonical form finds a part of its rate only
-        return (
-            dict(zip(rows, count(), strict=False)) if len(rows) == step.onward(list(step.values.values())).rows else {}
-        )
+        whole = len(rows) == step.onward(list(step.values.values())).rows
+        return dict(zip(rows, count(), strict=False)) if whole else {}
 
     @cached_property
     def rows(self) -> dict[str, int]:
@@ -156,7 +152,11 @@ class Target:
             return self.read("\n".join(mine))
         if isinstance(mine, Sequence):
             return [reading for part in mine for reading in self.read(part)]
+        if not isinstance(mine, sp.Basic | sp.MatrixBase | int | float):
+            raise ValueError(f"a {type(mine).__name__} is no formula; give text, sympy, or a list or mapping of them")
         formula = sp.sympify(mine, strict=True)
+        if formula.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+            raise ValueError(f"the formula {formula} has no finite value; look for a division by zero")
         if isinstance(formula, sp.Eq) and (formula.lhs.is_Symbol or isinstance(formula.lhs, sp.MatrixSymbol)):
             return [Reading(key(formula.lhs.name), self.own(formula.rhs))]
         whole = self.own(formula)
@@ -183,8 +183,9 @@ _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "
 def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
     """Letters that differ from the given ones in an index or a hat."""
     for symbol in sorted(letters, key=str):
-        stem, digits = re.fullmatch(r"(.*?)(\d{0,2})", symbol.name).groups()  # type: ignore[union-attr]
-        names = ["".join((stem, *chosen)) for chosen in product("123", repeat=len(digits))]
+        stem = symbol.name.rstrip("0123456789")
+        indices = min(len(symbol.name) - len(stem), 2)
+        names = ["".join((stem, *chosen)) for chosen in product("123", repeat=indices)]
         for other in [sp.Symbol(name, **symbol.assumptions0) for name in names]:
             yield from (other, *hats((other,)))
 
@@ -222,9 +223,7 @@ def _called(name: str, target: Target) -> Target:
 
 
 def _joined(targets: Iterable[Target]) -> Target:
-    parts = list(targets)
-    shape = parts[0].shape if len(parts) == 1 else None
-    return Target(tuple(line for part in parts for line in part.lines), shape=shape)
+    return Target(tuple(line for part in targets for line in part.lines))
 
 
 def _rates(symbols: Sequence[sp.Symbol], values: Iterable[sp.Expr]) -> tuple[Line, ...]:
@@ -298,9 +297,7 @@ def _(thing: Derivation) -> Target:
 @target_of.register(sp.Basic)
 @target_of.register(sp.MatrixBase)
 def _(thing: sp.Basic) -> Target:
-    lines = _line("", explicit(thing))
-    shape = thing.shape if isinstance(thing, sp.MatrixBase) else None
-    return Target(tuple(lines), shape=shape)
+    return Target(tuple(_line("", explicit(thing))))
 
 
 def _line(name: str, formula: sp.Basic) -> list[Line]:

@@ -1,7 +1,5 @@
 """Two formulas term by term, once their denominators are cleared."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The words of a formula that was typed, or that sympy printed as LaTeX."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterator
