@@ -330,8 +330,6 @@ class _Parser(Cursor):
     def split(self, name: str) -> list[list[str]]:
         """Ways to read a word as letters side by side; two are enough to know that there are several."""
         ways: list[list[list[str]]] = [[[]], *([] for _ in name)]
-        if len(name) > 60:
-            return []
         for end in range(1, len(name) + 1):
             for start in range(end):
                 if key(name[start:end]) in self.letters:

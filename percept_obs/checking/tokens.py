@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from percept_obs.checking.points import key
 
-LONGEST, LONGEST_NUMBER = 9000, 15
+LONGEST, LONGEST_NUMBER, LONGEST_WORD = 9000, 15, 60
 
 _NAMES = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
 phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
@@ -197,8 +197,10 @@ class _Words:
             accents.append(found[1])
             return inner
         stem = ""
-        while self.at < len(self.text) and (stem + "x").isidentifier():
+        while self.at < len(self.text):
             c = self.text[self.at]
+            if len(stem) > LONGEST_WORD:
+                raise self._refusal(self.at, f"a word has more than {LONGEST_WORD} letters; write * between letters")
             if c.isascii() and (c.isalpha() or (stem and c.isdigit())):
                 stem += c
             elif c in _MARKS and stem:
