@@ -81,7 +81,7 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
                 start += len(formula) if name not in target.blocks else 0
             if len(block) != len(formula):
                 raise ValueError(f"a matrix with {len(formula)} entries does not fit: {_asked(target)} are asked for")
-            given += zip(block, formula.T if name.endswith("T") else formula, strict=True)
+            given += zip(block, formula.T if name == "wT" else formula, strict=True)
             continue
         if name in rows:
             # of lines with the same name, such as a formula that is printed in two forms, the one that is meant
