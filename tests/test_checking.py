@@ -226,6 +226,8 @@ def test_conventions_are_no_errors():
     distance = check({"y1'": system.rate[0].xreplace(further)}, system)
     assert distance.right
     assert "n . X = d" in distance.summary
+    phi = RIGID.measure("y1").phi
+    assert check(-phi, phi).right is False, "with one letter of three it may as well be a slip"
     mixed = check({"y1'": RIGID.rate[0], "y2'": RIGID.rate[1].xreplace(TURN)}, RIGID)
     assert mixed.right is False
     assert "as in a cross product with the other sign" in str(mixed.hint(3))

@@ -140,13 +140,11 @@ def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
         return lines
     for convention in target.conventions:
         changed = [replace(line, formula=line.formula.xreplace(dict(convention.changes))) for line in target.lines]
-        terms = sum(
-            bool(term.free_symbols & set(convention.changes))
-            for line in lines
-            for term in sp.Add.make_args(target.lines[line.row].formula)
-        )
+        asked = sp.Tuple(*(target.lines[line.row].formula for line in lines))
+        # one letter alone with the other sign is a slip
+        several = len(asked.free_symbols & set(convention.changes)) > 1
         other = replace(target, lines=tuple(changed))
-        if terms > 1 and all(_verdict(line.mine, other, line.row) == Verdict.RIGHT for line in lines):
+        if several and all(_verdict(line.mine, other, line.row) == Verdict.RIGHT for line in lines):
             return [
                 replace(line, verdict=Verdict.CONVENTION, note=convention.words)
                 if line.verdict == Verdict.WRONG
