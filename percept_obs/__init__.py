@@ -1,5 +1,6 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
+from percept_obs.border import TooMuchWork, WrongKind
 from percept_obs.checking import CannotRead, Review, check
 from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import (
@@ -49,7 +50,9 @@ __all__ = [
     "Run",
     "Scenario",
     "StructureAndMotion",
+    "TooMuchWork",
     "Uniform",
+    "WrongKind",
     "affine",
     "chained",
     "check",

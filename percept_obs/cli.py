@@ -9,6 +9,8 @@ from importlib import resources, util
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
+from percept_obs.border import write_whole
+
 FIRST_NOTEBOOK = "00_start.ipynb"
 
 
@@ -24,21 +26,19 @@ def copy_notebooks(directory: Path) -> None:
     directory.mkdir(parents=True, exist_ok=True)
     for name in names:
         target = directory / name
-        try:
-            with target.open("xb") as file:
-                file.write((notebooks() / name).read_bytes())
-        except FileExistsError:
+        if target.exists():
             print(f"kept    {target}")
         else:
+            write_whole(target, (notebooks() / name).read_bytes())
             print(f"copied  {target}")
 
 
 def lab(options: argparse.Namespace) -> int:
     """Copy the notebooks and open the first one in JupyterLab."""
     directory: Path = options.directory
-    if directory.exists() and not directory.is_dir():
-        return _complain(f"{directory} is a file; name a folder, or a new one", 2)
     try:
+        if directory.exists() and not directory.is_dir():
+            return _complain(f"{directory} is a file; name a folder, or a new one", 2)
         copy_notebooks(directory)
     except OSError as error:
         return _complain(f"cannot copy the notebooks: {error}", 2)
@@ -74,6 +74,7 @@ def check(options: argparse.Namespace) -> int:
 
 def compare(options: argparse.Namespace) -> int:
     """Run every observer on the same noisy recordings of Ma's examples, from a start of zero, and print a table."""
+    from percept_obs.border import limit
     from percept_obs.observers import OBSERVERS
     from percept_obs.recording import Camera, Uniform, record
     from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
@@ -87,8 +88,13 @@ def compare(options: argparse.Namespace) -> int:
     refusals = {make: make.refusal(form) for make in OBSERVERS}
     observers = [make(form) for make, refusal in refusals.items() if not refusal]
     camera = Camera(noise=Uniform(options.noise))
-    recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
-    table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
+    try:
+        samples = options.seeds * options.duration / camera.period
+        limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
+        recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
+        table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
+    except ValueError as error:
+        return _complain(str(error), 2)
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
@@ -134,9 +140,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:
     def read(text: str) -> int | float:
-        value = number(text)
+        try:
+            value = number(text)
+        except ValueError:
+            value = 0
         if not 0 < value < float("inf"):
-            raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+            whole = ", without a fraction" if number is int else ""
+            raise argparse.ArgumentTypeError(f"{text} is not a positive number{whole}")
         return value
 
     return read

@@ -155,7 +155,7 @@ def test_halving_the_step_divides_the_error_by_sixteen(name, form, scenario):
     )
     errors = np.linalg.norm([coarse - reference, fine - reference], axis=1)
     assert errors[1] < errors[0] / 12 + 1e-12
-    assert scenario is not EQ35 or errors[1] > errors[0] / 21
+    assert scenario is not EQ35 or errors[1] > errors[0] / 21 - 1e-14  # rounding
 
 
 @cache

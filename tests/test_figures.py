@@ -33,6 +33,7 @@ from percept_obs import (
     windowed,
 )
 from percept_obs.studies.consistency import claimed_distance
+from percept_obs.tracking.verdict import TOLERANCE
 
 NOISY = Camera(noise=Uniform(0.01))
 COARSE = Camera(period=0.05, noise=Uniform(0.01))
@@ -158,7 +159,10 @@ def test_signals_draws_samples_truth_and_estimate_of_every_coordinate(runs, name
 def test_signals_draws_the_errors_on_a_logarithmic_axis(runs, name):
     run = runs(name)
     last = figures.signals(run).axes[-1]
-    np.testing.assert_array_equal(faint(last), np.abs(run.error).T)
+    judged = np.where(np.isinf(run.relative_error), np.nan, run.relative_error)
+    np.testing.assert_array_equal(faint(last), [*np.abs(run.error).T, judged])
+    (level,) = (line.get_ydata()[0] for line in last.lines if list(line.get_xdata()) == [0, 1])
+    assert level == TOLERANCE  # the dotted line is the tolerance of what is judged, the black one
     assert last.get_yscale() == "log"
     assert last.get_ylabel() == "|error|"
 
@@ -200,7 +204,8 @@ def test_signals_ends_the_estimate_where_it_diverged_and_says_when(runs):
 def test_the_text_has_ranges_settling_time_error_levels_and_lost_samples(runs):
     run = runs("(35), both outputs")
     text = figures.signals(run).text
-    assert f"within 0.05 after {run.settling_time():.3g} s" in text
+    assert run.verdict()[1:] in text
+    assert f"within 0.05 after {run.settling_time(0.05, 'y3'):.3g} s" in run.verdict(0.05, "y3")
     assert f"true y1 is from {run.truth[:, 0].min():.3g} to {run.truth[:, 0].max():.3g}" in text
     assert f"{run.rms(40.01, 80, 'y3'):.2g} (y3)" in text
     lost = runs("dropouts")
@@ -583,7 +588,7 @@ def test_in_jupyter_a_figure_is_a_picture_with_alternative_text(runs):
     (alternative,) = re.findall(r'<img alt="([^"]*)"', shown)
     assert "|w| &lt; 0.1" in alternative
     assert html.unescape(alternative) == figure.text
-    assert "after 1.66 s" in alternative
+    assert "is within 10 % only since 79 s" in alternative
     assert "max-width: 100%" in shown
     assert "data:image/png;base64,iVBOR" in shown
     assert figure.text in repr(figure)

@@ -170,7 +170,7 @@ def test_all_observers_at_once_leave_no_number_out(lab, node):
 
 
 def assert_same_recording(answer, recording):
-    np.testing.assert_allclose(answer["time"], recording.time, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(answer["time"], recording.elapsed, rtol=0, atol=1e-12)
     np.testing.assert_allclose(as_array(answer["truth"], 3), recording.truth, rtol=1e-10, atol=1e-10)
     np.testing.assert_allclose(as_array(answer["outputs"], 2), recording.outputs, rtol=0, atol=1e-10)
 

@@ -75,8 +75,9 @@ def test_the_cascade_in_matrices_is_the_linear_approximation_observer(form):
         F = sp.Matrix.vstack(
             sp.Matrix.hstack(sp.zeros(n1), form.w.T), sp.Matrix.hstack(sp.zeros(size - n1, n1), frozen)
         )
+        weights = sp.diag(*[1] * n1, *[gains["hidden_weight"]] * (size - n1))
         rows = cascade_equations(
-            *(estimate, sp.ImmutableMatrix(P), sp.ImmutableMatrix(F), offset, C, y, sp.eye(size)),
+            *(estimate, sp.ImmutableMatrix(P), sp.ImmutableMatrix(F), offset, C, y, weights),
             *(gains["process_weight"], gains["measurement_weight"]),
         )
         K, e = sp.MatrixSymbol("K", size, n1), sp.MatrixSymbol("e", n1, 1)

@@ -206,7 +206,7 @@ def test_the_analysis_says_what_python_found(settings, words):
 
 
 def test_an_observer_of_which_python_has_nothing_to_say_is_not_run(monkeypatch):
-    lab = observer_lab(observers=["linear_approximation", "range_identification", "immersion_and_invariance"])
+    lab = observer_lab(observers=["range_identification", "immersion_and_invariance"])
     monkeypatch.setattr("percept_obs.labs.observer.lab.track", lambda *_: pytest.fail("it was run"))
     lab.summary = {"serial": 1}
     assert len(lab.analysis["sentences"]) == 1

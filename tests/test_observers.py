@@ -26,7 +26,7 @@ from percept_obs.observers import (
     range_identification,
     spica,
 )
-from percept_obs.observers.parts import hats, sigma2
+from percept_obs.observers.parts import first_seen, hats, sigma2
 
 PAIRS = [
     pytest.param(make, form, id=f"{make.key}-{name}")
@@ -179,7 +179,7 @@ def test_noise_bias_of_the_sliding_mode_observer():
         (ibo, {"gain": 0}, "G > 0"),
         (ibo, {"gain": float("nan")}, "not finite"),
         (ibo, {"gain": float("inf")}, "not finite"),
-        (ibo, {"gain": "much"}, "not a number"),
+        (ibo, {"gain": "much"}, "expected a real number"),
         (ibo, {"G": 3}, "no gain G; it has gain, injection, lyapunov"),
         (ibo, {"noise_variance": -1}, "it is a variance"),
         (smo, {"boundary_layer": 0}, "divides by the error"),
@@ -261,7 +261,8 @@ def test_the_start_is_what_its_expressions_say(make):
         {x.name: at[hat.name] for x, hat in zip(BOTH.coordinates, hats(BOTH.coordinates), strict=True)},
         {s: at[s.name] for s in BOTH.parameters},
     )
-    expected = [float(e.subs(values).subs(observer.gain_values)) for e in observer.start]
+    given = dict.fromkeys(first_seen(BOTH), 0)
+    expected = [float(e.subs(values | given).subs(observer.gain_values)) for e in observer.start]
     np.testing.assert_allclose(state, expected, rtol=1e-14)
 
 

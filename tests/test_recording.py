@@ -91,7 +91,7 @@ def test_the_numbers_are_those_of_the_reference_mersenne_twister():
 
 @pytest.mark.parametrize("seed", [-1, 1.5, "x", True, 2**32, None])
 def test_a_seed_that_is_none_is_refused(seed):
-    with pytest.raises(ValueError, match="neither a numpy Generator nor a whole number"):
+    with pytest.raises(ValueError, match=r"seed .*whole number"):
         record(scenarios.ma2005_eq35(), 1, NOISY, seed=seed)
 
 
@@ -157,7 +157,7 @@ def test_no_table_is_refused(tmp_path):
     [
         ({"time": [], "outputs": np.zeros((0, 2))}, "at least two samples"),
         ({"time": [0.0, 0.1]}, "outputs of shape"),
-        ({"outputs": OUTPUTS[:, :1]}, "one column for each of y1, y2"),
+        ({"outputs": OUTPUTS[:, :1]}, "one column for each of the names, y1, y2"),
         ({"time": [0.0, 0.3, 0.1]}, "row 2"),
         ({"time": [0.0, 0.1, 0.1]}, "sort the rows and remove repeated ones"),
         ({"time": [0.0, np.nan, 0.1]}, "finite"),

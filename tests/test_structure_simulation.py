@@ -193,7 +193,7 @@ def test_what_does_not_fit_is_refused():
         track(record(scenarios.ma2005_eq35(), 1), ismo(CASE.choice.form))
     with pytest.raises(ValueError, match="image coordinates of one point, but the recording shows the scaled pinhole"):
         moving_window_least_squares(recording, 0.5)
-    with pytest.raises(ValueError, match="the linear view needs the outputs y1, y2, ybar3"):
+    with pytest.raises(ValueError, match="the linear view needs a recording of the outputs y1, y2, ybar3"):
         linear_view(record(scenarios.ma2005_eq35(), 1))
     with pytest.raises(ValueError, match="has no values for d_s; give them numbers first"):
         seen_as(recording, COROLLARIES[4].choice(), rigid(STILL, STILL, STILL))
@@ -213,7 +213,7 @@ def test_scenarios_that_make_no_sense_are_refused():
     for duration in (0.0, 1e-4, float("inf")):
         with pytest.raises(ValueError, match="holds no two samples"):
             record(CASE, duration)
-    with pytest.raises(ValueError, match=r"there is no case 'V.A'; there are IV.A"):
+    with pytest.raises(ValueError, match=r"no case .* 'V.A'; there are IV.A"):
         chwa2019_experiment("V.A")
     with pytest.raises(ValueError, match="needs a positive third component"):
         chwa2019_simulation("V.A", (0.1, 0, 0))

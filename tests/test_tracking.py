@@ -24,6 +24,7 @@ from percept_obs import (
     smo,
     track,
 )
+from percept_obs.border import WrongKind
 
 RECORDING = record(scenarios.ma2005_eq35(), 5)
 
@@ -51,12 +52,17 @@ def test_a_distance_is_infinite_only_where_the_estimate_is_finite_and_not_positi
 def test_settling_time_is_when_the_error_stays_inside():
     run = track(RECORDING, ibo(BOTH), ZERO)
     settled = run.settling_time(0.05)
-    outside = np.abs(run.error[:, 2]) >= 0.05
-    assert settled == run.time[np.flatnonzero(outside)[-1] + 1]
-    assert run.settling_time(10) == 0
+    relative = np.abs(run.distance / RECORDING.distance - 1)
+    np.testing.assert_allclose(run.relative_error, relative, rtol=1e-12, atol=1e-15)
+    absolute = np.abs(run.error[:, 2])
+    for error, found in ((relative, settled), (absolute, run.settling_time(0.05, "y3"))):
+        outside = error >= 0.05
+        assert found == run.time[np.flatnonzero(outside)[-1] + 1]
+    assert run.settling_time(10, "y3") == 0
     assert math.isinf(run.settling_time(1e-12))
     assert run.settling_time(0.05, "y1") < settled
-    assert f"after {settled:.3g} s" in run.verdict()
+    assert f"after {settled:.3g} s" in run.verdict(0.05)
+    assert f"the error of y3 stays within 0.05 after {run.settling_time(0.05, 'y3'):.3g} s" in run.verdict(0.05, "y3")
 
 
 def test_root_mean_square_over_a_part():
@@ -101,7 +107,7 @@ def test_a_point_must_be_seen_all_the_time():
 
 
 def test_what_is_no_observer_is_refused():
-    with pytest.raises(DoesNotFit, match=r"an observer is needed, such as ibo\(form\)"):
+    with pytest.raises(WrongKind, match=r"expected an observer of a form: call it: identifier_based\(form\)"):
         track(RECORDING, ibo)
 
 
@@ -149,7 +155,7 @@ def test_observers_follow_on_every_surface(surface):
     names = [s.name for s in surface.image_coordinates]
     recording = record(scenarios.ma2005_eq35(surface), 5, NOISY, seed=1)
     run = track(recording, ibo(system.measure(*names)))
-    assert run.settling_time(0.05) < 4
+    assert run.settling_time(0.05, "y3") < 4
 
 
 def test_an_observer_for_any_plane_follows_on_one():

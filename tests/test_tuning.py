@@ -23,7 +23,7 @@ def follow(recording, observer):
 
 
 def reported(form=BOTH, **settings):
-    return choose_and_report(CHOOSING, REPORTING, form, follow, GAINS, after=(1.0, 2.0), **settings)
+    return choose_and_report(CHOOSING, REPORTING, form, follow, GAINS, after=(1.0, 2.0), length=1.0, **settings)
 
 
 def test_the_grid_has_every_combination():

@@ -8,6 +8,8 @@ from dataclasses import dataclass, fields, replace
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from percept_obs.border import derived
+
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
 
@@ -50,9 +52,9 @@ class Equations:
         for field in fields(self):
             value = getattr(self, field.name)
             if field.name == "update":
-                value = tuple(tuple(map(sp.sympify, block)) for block in value)
+                value = tuple(derived(block, "an update") for block in value)
             elif field.name != "reset_condition":
-                value = tuple(map(sp.sympify, value))
+                value = derived(value, f"the equations' {field.name}")
             object.__setattr__(self, field.name, value)
         listed = (*self.state, *self.measured, *self.parameters, *self.gains)
         if len({symbol.name for symbol in listed}) != len(listed):

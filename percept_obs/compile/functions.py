@@ -12,6 +12,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import derived
 from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
@@ -78,7 +79,7 @@ def function_source(
     with text.function("evaluate", ["x", "out"]):
         for k, name in enumerate(names.values()):
             text.assign(name.name, f"x[{k}]")
-        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        renamed = [e.xreplace(names) for e in derived(expressions, "an expression")]
         refuse_what_differs(renamed)
         text.formulas(renamed, "d")
         for k in range(len(expressions)):

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.border import limit
 from percept_obs.compile.arrays import Array, Indices
 
 Shares = tuple[Fraction, ...]
@@ -39,7 +40,10 @@ LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
 
 PLANT_STEP = 0.005
-"""Longest step, in seconds, with which a point's motion is integrated."""
+"""Longest step, in seconds, with which the page integrates a point's motion; `recording.path` is exact."""
+
+STEP_ROUNDING = 1e-4
+"""Share of the longest step by which one may be longer: a clock that counts from 1970 knows times to 2e-7 s."""
 
 LARGEST_STEP_RATE = 2.0
 """Largest product of a step and a decay rate: explicit Euler's limit of stability; Runge-Kutta's is 2.78."""
@@ -59,7 +63,8 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
         Where the times stand in the grid.
     """
     intervals = np.diff(times)
-    counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - 1e-9)), 0).astype(int)
+    limit(float((intervals / longest).sum()), "steps", "take longer steps or a shorter time")
+    counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - STEP_ROUNDING)), 0).astype(int)
     index = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(counts)), counts)
     inside = np.arange(index[-1]) - index[owner] + 1
@@ -109,7 +114,7 @@ def for_the_page() -> str:
         "WEIGHTS": weights.tolist(),
         "INSTANTS": list(map(float, INSTANTS)),
     }
-    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "LARGEST_STEP_RATE", "LARGEST_SQUARED_STATE"):
+    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "STEP_ROUNDING", "LARGEST_STEP_RATE", "LARGEST_SQUARED_STATE"):
         constants[name] = globals()[name]
     lines = [f"export const {name} = {json.dumps(value)};" for name, value in constants.items()]
     return "\n".join(["// Printed by percept_obs/compile/integrator.py, which says what they mean.", *lines, ""])

@@ -52,7 +52,7 @@ def source(equations: Equations, language: Printed = "python") -> str:
 
     def prepared(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
         """The expressions in the loop's names, with what depends on gains only taken out."""
-        renamed = [sp.sympify(e).xreplace(names) for e in expressions]
+        renamed = [e.xreplace(names) for e in expressions]
         refuse_what_differs(renamed)
         return [_take_out(_nested(e, variables), known_gains, fixed) for e in renamed]
 

@@ -62,7 +62,7 @@ def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None,
     reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
     named = CLAIM in ax.get_legend_handles_labels()[1]
     name = "_claim" if named else CLAIM
-    ax.fill_between(run.time, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
+    ax.fill_between(run.elapsed, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
     claimed = ~np.isnan(low)
     if not claimed.any():
         return ""

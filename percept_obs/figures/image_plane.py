@@ -106,7 +106,7 @@ def _one_point(ax: Axes, recording: Recording, run: Run | None, threshold: float
         f"{KINDS[kind]} path in the image of the {recording.view.name} surface: y1 is {words.span(path[:, 0])}, y2 "
         f"{words.span(path[:, 1])}, from the start at {words.place(seen[0])} to the end at {words.place(seen[-1])}."
     )
-    yield focus.draw(ax, centre, path, recording.time)
+    yield focus.draw(ax, centre, path, recording.elapsed)
     yield focus.draw_disk(ax, centre, radius, threshold, seen) if np.isfinite(radius) else ""
     yield focus.draw_blind_lines(ax, system, *measured) if len(measured) == 1 else ""
     if run is not None:

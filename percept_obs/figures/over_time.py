@@ -13,6 +13,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 
 @figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
@@ -21,7 +22,7 @@ def runs_over_time(
     labels: Sequence[str] | None = None,
     coordinate: str | None = None,
     axes: Sequence[Axes] | None = None,
-    tolerance: float = 0.05,
+    tolerance: float = TOLERANCE,
 ) -> Drawing:
     """One coordinate as several observers estimate it, and their errors.
 
@@ -35,7 +36,7 @@ def runs_over_time(
     coordinate : str, optional
         Such as "y1"; the inverse distance when left out.
     tolerance : float
-        Bound on the hidden coordinates' errors, for the verdicts.
+        Bound on the relative error of the distance, for the verdicts.
     """
     runs = given.runs_of_one_point(runs)
     labels = given.labels_for(labels, _descriptions(runs))
@@ -54,9 +55,9 @@ def runs_over_time(
     estimates = np.array([run.estimate[:, column] for run in runs])
     errors = np.abs(truth - estimates)
     looks = [look.style(number) for number in range(len(runs))]
-    upper.plot(recording.time, truth, **look.TRUTH)
-    curves.draw(upper, recording.time, estimates, _with_divergence(runs, labels), looks)
-    curves.draw_errors(lower, recording.time, errors, labels, looks)
+    upper.plot(recording.elapsed, truth, **look.TRUTH)
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
+    curves.draw_errors(lower, recording.elapsed, errors, labels, looks)
     upper.set_ylabel(words.label(coordinate, view))
     lower.set_ylabel(f"|error of {words.letter(coordinate)}|")
     outside = axis.linear(upper, truth, estimates, f"the estimates of {said}")
@@ -106,9 +107,9 @@ def distance(
     parts = [f"the {word}", *(["its relative error"] if reference else [])]
     upper, *lower = rows(axes, [2.2, 1.8][: len(parts)], parts)
     for name, values in known.items():
-        upper.plot(recording.time, values, **(look.TRUTH if name == "truth" else look.dots(values, label=name)))
+        upper.plot(recording.elapsed, values, **(look.TRUTH if name == "truth" else look.dots(values, label=name)))
     looks = [look.style(number) for number in range(len(runs))]
-    curves.draw(upper, recording.time, estimates, _with_divergence(runs, labels), looks)
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
     if np.isnan(estimates).all():
         upper.text(0.5, 0.5, "no estimate in front of the camera", ha="center", transform=upper.transAxes)
     upper.set_ylabel(f"{word} ${symbol}$ (m)")
@@ -123,7 +124,7 @@ def distance(
     yield outside
     legend_above(upper)
     for ax in lower:
-        curves.draw_errors(ax, recording.time, errors, labels, looks)
+        curves.draw_errors(ax, recording.elapsed, errors, labels, looks)
         ax.set_ylabel("relative error (%)")
         yield f"Below, the errors relative to the {reference}, in per cent on a logarithmic axis."
         yield axis.log(ax, errors, "the relative errors", highest=1000, ticks="{x:g}")
@@ -175,5 +176,5 @@ def _distance_story(run: Run, error: Array) -> str:
     return words.joined(
         words.story(run),
         f"Over the last half its median relative error is {np.median(later):.2g} %." if later.size else "",
-        f"{behind} of {len(run.time)} estimates are not in front of the camera: gaps." if behind else "",
+        f"{behind} of {len(run.elapsed)} estimates are not in front of the camera: gaps." if behind else "",
     )

@@ -52,7 +52,7 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
     _set_equal_scales(ax, axis.complete(np.vstack([camera, truth, estimate])))
     legend_above(ax, centred=True, fitting=66)
     yield "Scene in metres, with the camera at the origin and Z forward."
-    yield _approach(recording.time, truth) if len(truth) else ""
+    yield _approach(recording.elapsed, truth) if len(truth) else ""
     yield f"The point ends at X, Y, Z = {words.place(path[-1])} m." if len(path) else "No place is known."
     yield "" if run is None else f"Estimate of the {run.observer.name} observer, dashed. {words.story(run)}"
     if missing := len(estimate) - len(axis.complete(estimate)):

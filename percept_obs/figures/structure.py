@@ -38,7 +38,7 @@ def quantities(
     labels = given.labels_for(labels, [run.observer.name for run in runs])
     first, choice = runs[0], _choice(runs[0])
     alike = (replace(_choice(run), scale=choice.scale) == choice for run in runs)
-    if not all(alike) or not all(np.array_equal(run.time, first.time) for run in runs):
+    if not all(alike) or not all(np.array_equal(run.elapsed, first.elapsed) for run in runs):
         raise ValueError("the runs have different unknowns or times; draw them one by one")
     if any(run.recording.truth is None for run in runs):
         raise ValueError("there is no truth to compare with; figures.signals(run) draws a run without one")
@@ -47,12 +47,12 @@ def quantities(
     stack = rows(axes, [1.5] * len(true), list(true))
     looks = [look.style(number) for number in range(len(runs))]
     shown = "Image coordinates, inverse depth and unknown quantities" if image else "Unknown quantities"
-    yield f"{shown} from {first.time[0]:g} to {first.time[-1]:g} s, a row each."
+    yield f"{shown} from {first.elapsed[0]:g} to {first.elapsed[-1]:g} s, a row each."
     for ax, (name, truth) in zip(stack, true.items(), strict=True):
         unit = UNITS.get(name, "m/s")
         estimates = np.array([each[name] for each in found])
-        ax.plot(first.time, truth, **look.TRUTH)
-        curves.draw(ax, first.time, estimates, labels, looks)
+        ax.plot(first.elapsed, truth, **look.TRUTH)
+        curves.draw(ax, first.elapsed, estimates, labels, looks)
         ax.set_ylabel(f"${name[0]}_{{{name[1:].lstrip('_')}}}$" + (f" ({unit})" if unit else ""))
         ends = [f"{label} {_end(one)}" for label, one in zip(labels, estimates, strict=True)]
         yield f"{name}{f' in {unit}' if unit else ''}: the truth, {words.span(truth)}; at the end {', '.join(ends)}."

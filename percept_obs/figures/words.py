@@ -8,6 +8,7 @@ from percept_obs.figures.base import Array
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 
 def finite(values: ArrayLike) -> Array:
@@ -26,7 +27,7 @@ def span(values: ArrayLike) -> str:
 
 def times(run: Run) -> str:
     """From when to when a run goes."""
-    return f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
+    return f"{run.elapsed[0]:.4g} to {run.elapsed[-1]:.4g} s"
 
 
 def place(coordinates: Array) -> str:
@@ -71,7 +72,7 @@ def joined(*sentences: str) -> str:
     return " ".join(filter(None, sentences))
 
 
-def story(run: Run, tolerance: float = 0.05) -> str:
+def story(run: Run, tolerance: float = TOLERANCE) -> str:
     """What happened to a run, in sentences: its verdict, resets, divergence and lost samples."""
     if not tolerance > 0:
         raise ValueError(f"the tolerance is {tolerance}; it must be positive")
@@ -84,5 +85,5 @@ def story(run: Run, tolerance: float = 0.05) -> str:
         f"{verdict[0].upper()}{verdict[1:]}.",
         f"Before that it was reset {resets}." if diverged and len(run.resets) else "",
         f"From there on {missing} estimates are missing: the curve ends." if missing else "",
-        f"{lost} of {len(run.time)} samples were lost." if lost else "",
+        f"{lost} of {len(run.elapsed)} samples were lost." if lost else "",
     )

@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.windowed import check_window
@@ -18,6 +19,7 @@ from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
+from percept_obs.system.motion import slack_of
 
 Piece = tuple[Array, Array]
 
@@ -43,6 +45,7 @@ VERDICTS = MappingProxyType(
 """What may be said of condition (14)."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Gramian:
     """The integral of Phi^T S Phi over windows, from the state at their beginnings.
@@ -123,6 +126,7 @@ class Gramian:
         return text
 
 
+@checked
 def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the images of a window tell of the state: the integral in (14), Inaba et al. 2005.
 
@@ -153,6 +157,7 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
+@checked
 def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
     """What the points themselves, with their distances, would tell: the integral of Phi^T C^T C Phi.
 
@@ -173,6 +178,7 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     return _windows(recording, window, form, information)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class DecayBound:
     """What the proof of Theorem 3.4 guarantees of the error, window by window.
@@ -206,6 +212,7 @@ class DecayBound:
             return float(-np.log(self.contraction).mean() / (2 * self.window))
 
 
+@checked
 def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
     """A bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
@@ -234,20 +241,22 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         If there is no truth, P is computed or misses (15), or the window does not fit.
     """
     form, matrix = observer.form, observer.P
+    if not form.fits(recording.view):
+        raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    check_window(recording, window)
-    time, images = recording.time, true_images(recording)
+    _check_window(recording, window)
+    time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
         None if matrix.computed else np.broadcast_to(matrix.at(time[every]), (len(time[every]), *[form.states] * 2))
     )
     if P_there is None or not conditions(observer, time[every], images[every], P_there).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
-    begins = time[0] + window * np.arange(int((time[-1] - time[0]) / window + 1e-9))
+    begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
     for k, begin in enumerate(begins):
-        inside = np.flatnonzero((time >= begin - 1e-9) & (time <= begin + window + 1e-9))
+        inside = np.flatnonzero((time >= begin - slack) & (time <= begin + window + slack))
         inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
         at = time[inside]
         shares = np.convolve(np.diff(at), [0.5, 0.5])  # of the trapezoidal rule
@@ -270,11 +279,20 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
 
 
+@checked
 def true_images(recording: Recording) -> Array:
     """The images without noise where the truth is known, shape (K, p, m); NaN while a point is not seen."""
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
+
+
+def _check_window(recording: Recording, window: float) -> None:
+    """Refuse a window that does not fit into a recording, or fits between two samples."""
+    check_window(recording, window)
+    shortest = float(np.diff(recording.time).min())
+    if window < shortest * (1 - 1e-9):
+        raise ValueError(f"the window is {window} s, shorter than the {shortest:.4g} s between two samples; widen it")
 
 
 def _transitions(form: PointsForm, time: Array) -> Array:
@@ -291,13 +309,13 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
     window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
     """
-    check_window(recording, window)
+    _check_window(recording, window)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     S, Phi = information(used), _transitions(form, time)
     h = np.diff(time)[:, None, None]
     integrals = h / 2 * (S[:-1] + np.swapaxes(Phi, 1, 2) @ S[1:] @ Phi)
-    ends = np.searchsorted(time, time + window - 1e-9)
+    ends = np.searchsorted(time, time + window - slack_of(time))
     begins = np.flatnonzero(ends < len(time))
 
     front: list[Piece] = []

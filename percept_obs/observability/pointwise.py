@@ -7,9 +7,11 @@ from functools import cached_property
 
 import sympy as sp
 
+from percept_obs.border import checked, expression
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 
+@checked
 @dataclass(frozen=True)
 class InstantaneousObservability:
     """What w(x1) alone tells about the hidden coordinates at an instant.
@@ -72,7 +74,7 @@ class InstantaneousObservability:
                 "look at the zero set and the window instead"
             )
         centre = tuple(sp.cancel(self.zero_set[0][x]) for x in self.form.x1)
-        return centre, sp.Abs(threshold) / sp.sqrt(self.growth)
+        return centre, sp.Abs(expression(threshold, "the threshold")) / sp.sqrt(self.growth)
 
     def _repr_latex_(self) -> str:
         verdict = r"\text{an instant can suffice}"
@@ -81,6 +83,7 @@ class InstantaneousObservability:
         return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict}$"
 
 
+@checked
 def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     """Observability at an instant, from w w^T (Ma 2005, (17)-(20), p. 67).
 

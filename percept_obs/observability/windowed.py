@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import from_the_start, slack_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +37,7 @@ class Excitation:
         return float(self.smallest.min())
 
 
+@checked
 def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0) -> Excitation:
     """Persistency of excitation along a recording.
 
@@ -56,10 +59,10 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     """
     from scipy.integrate import cumulative_trapezoid
 
-    form, time = form.canonical_form(), recording.time
+    time = recording.time
     check_window(recording, window)
-    gathered = cumulative_trapezoid(_information(form, recording), time, axis=0, initial=0)
-    ends = time[time >= time[0] + window - 1e-9]
+    gathered = cumulative_trapezoid(information_along(form, recording), time, axis=0, initial=0)
+    ends = time[from_the_start(recording.elapsed, window)]
     begins = np.maximum(ends - window, time[0])
     flat = gathered.reshape(len(time), -1)
     at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in flat.T], axis=-1)
@@ -75,15 +78,17 @@ def check_window(recording: Recording, window: float) -> None:
     ValueError
         If it is not positive or longer than the recording.
     """
-    length = recording.time[-1] - recording.time[0]
-    if not 0 < window <= length + 1e-9:
+    length = recording.elapsed[-1]
+    if not 0 < window <= length + slack_of(recording.time):
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
 
 
-def _information(form: CanonicalForm, recording: Recording) -> Array:
-    """The matrix w w^T at the samples, shape (K, n2, n2)."""
+def information_along(form: PartitionedSystem, recording: Recording) -> Array:
+    """The matrix w w^T at the samples, shape (K, n2, n2); see `windowed`."""
+    form = form.canonical_form()
     source = recording.outputs if recording.truth is None else recording.truth
-    columns = [source[:, recording.names.index(name)] for name in form.measured]
+    names = recording.names if source is recording.outputs else tuple(map(str, recording.view.coordinates))
+    columns = [source[:, names.index(name)] for name in form.measured]
     seen = [np.isfinite(column) for column in columns]
     time = recording.time
     outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]

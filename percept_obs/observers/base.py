@@ -10,11 +10,12 @@ import numpy as np
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.inversion import Unobservable
-from percept_obs.observers.parts import hats
+from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 
@@ -57,6 +58,7 @@ class FastestRate:
     remedy: str
 
 
+@checked
 @dataclass(frozen=True)
 class Observer:
     """An observer of a system with measured and hidden coordinates, as equations.
@@ -72,7 +74,8 @@ class Observer:
         Estimates of ``form.coordinates``, from the state, the measured outputs, the parameters and the gains.
     gains : tuple of Gain
     start : tuple of expressions
-        The state at the first sample, from that sample, the estimates asked for (`hats`), parameters and gains.
+        The state at the first sample, from that sample, the estimates asked for (`hats`), whether these are the sample
+        itself (`first_seen`), parameters and gains.
     covariance : matrix of expressions, optional
         Covariance of the estimate, from the state, if the observer claims one.
     about : About, optional
@@ -110,6 +113,32 @@ class Observer:
         if unknown:
             raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
         return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
+
+    def in_units(self, length: float = 1.0, time: float = 1.0) -> Observer:
+        """The same observer with its gains' numbers taken to count in other units.
+
+        Parameters
+        ----------
+        length, time : float
+            The units in metres and in seconds, such as 30.0 where a point at 30 m stands for one at 1 m.
+
+        Raises
+        ------
+        ValueError
+            If one of them is not positive and finite.
+
+        Examples
+        --------
+        >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole
+        >>> observer = ibo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"), lyapunov=-0.5)
+        >>> next(gain.value for gain in observer.in_units(length=10.0).gains if gain.name == "lyapunov")
+        -0.005
+        """
+        for name, unit in (("length", length), ("time", time)):
+            if not 0 < unit < math.inf:
+                raise ValueError(f"the unit of {name} is {unit}; it must be positive and finite")
+        scaled = {g.name: g.value * length ** g.powers["m"] * time ** g.powers["s"] for g in self.gains}
+        return self.with_gains(**scaled)
 
     @property
     def gain_values(self) -> dict[sp.Symbol, float]:
@@ -181,9 +210,16 @@ class Observer:
             raise ValueError(
                 f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}"
             )
+        unseen = [name for name in self.form.measured if not math.isfinite(outputs.get(name, math.nan))]
+        if unseen:
+            raise ValueError(
+                f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output"
+            )
         asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
         known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
         known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
+        seen = zip(self.form.measured, first_seen(self.form), strict=True)
+        known |= {symbol: float(name not in given) for name, symbol in seen}
         missing = sorted(str(s) for s in sp.Tuple(*self.start).free_symbols - set(known))
         if missing:
             raise ValueError(f"the start of the {self.name} observer needs {', '.join(missing)}; pass parameters=")
@@ -225,6 +261,7 @@ class Observer:
         return self.equations.xreplace(out)._repr_latex_()
 
 
+@checked
 def with_point(observer: Observer) -> Observer:
     """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state)."""
     form, eq = observer.form, observer.equations

@@ -4,13 +4,14 @@ import sympy as sp
 
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
-from percept_obs.observers.parts import hats
+from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 
 R, Q, Q2, P1, P2 = sp.symbols("R Q Q2 P01 P02", real=True)
 
 EXACT = "with 0 the filter divides by the variance of what it knows exactly"
 HIDDEN_DOUBT = "what is added to it in the hidden part, which may change more than the motion says"
+GIVEN = "variance of a given start in the measured part"
 WHY = "it is a variance"
 NEVER = "it is a variance, and a start known exactly is never corrected"
 
@@ -25,7 +26,7 @@ NEVER = "it is a variance, and a start known exactly is never corrected"
         Gain(R, "noise_variance", 1e-4 / 3, 1e-7, 1e-2, "1", "variance of the noise in each output", R > 0, EXACT),
         Gain(Q, "process_noise", 0, 0, 1e-2, "1/s", "variance per second by which the motion is doubted", Q >= 0, WHY),
         Gain(Q2, "hidden_process_noise", 0, 0, 1, "1/(m^2 s)", HIDDEN_DOUBT, Q2 >= 0, WHY),
-        Gain(P1, "measured_variance", 1, 1e-4, 10, "1", "variance of the start in the measured part", P1 > 0, NEVER),
+        Gain(P1, "measured_variance", 1, 1e-4, 10, "1", GIVEN, P1 > 0, NEVER),
         Gain(P2, "hidden_variance", 1, 1e-4, 10, "1/m^2", "variance of the start in the hidden part", P2 > 0, NEVER),
     ),
     candidates=tuple(
@@ -48,6 +49,9 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
 
         k = P_j / (P_jj + R),  xhat <- xhat + k (y_j - xhat_j),  P <- P - k P_j^T
 
+    A measured output that starts from its first sample has the variance R of that sample, which then corrects nothing;
+    `measured_variance` is that of a start that is given.
+
     Notes
     -----
     Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  R is by default that of uniform noise of
@@ -67,7 +71,7 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     for k, y in enumerate(form.x1):
         gain = P.col(k) / (P[k, k] + R)
         updates.append(state(sp.Matrix(x_hat) + gain * (y - x_hat[k]), P - gain * P.row(k)))
-    spread = sp.diag(*(P1 for _ in form.x1), *(P2 for _ in form.x2))
+    spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form)), *(P2 for _ in form.x2))
     return Derived(state(x_hat, P), state(rate, P_rate), state(x_hat, spread), update=tuple(updates), covariance=P)
 
 

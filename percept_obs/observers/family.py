@@ -9,12 +9,14 @@ from typing import Any
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from percept_obs.border import WrongKind, refuse_kind
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.observers.base import About, FastestRate, Observer
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
+from percept_obs.system.perspective import PerspectiveSystem
 
 
 @dataclass(frozen=True)
@@ -121,14 +123,20 @@ class Family:
         """Why there is no such observer of this form; empty if there is one."""
         return str(self.objection(form) or "")
 
-    def __call__(self, form: PartitionedSystem, *options: Any, **chosen: Any) -> Observer:
-        """An observer of this form; raises what is told by `objection`, or by its options and gains."""
+    def __call__(self, form: PartitionedSystem | PerspectiveSystem, *options: Any, **chosen: Any) -> Observer:
+        """An observer of this form; raises what is told by `objection`, or by its options and gains.
+
+        A `PerspectiveSystem` stands for its form with all image coordinates measured.
+        """
+        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
+        if isinstance(form, PerspectiveSystem):
+            form = form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
         objection = self.objection(form)
         if objection is not None:
             raise objection
         form = form if self.any_form else form.canonical_form()
         if len(options) > len(self.options):
-            raise TypeError(f"{self!r} takes {len(self.options)} options, not {len(options)}; name the gains")
+            raise WrongKind(f"{self!r} takes {len(self.options)} options, not {len(options)}; name the gains")
         settings = {option.name: option.value for option in self.options}
         settings |= dict(zip(settings, options, strict=False))
         settings |= {name: chosen.pop(name) for name in settings if name in chosen}
@@ -160,7 +168,7 @@ class Family:
     def _docstring(self) -> str:
         text = inspect.getdoc(self.derive) or self.about.title
         head, mark, notes = text.partition("\n\nNotes\n-----\n")
-        form = f"form : PartitionedSystem\n    What is observed; needed: {self.about.needs}."
+        form = f"form : PartitionedSystem, or PerspectiveSystem\n    What is observed; needed: {self.about.needs}."
         parameters = "\n".join(map(str, (form, *self.options, *self.gains)))
         errors = (
             "ValueError\n    If `refusal` tells why there is none of this form, or a gain or an option makes no sense."

@@ -8,6 +8,8 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.border import refuse_kind
+
 
 @dataclass(frozen=True)
 class Gain:
@@ -48,15 +50,23 @@ class Gain:
     reason: str = ""
 
     def __post_init__(self) -> None:
-        try:
-            value = float(self.value)
-        except (TypeError, ValueError):
-            raise ValueError(f"{self.name} = {self.value!r} is not a number") from None
+        refuse_kind("the gain", self.name, self.value, float)
+        value = float(self.value)
         object.__setattr__(self, "value", value)
         if not math.isfinite(value):
             raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
         if not self.condition.subs(self.symbol, sp.Float(value)):
             raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
+
+    @property
+    def powers(self) -> dict[str, int]:
+        """Powers of metres, "m", and seconds, "s", in the unit."""
+        above, _, below = self.unit.partition("/")
+        found = {"m": 0, "s": 0}
+        for sign, part in ((1, above), (-1, below.strip("()"))):
+            for name, _, power in (factor.partition("^") for factor in part.split() if factor != "1"):
+                found[name] += sign * int(power or 1)
+        return found
 
     def __str__(self) -> str:
         """Two lines of a docstring."""

@@ -6,6 +6,7 @@ import math
 
 import sympy as sp
 
+from percept_obs.border import checked
 from percept_obs.observers.base import FastestRate, Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain, grid
@@ -119,6 +120,7 @@ class GainTooSmall(ValueError):
     """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing."""
 
 
+@checked
 def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) -> float:
     """Bound on each entry of se, outside of which Theorem 1 makes it shrink.
 
@@ -142,16 +144,19 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     -----
     Chwa 2019, (16)-(21), p. 5.
     """
+    if not 0 <= time < math.inf:
+        raise ValueError(f"the time is {time} s; it must be finite, from 0 on")
     gains = observer.gain_values
     alpha = disturbance / gains[gamma]
     if not 0 <= alpha < 1:
         raise GainTooSmall(
-            f"g reaches {disturbance:.4g}, but the switching gain gamma is {gains[gamma]:.4g}; alpha = |g| / gamma "
-            "must be below 1, so take a larger switching_gain"
+            f"the disturbance g reaches {disturbance:.4g}, but the switching gain gamma is {gains[gamma]:.4g}; "
+            "alpha = |g| / gamma must be below 1, so take a larger switching_gain"
         )
     return math.atanh(alpha) / (gains[a] + gains[b] * time)
 
 
+@checked
 def tolerable_amplification(
     observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
 ) -> float:
@@ -178,8 +183,11 @@ def tolerable_amplification(
     ValueError
         If a number is not positive.
     """
-    if not (noise > 0 and hidden > 0 and margin > 0):
-        raise ValueError(f"noise, hidden and margin must be positive, not {noise}, {hidden} and {margin}")
+    if not (noise > 0 and hidden > 0 and margin > 0 and margin * noise > 0 and 0 <= time < math.inf):
+        raise ValueError(
+            f"noise, hidden and margin must be positive and the time finite, from 0 on, not {noise}, {hidden}, "
+            f"{margin} and {time} s"
+        )
     gains = observer.gain_values
     return hidden / (margin * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
 

@@ -2,12 +2,18 @@
 
 import sympy as sp
 
+from percept_obs.border import limit, refuse_kind
+from percept_obs.observers.base import FastestRate
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
 
-Q, R, P0 = sp.symbols("Q R P0", real=True)
+Q, R, P0, kappa = sp.symbols("Q R P0 kappa", real=True)
+HIDDEN = "how much more both are in the hidden part"
+MOST_ITERATES = 100
+"""Filters in a cascade: their equations are derived within a few seconds."""
+
 WEIGHT, DIVIDES = "it is a weight", "the gain divides by it"
 
 
@@ -29,10 +35,11 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
         Gain(Q, "process_weight", 0.1, 1e-3, 10, "1/s", "how much the frozen model is doubted", Q >= 0, WEIGHT),
         Gain(R, "measurement_weight", 0.1, 1e-4, 10, "s", "how much the measurement is doubted", R > 0, DIVIDES),
         Gain(P0, "start_weight", 1, 1e-2, 10, "1", "how much the start is doubted", P0 > 0, WEIGHT),
+        Gain(kappa, "hidden_weight", 1, 1e-2, 100, "1/m^2", HIDDEN, kappa > 0, WEIGHT),
     ),
     options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
-    # only the ratios to the measurement's weight matter, and a large one is stiff
-    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
+    # only the ratios to the measurement's weight matter; smaller ones are too stiff for steps of 10 ms
+    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.006), start_weight=(1,)),
     objection_of=not_quadratic,
     stays_at_truth=False,
 )
@@ -43,7 +50,7 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     taken at the previous iterate the system is linear and time-varying; each iterate is a filter with a Riccati gain::
 
         xhat_i' = F_i xhat_i + (phi, g(0)) + P_i C^T R^-1 (x1 - C xhat_i)
-        P_i' = F_i P_i + P_i F_i^T + Q I - P_i C^T R^-1 C P_i
+        P_i' = F_i P_i + P_i F_i^T + Q W - P_i C^T R^-1 C P_i,    P_i(0) = P0 W,    W = diag(1, kappa)
         F_i = [[0, w^T], [0, (J(0) + J(x2hat_(i-1))) / 2]],   J(x2hat_0) = J(0)
 
     The iterates run side by side, as one cascade; the last one is the estimate.
@@ -54,14 +61,17 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
     With Q = 0 the estimate never settles.
     """
-    if not isinstance(iterates, int) or iterates < 1:
+    refuse_kind("linear_approximation", "iterates", iterates, int)
+    if iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
+    limit(iterates, "iterates", "take fewer", MOST_ITERATES)
     x, n1 = (*form.x1, *form.x2), len(form.x1)
     size = len(x)
     jacobian = form.g.jacobian(form.x2).expand()
     at_zero = dict.fromkeys(form.x2, sp.S.Zero)
     offset = sp.Matrix([*form.phi, *form.g.subs(at_zero)])
     C = sp.eye(size)[:n1, :]
+    weights = [sp.S.One] * n1 + [kappa] * (size - n1)
 
     state: list[sp.Symbol] = []
     flow: list[sp.Expr] = []
@@ -74,13 +84,16 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
         F = sp.Matrix(sp.BlockMatrix([[sp.zeros(n1), form.w.T], [sp.zeros(size - n1, n1), hidden_block]]))
         gain = P * C.T / R
         rate = F * sp.Matrix(estimate) + offset + gain * (sp.Matrix(form.x1) - C * sp.Matrix(estimate))
-        P_rate = F * P + P * F.T + Q * sp.eye(size) - gain * C * P
+        P_rate = F * P + P * F.T + Q * sp.diag(*weights) - gain * C * P
         upper = [(i, j) for i in range(size) for j in range(i, size)]
         state += [*estimate, *(P[i, j] for i, j in upper)]
         flow += [*rate, *(P_rate[i, j] for i, j in upper)]
-        start += [*hats(x), *(P0 if i == j else sp.S.Zero for i, j in upper)]
+        start += [*hats(x), *(P0 * weights[i] if i == j else sp.S.Zero for i, j in upper)]
         previous = dict(zip(form.x2, estimate[n1:], strict=True))
-    return Derived(tuple(state), tuple(flow), tuple(start), estimate)
+    # where w is small P' = Q - P^2 / R: a step of 1.74 R / P0, a little below the 2 of a linear decay, makes P negative
+    rate = sp.Rational(7, 6) * P0 / R + sp.sqrt(Q / R)
+    remedy = "take a larger measurement_weight or a smaller start_weight"
+    return Derived(tuple(state), tuple(flow), tuple(start), estimate, fastest=FastestRate(rate, remedy))
 
 
 def _symmetric(size: int, number: int) -> sp.Matrix:

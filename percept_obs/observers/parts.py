@@ -6,9 +6,10 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from percept_obs.border import checked
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
-from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
 
@@ -29,6 +30,11 @@ NOISE_GAIN = Gain(
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     """Symbols of the estimates: yhat1 for y1."""
     return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
+
+
+def first_seen(form: PartitionedSystem) -> tuple[sp.Symbol, ...]:
+    """Symbols that are 1 where the start of a measured output is its first sample itself, and 0 where it is given."""
+    return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in form.x1)
 
 
 def output_injection(
@@ -80,6 +86,7 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
 
 
+@checked
 def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
 

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from percept_obs.border import refuse_kind
 from percept_obs.observers.family import Option
 
 Switch = Callable[[sp.Expr, sp.Expr], sp.Expr]
@@ -32,6 +33,7 @@ def switch_named(name: str) -> Switch:
     ValueError
         If there is none.
     """
+    refuse_kind("the observer", "switch", name, str)
     if name not in SWITCHES:
         raise ValueError(f"the switch {name!r} is none of {', '.join(map(repr, SWITCHES))}")
     return SWITCHES[name]

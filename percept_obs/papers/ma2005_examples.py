@@ -102,7 +102,7 @@ def followed(number: int, name: str, outputs: str, seed: int, period: float = 0.
 
 def settling(number: int, name: str, outputs: str) -> float:
     """When the hidden coordinates' error has entered 0.05 for good with every seed; infinite if one never does."""
-    return max(followed(number, name, outputs, seed).settling_time() for seed in SEEDS)
+    return max(followed(number, name, outputs, seed).settling_time(0.05, *FORMS[outputs].hidden) for seed in SEEDS)
 
 
 def converges(number: int, *runs: tuple[str, str]) -> Check:
@@ -126,7 +126,9 @@ def converges(number: int, *runs: tuple[str, str]) -> Check:
 def slower_with_one_output(printed: Printed) -> Finding:
     """Section 5: on (36) each observer settles later with y1 alone, with every seed."""
     times = {
-        (name, outputs): [followed(36, name, outputs, seed).settling_time() for seed in SEEDS]
+        (name, outputs): [
+            followed(36, name, outputs, seed).settling_time(0.05, *FORMS[outputs].hidden) for seed in SEEDS
+        ]
         for name in OBSERVERS
         for outputs in FORMS
     }

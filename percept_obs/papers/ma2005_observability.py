@@ -184,7 +184,7 @@ def range_at_the_foe(printed: Printed) -> Finding:
     passing = exactly(EXAMPLES[0].motion.values)
     staying = passing | dict.fromkeys(SYSTEM.motion.A, sp.S.Zero)
     (first, second), (_, never) = ranks_at_the_foe(passing), ranks_at_the_foe(staying)
-    settling = track(through_the_foe(), identifier_based(BOTH), (0, 0, 0)).settling_time()
+    settling = track(through_the_foe(), identifier_based(BOTH), (0, 0, 0)).settling_time(0.05, "y3")
     numbers = {
         "rank with first derivatives": first,
         "with second": second,

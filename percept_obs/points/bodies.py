@@ -9,11 +9,16 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import Coefficients, checked, limit
 from percept_obs.points.form import PointsForm
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.surfaces import ImagingSurface, pinhole
 
+MOST_POINTS = 200
+"""Points of a body: sympy places their blocks within a few seconds."""
 
+
+@checked
 def independent_points(motion: Motion, points: int, surface: ImagingSurface | None = None) -> PointsForm:
     """Points that share a known motion and nothing else: the state is x = (X_1, ..., X_p), with X_k' = A X_k + b.
 
@@ -45,12 +50,13 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     return _form(many, [f"X{k + 1}" for k in range(points)], [[k] for k in range(points)], surface)
 
 
+@checked
 def rigid_body(
     points: int,
-    camera_angular_velocity: Any = None,
-    camera_velocity: Any = None,
-    body_angular_velocity: Any = None,
-    point_velocity: Any = None,
+    camera_angular_velocity: Coefficients | None = None,
+    camera_velocity: Coefficients | None = None,
+    body_angular_velocity: Coefficients | None = None,
+    point_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
@@ -89,17 +95,19 @@ functions of time, optional
     share one affine motion with w = w_b - w_c; take `independent_points`.
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
+    _refuse(points)
     motion = _body_motion("rigid body", points, given, times)
     others = range(1, points)
     return _form(motion, ["r", *(f"d{k + 1}" for k in others)], [[0], *([0, k] for k in others)], surface)
 
 
+@checked
 def body_with_origin(
     points: int,
-    camera_angular_velocity: Any = None,
-    camera_velocity: Any = None,
-    body_angular_velocity: Any = None,
-    origin_velocity: Any = None,
+    camera_angular_velocity: Coefficients | None = None,
+    camera_velocity: Coefficients | None = None,
+    body_angular_velocity: Coefficients | None = None,
+    origin_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
@@ -126,6 +134,7 @@ def body_with_origin(
         If the body does not turn, so that the directions are lost for good.
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
+    _refuse(points)
     motion = _body_motion("rigid body with an origin", points + 1, given, times)
     others = range(1, points + 1)
     return _form(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
@@ -133,7 +142,6 @@ def body_with_origin(
 
 def _body_motion(name: str, vectors: int, given: tuple[Any, ...], times: ArrayLike | None) -> Motion:
     """The motion of one place and of vectors that turn with a body."""
-    _refuse(vectors)
     w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
     symbols = (w_c, v_c, w_b, v_p)
     if any(value is not None for value in given):
@@ -166,5 +174,6 @@ def _form(motion: Motion, vectors: list[str], sums: list[list[int]], surface: Im
 
 
 def _refuse(points: int) -> None:
-    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
+    if points < 1:
         raise ValueError(f"a body has {points!r} points; it needs a whole number, at least 1")
+    limit(points, "points of a body", "take fewer points", MOST_POINTS)

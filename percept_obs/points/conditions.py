@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.points.luenberger import LuenbergerObserver
 
@@ -62,6 +63,7 @@ class Conditions:
         return "; ".join([*parts, f"P is not positive definite from {lost[0]:.3g} s on" if len(lost) else least])
 
 
+@checked
 def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Array, epsilon: float = 1.0) -> Conditions:
     """The inequality (15) and the weaker sufficient one, apart.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,6 +11,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import Entries, checked, expression, matrix, numbers, warn
 from percept_obs.compile import Array, Indices, vectorised
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
@@ -22,6 +22,10 @@ from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
 DRAWS = 4
 """Values that a motion's symbols are given at random, to find what no motion lets a camera see."""
+
+
+JUDGED = "the points' positions"
+"""What verdicts judge of several points; live labs use the same words."""
 
 
 class UnseenDirection(UserWarning):
@@ -46,6 +50,7 @@ class Layout:
     expressions: tuple[sp.Expr, ...]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PointsForm:
     """The system x' = A x + v with n states, and p points C_k x that a camera sees (Inaba et al. 2005, (1)-(3)).
@@ -75,13 +80,13 @@ class PointsForm:
     """
 
     motion: Motion
-    C: Any
+    C: Entries
     surface: ImagingSurface = field(default_factory=pinhole)
     names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         n = self.motion.A.shape[0]
-        blocks = [self.C] if np.ndim(self.C) == 2 else list(self.C)
+        blocks = [self.C] if np.ndim(self.C) < 3 and not isinstance(self.C, tuple) else list(self.C)
         shapes = {np.shape(block) for block in blocks}
         if shapes != {(3, n)}:
             raise ValueError(
@@ -98,7 +103,7 @@ class PointsForm:
             if not np.isfinite(self.blocks).all():
                 raise ValueError("C has entries that are not finite; remove or repair the NaN or infinite ones")
             if self.unseen.shape[1]:
-                warnings.warn(UnseenDirection(self._complaint()), stacklevel=3)
+                warn(UnseenDirection(self._complaint()))
 
     @property
     def name(self) -> str:
@@ -186,12 +191,30 @@ class PointsForm:
 
     def locate(self, states: ArrayLike) -> Array:
         """Points C_k x of states of shape (..., n), in metres, shape (..., p, 3)."""
-        return np.einsum("kin,...n->...ki", self.blocks, np.asarray(states, dtype=float), optimize=True)
+        states = numbers(states, "the states", self.states)
+        unknown = np.asarray(~np.isfinite(states))
+        places = np.einsum("kin,...n->...ki", self.blocks, np.where(unknown, 0.0, states), optimize=True)
+        if unknown.any():
+            # a point is not known where a state is not that it consists of; the others are
+            uses = (self.blocks != 0).any(axis=1)
+            places[np.matmul(unknown, uses.T)] = np.nan
+        return places
 
     def inverse(self, states: ArrayLike) -> Array:
         """Inverse depths in 1/m of states of shape (..., n), shape (..., p); negative behind the camera."""
         distance = self.locate(states) @ self.surface_numbers[1]
         return np.divide(1, distance, out=np.full_like(distance, np.inf), where=distance != 0)
+
+    @property
+    def judged(self) -> str:
+        """Where the points are."""
+        return JUDGED
+
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
+        """How far the worst point is from where it is, relative to its distance, shape (K,); see `View`."""
+        true, found = self.locate(truth), self.locate(estimate)
+        off, distance = (np.linalg.norm(rows, axis=-1) for rows in (found - true, true))
+        return np.asarray((off / distance).max(axis=-1))
 
     def outputs(self, states: ArrayLike) -> Array:
         """Image coordinates of states of shape (..., n), shape (..., p, m); NaN behind the camera."""
@@ -207,9 +230,9 @@ class PointsForm:
 
     def rows(self, outputs: ArrayLike) -> Array:
         """B C for outputs of shape (..., p, m), shape (..., p m, n); 0 for points with a NaN."""
-        outputs = np.asarray(outputs, dtype=float)
+        outputs = numbers(outputs, "the outputs", self.points, len(self.image_coordinates))
         N, l = self.surface_numbers
-        seen = np.isfinite(outputs).all(axis=-1)[..., None, None]
+        seen = np.asarray(np.isfinite(outputs).all(axis=-1))[..., None, None]
         rows = np.where(seen, N - np.nan_to_num(outputs)[..., None] * l, 0.0) @ self.blocks
         return rows.reshape(*outputs.shape[:-2], -1, self.states)
 
@@ -255,12 +278,14 @@ class PointsForm:
 
     def E(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """E of a state: one over the distance of each point, shape (m p, m p)."""
-        distances = [(self.block.l * C * sp.ImmutableMatrix(state))[0] for C in self.C]
+        column = matrix(state, "the state", self.states, 1)
+        distances = [(self.block.l * C * column)[0] for C in self.C]
         return sp.ImmutableMatrix(sp.diag(*(sp.eye(len(self.image_coordinates)) / l for l in distances)))
 
     def H(self, state: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
         """Images of all points of a state, shape (m p, 1)."""
-        seen = [dict(zip(POINT, C * sp.ImmutableMatrix(state), strict=True)) for C in self.C]
+        column = matrix(state, "the state", self.states, 1)
+        seen = [dict(zip(POINT, C * column, strict=True)) for C in self.C]
         return sp.ImmutableMatrix([e.subs(point, simultaneous=True) for point in seen for e in self.surface.image])
 
     def derivation(self) -> Derivation:
@@ -329,5 +354,5 @@ def points_form(recording: Recording) -> PointsForm:
 def _matrix(block: Any) -> sp.ImmutableMatrix:
     """A sparse matrix; numbers become floats."""
     array = np.asarray(block, dtype=object)
-    entries = {(i, j): sp.sympify(array[i, j]) for i, j in zip(*np.nonzero(array), strict=True)}
+    entries = {(i, j): expression(array[i, j], "an entry of C") for i, j in zip(*np.nonzero(array), strict=True)}
     return sp.ImmutableSparseMatrix(*array.shape, entries)

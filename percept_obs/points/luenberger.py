@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import sympy as sp
+from numpy.typing import ArrayLike
 
+from percept_obs.border import checked
 from percept_obs.observers.base import About
 from percept_obs.observers.parts import hats
 from percept_obs.points.form import PointsForm
@@ -21,6 +24,7 @@ ABOUT = About(
 )
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class LuenbergerObserver:
     """An observer of a form with many points.
@@ -36,6 +40,7 @@ class LuenbergerObserver:
     form: PointsForm
     P: LyapunovMatrix
     about: ClassVar[About] = ABOUT
+    covariance: ClassVar[None] = None
 
     @property
     def name(self) -> str:
@@ -116,7 +121,10 @@ class LuenbergerObserver:
         )
 
 
-def luenberger(form: PointsForm, P: Any = 1.0) -> LuenbergerObserver:
+@checked
+def luenberger(
+    form: PointsForm, P: ArrayLike | Callable[[float], ArrayLike] | LyapunovMatrix = 1.0
+) -> LuenbergerObserver:
     """Luenberger-type observer of a linear state seen through many points.
 
     ::

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Signal
 
@@ -16,6 +17,7 @@ DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class LyapunovMatrix:
     """How P moves: given over time, or P' = -A^T P - P A + information S - forgetting (P - start) - decrease.
@@ -39,6 +41,11 @@ class LyapunovMatrix:
     forgetting: float = 0.0
     decrease: Any = 0.0
     schedule: Signal | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("start", "decrease"):
+            if self.schedule is None and not np.isfinite(numbers(getattr(self, name), f"the {name} of P")).all():
+                raise ValueError(f"the {name} of P (or P itself) is not finite; give numbers")
 
     @property
     def computed(self) -> bool:
@@ -68,7 +75,8 @@ class LyapunovMatrix:
             If a matrix has another shape, or is not symmetric, finite and positive (semi-)definite.
         """
         if self.schedule is not None:
-            for k, row in enumerate(() if callable(self.schedule.samples) else self.schedule.samples):
+            rows = self.schedule.at(0.0) if callable(self.schedule.samples) else self.schedule.samples
+            for k, row in enumerate(rows):
                 if row.size not in (1, states**2):
                     raise ValueError(f"P is scheduled with {row.size} entries; expected 1 or {states} x {states}")
                 _definite(_square(row, states), f"P, sample {k},")
@@ -96,11 +104,13 @@ class LyapunovMatrix:
         return (self.at(high) - self.at(low)) / (high - low)[:, None, None]
 
 
+@checked
 def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
     """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity."""
     return LyapunovMatrix("constant P", None, schedule=Signal(np.ravel(np.asarray(P, dtype=float))))
 
 
+@checked
 def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> LyapunovMatrix:
     """P given over time.
 
@@ -118,12 +128,15 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
     """
     if callable(P):
         return LyapunovMatrix("scheduled P", None, schedule=Signal(P))
-    samples = np.asarray(P, dtype=float)
+    samples = np.atleast_1d(numbers(P, "P"))
+    if not samples.size:
+        raise ValueError("P has no samples; give a number or a matrix for each of its times")
     if times is None:
         raise ValueError("samples of P need their times=; a P that stays is constant(P)")
     return LyapunovMatrix("scheduled P", None, schedule=Signal(samples.reshape(len(samples), -1), np.asarray(times)))
 
 
+@checked
 def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatrix:
     """P from the Lyapunov equation P' = -A^T P - P A - decrease, which meets (15) with room for the decrease.
 
@@ -137,6 +150,7 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatri
     return LyapunovMatrix("Lyapunov", start, decrease=decrease)
 
 
+@checked
 def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     """P from P' = -A^T P - P A + S - forgetting (P - start), S = C^T B^T B C; its inverse solves a Riccati equation.
 
@@ -165,6 +179,7 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     return LyapunovMatrix("Riccati", start, information=1.0, forgetting=float(forgetting))
 
 
+@checked
 def lyapunov_matrix(P: Any) -> LyapunovMatrix:
     """What `luenberger` takes for P: a LyapunovMatrix, a function of time, an array or a number."""
     if isinstance(P, LyapunovMatrix):

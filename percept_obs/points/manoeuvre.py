@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
 import sympy as sp
 
+from percept_obs.border import checked
 from percept_obs.system.motion import TIME as t
 
 Vectors = tuple[tuple[sp.Expr, ...], ...]
@@ -31,6 +33,7 @@ def velocities() -> Vectors:
     return tuple(-w), tuple(-v), tuple(spin * sp.Matrix(SPIN))
 
 
+@checked
 @dataclass(frozen=True)
 class Manoeuvre:
     """A camera and a body in motion, with all points kept in view.
@@ -51,6 +54,11 @@ class Manoeuvre:
     spin: float = 0.0
     input: float = 1.0
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("turning", "spin", "input", "velocity"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"the {name} is {getattr(self, name)}; it must be finite")
 
     @property
     def velocities(self) -> list[tuple[sp.Expr, ...]]:

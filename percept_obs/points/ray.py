@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import sympy as sp
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.points.block import point_block
 from percept_obs.points.form import PointsForm
@@ -97,6 +98,7 @@ def ray_error() -> RayError:
     return RayError(gain, turning, named)
 
 
+@checked
 def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
     """How fast the input v turns the ray of each point, in rad/s: what of v_k lies across the ray, over the range.
 
@@ -112,6 +114,7 @@ def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
     -------
     array of shape (K, p)
     """
+    times, states = numbers(times, "the times", "K"), numbers(states, "the states", "K", form.states)
     points, velocities = form.locate(states), form.locate(form.coefficients(times)[1])
     across = np.linalg.norm(np.cross(points, velocities), axis=-1)
     return np.asarray(across / (points**2).sum(axis=-1))

@@ -9,18 +9,21 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.points.conditions import Conditions, conditions
-from percept_obs.system.view import View
+from percept_obs.points.form import PointsForm
+from percept_obs.points.information import many_points
 from percept_obs.tracking import Run
+from percept_obs.tracking.information import Fit
 
 Array = NDArray[np.float64]
 
 
-JUDGED = "the state"
 REMEDY = "choose a larger P or shorter steps, and look at conditions() if P is no longer positive definite"
-"""What verdicts say of it, and what to do about a run that diverged; live labs use the same words."""
+"""What to do about a run that diverged; live labs use the same words."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PointsRun(Run):
     """Estimates of a state at the samples of a recording of several points.
@@ -42,9 +45,9 @@ class PointsRun(Run):
     P: Array
 
     @property
-    def view(self) -> View:
+    def view(self) -> PointsForm:
         """The form that the observer believes in."""
-        view: View = self.observer.form
+        view: PointsForm = self.observer.form
         return view
 
     @property
@@ -74,14 +77,13 @@ class PointsRun(Run):
         return np.asarray(np.linalg.norm(self.error, axis=1))
 
     @property
-    def judged(self) -> str:
-        """What the verdict judges, in words."""
-        return JUDGED
-
-    @property
     def remedy(self) -> str:
         """What to do about it if it diverged."""
         return REMEDY
+
+    @property
+    def _least_squares(self) -> Fit:
+        return many_points(self.view, self.recording)
 
     def decay_rate(self, begin: float = -math.inf, end: float = math.inf) -> float:
         """Rate of the exponential fitted to the error's norm between two times, in 1/s; positive where it shrinks.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.points.bodies import rigid_body
 from percept_obs.points.form import PointsForm
 from percept_obs.points.manoeuvre import PATH, Manoeuvre
@@ -14,6 +15,7 @@ OFFSET = (0.5, -0.3, 0.4)
 """Place of the second point from the first one, in metres, at time 0."""
 
 
+@checked
 def moving_body(points: int = 1) -> PointsScenario:
     """A rigid body that stays in the view of a turning camera, for 60 s.
 
@@ -28,6 +30,7 @@ def moving_body(points: int = 1) -> PointsScenario:
     return PointsScenario(f"moving body, {points} points", form, state, 60.0)
 
 
+@checked
 def lost_offset() -> PointsScenario:
     """The same body, of which the camera sees the first point only: the second one's place is lost."""
     two = moving_body(2)
@@ -35,6 +38,7 @@ def lost_offset() -> PointsScenario:
     return PointsScenario("the second point is not seen", form, two.state, 60.0)
 
 
+@checked
 def along_the_line_of_sight() -> PointsScenario:
     """A point that recedes along its ray: the images stand still, and its depth is lost."""
     form = PointsForm(linear(np.zeros((3, 3)), [0.04, 0.02, 0.2]), np.eye(3), names=("X", "Y", "Z"))

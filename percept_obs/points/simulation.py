@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
-from percept_obs.compile.integrator import EACH, PLANT_STEP, instants
 from percept_obs.points.form import PointsForm
-from percept_obs.points.kernel import advance, arrays, choose
-from percept_obs.recording import Scene, step_grid
+from percept_obs.recording import Scene
+from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import Motion
 
 
@@ -20,6 +20,7 @@ class LeavesEveryBound(ValueError):
     """The state grows without end, so that nothing can be recorded of it."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PointsScenario(Scene):
     """A state in motion whose points a camera may see.
@@ -62,26 +63,31 @@ class PointsScenario(Scene):
         return self.form.motion
 
     def coordinates(self, times: ArrayLike) -> Array:
-        """States at times from 0 on that do not decrease, shape (K, n), integrated with steps of `PLANT_STEP` at most.
+        """States at times from 0 on that do not decrease, shape (K, n), as exact as those of a `Scenario`.
 
         Raises
         ------
         LeavesEveryBound
             If the state grows beyond all bounds before.
+        TooMuchWork
+            If there are too many times, or the motion is too fast.
         """
-        times = np.asarray(times, dtype=float)
-        form = self.form
-        grid, index = step_grid(np.concatenate([[0.0], times]), PLANT_STEP)
-        count = len(grid) - 1
-        unseen = np.full((count, EACH + 1, form.points, len(form.image_coordinates)), np.nan)
-        loop = arrays(form, np.arange(form.states), np.arange(form.points))
-        known, any_P, none = form.numbers(instants(grid)), np.eye(form.states)[None], np.zeros((1, 1))
-        law, language = (False, 0.0, 0.0, none), choose(None, count * form.states)
-        path, _, diverged = advance(
-            loop, law, np.array(self.state), none, np.diff(grid), known, any_P, unseen, language
-        )
-        if diverged is not None:
+        form, start = self.form, np.array(self.state)
+        times = times_of(times, form.states)
+        signal = form.motion.signal
+        if signal is None or signal.constant:
+            A, v = form.coefficients(times[:1])
+            path = constant_path(A[0], v[0], start, times)
+        else:
+            path = varying_path(self._rate, start, times, () if signal.times is None else signal.times)
+        bounded = np.isfinite(path).all(axis=1)
+        if not bounded.all():
+            when = times[np.argmin(bounded)]
             raise LeavesEveryBound(
-                f"the state of {self.name!r} leaves every bound at {grid[diverged]:.4g} s; shorten the duration"
+                f"the state of {self.name!r} leaves every bound at {when:.4g} s; shorten the duration"
             )
-        return path[index[1:]]
+        return path
+
+    def _rate(self, time: float, state: Array) -> Array:
+        A, v = self.form.coefficients(time)
+        return A[0] @ state + v[0]

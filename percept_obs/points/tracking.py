@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags, Indices
 from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
@@ -24,6 +25,7 @@ KEPT = 100
 """Samples, about, at which P is kept and its conditions are looked at."""
 
 
+@checked
 @dataclass(frozen=True)
 class FirstSight:
     """A start for several points: at first sight each is put on its ray.
@@ -69,7 +71,7 @@ def _follow_points(
             "observer for the recording's points and surface"
         )
     sight = start if isinstance(start, FirstSight) else None
-    x = np.zeros(form.states) if start is None or sight else np.array(start, dtype=float)
+    x = np.zeros(form.states) if start is None or sight else numbers(start, "the start")
     if x.shape != (form.states,) or not np.isfinite(x).all():
         raise ValueError(
             f"the start has shape {x.shape}; expected {form.states} finite numbers: {', '.join(form.names)}"
@@ -180,7 +182,6 @@ def _begin(task: _Task, sample: int, states: Indices, points: Indices, x: Array,
 
 
 def _inverses(P: Array) -> Array:
-    try:
-        return np.asarray(np.linalg.inv(P))
-    except np.linalg.LinAlgError:
-        raise ValueError("P is singular at some time; it must stay positive definite") from None
+    if not (np.isfinite(P).all() and (np.linalg.eigvalsh((P + np.swapaxes(P, 1, 2)) / 2) > 0).all()):
+        raise ValueError("P is singular or not positive definite at some time; it must stay positive definite")
+    return np.asarray(np.linalg.inv(P))

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.points.bodies import independent_points
 from percept_obs.recording import Recording
 from percept_obs.recording.utias import LONGEST_GAP, utias_tables
 
 
+@checked
 def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Sequence[int] | None = None) -> Recording:
     """All landmarks that the moving camera follows, as points of one state in its frame.
 

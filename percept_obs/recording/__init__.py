@@ -2,7 +2,7 @@
 
 from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
-from percept_obs.recording.recording import Recording, Sighting
+from percept_obs.recording.recording import Recording, Sighting, Unlikely
 from percept_obs.recording.simulation import Scenario, record
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Scene",
     "Sighting",
     "Uniform",
+    "Unlikely",
     "record",
     "seeded",
     "step_grid",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, limit
 from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
@@ -22,6 +24,7 @@ def _check_spread(name: str, value: float) -> None:
         raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
 
 
+@checked
 @dataclass(frozen=True)
 class Uniform:
     """Uniform noise between -bound and bound."""
@@ -41,6 +44,7 @@ class Uniform:
         return generator.uniform(-self.bound, self.bound, shape)
 
 
+@checked
 @dataclass(frozen=True)
 class Gaussian:
     """Gaussian noise of standard deviation sigma."""
@@ -65,6 +69,7 @@ Noise = Uniform | Gaussian
 NO_NOISE = Uniform(0.0)
 
 
+@checked
 @dataclass(frozen=True)
 class Camera:
     """How a scene is sampled.
@@ -99,18 +104,33 @@ class Camera:
         if not self.reach > 0:
             raise ValueError(f"the camera's reach is {self.reach}; the largest coordinate it sees must be positive")
 
-    def times(self, duration: float) -> Array:
+    def times(self, duration: float, each: int = 1) -> Array:
         """Times of the samples in seconds, from 0 on.
+
+        Parameters
+        ----------
+        duration : float
+            In seconds.
+        each : int
+            Numbers that are kept of a sample.
 
         Raises
         ------
         ValueError
             If the duration holds no two of them.
+        TooMuchWork
+            If it holds too many.
         """
-        count = int(np.floor(duration / self.period + 1e-9)) if np.isfinite(duration) else 0
-        if count < 1:
+        if not math.isfinite(duration):
+            raise ValueError(f"a duration of {duration} s holds no two samples; it must be finite")
+        limit(
+            duration / self.period * (each + 4),
+            f"numbers, from {duration / self.period:.3g} samples",
+            "shorten the duration or lengthen the camera's period",
+        )
+        if not duration >= self.period * (1 - 1e-9):
             raise ValueError(f"a duration of {duration} s holds no two samples {self.period} s apart; record longer")
-        return self.period * np.arange(count + 1, dtype=float)
+        return self.period * np.arange(int(np.floor(duration / self.period + 1e-9)) + 1, dtype=float)
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples of a scene.

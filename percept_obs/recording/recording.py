@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
 
+from percept_obs.border import checked, warn
 from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion, readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
+
+LARGEST_USUAL = 20.0
+"""Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
+
+HOLE = 10
+"""Times the usual interval of a sampled motion that make a hole in it."""
+
+
+class Unlikely(UserWarning):
+    """What a recording holds can be followed, but is hardly what was meant."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +43,8 @@ class Sighting:
     last: int
 
 
-@dataclass(frozen=True, eq=False)
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
 class Recording:
     """Samples of the images of one point or of several, and what is known about the camera's and the points' motion.
 
@@ -58,6 +70,11 @@ class Recording:
         Independent measurements of the depth or range in metres; NaN where there is none.
     source : str
         Where the recording comes from, its settings and its seed.
+
+    Warns
+    -----
+    Unlikely
+        If the samples look like pixels, or a sampled motion has a hole while it is needed.
 
     Raises
     ------
@@ -91,7 +108,38 @@ class Recording:
             expected = (len(self.time), *self.view.point_shape)
             if values.shape != expected or not (np.isnan(values) | (np.isfinite(values) & (values > 0))).all():
                 raise ValueError(f"the distances {name!r} must be positive numbers or NaN, of shape {expected}")
+        if self.noise_variance is not None and not 0 <= self.noise_variance < np.inf:
+            raise ValueError(f"the noise_variance is {self.noise_variance}; a variance is finite and not negative")
         self.motion.known(self.time[[0, -1]])
+        for doubt in self._doubts():
+            warn(Unlikely(doubt))
+
+    def _doubts(self) -> Iterator[str]:
+        """What is hardly meant: pixels for image coordinates, a hole in the motion."""
+        seen = np.abs(self.outputs[np.isfinite(self.outputs)])
+        if isinstance(self.view, ImagingSurface) and len(seen) and np.median(seen) > LARGEST_USUAL:
+            yield (
+                f"half of the samples of {', '.join(self.names)} lie beyond {LARGEST_USUAL:g} focal lengths, up to "
+                f"{seen.max():.4g}: are they pixels? Subtract the principal point and divide by the focal length"
+            )
+        times = None if self.motion.signal is None else self.motion.signal.times
+        if times is None or len(times) < 3:
+            return
+        gaps = np.diff(times)
+        holes = (gaps > HOLE * np.median(gaps)) & (times[1:] > self.time[0]) & (times[:-1] < self.time[-1])
+        for k in np.flatnonzero(holes)[:1]:
+            yield (
+                f"between {times[k] - self.time[0]:.4g} and {times[k + 1] - self.time[0]:.4g} s after the first sample "
+                f"the motion was not sampled, {gaps[k] / np.median(gaps):.3g} times its usual interval; it is taken to "
+                "change evenly there: cut the recording with between(), or fill the hole"
+            )
+
+    def __repr__(self) -> str:
+        return (
+            f"<Recording of {', '.join(self.names)} ({self.view.name}): {len(self.time)} samples from "
+            f"{self.time[0]:.6g} to {self.time[-1]:.6g} s, {'with' if self.truth is not None else 'without'} a truth; "
+            f"{self.source or 'no source'}>"
+        )
 
     def _check_times(self) -> None:
         time = self.time
@@ -109,7 +157,7 @@ class Recording:
         if self.outputs.shape != expected or not self.names:
             raise ValueError(
                 f"the recording has outputs of shape {self.outputs.shape}; expected {expected}: "
-                f"one row a time, one column for each of {', '.join(self.names) or 'at least one name'}"
+                f"one row a time, one column for each of the names, {', '.join(self.names) or 'at least one'}"
             )
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
@@ -127,11 +175,12 @@ class Recording:
         if self.truth is None:
             return
         expected = (len(self.time), len(self.view.coordinates))
-        if self.truth.shape != expected or np.isinf(self.truth).any():
-            raise ValueError(
-                f"the truth has shape {self.truth.shape}; expected {expected}, finite or NaN where it is not known: "
-                f"{', '.join(map(str, self.view.coordinates))}"
-            )
+        names = ", ".join(map(str, self.view.coordinates))
+        if self.truth.shape != expected:
+            raise ValueError(f"the truth has shape {self.truth.shape}; expected {expected}: {names}")
+        if np.isinf(self.truth).any():
+            row = int(np.argwhere(np.isinf(self.truth))[0, 0])
+            raise ValueError(f"the truth is infinite in row {row + 1}; give numbers, or NaN where it is not known")
         inverse = self.view.inverse(self.truth)
         behind = np.argwhere(self.seen & (inverse <= 0))
         if len(behind):
@@ -140,6 +189,11 @@ class Recording:
                 f"the true inverse distance is {inverse[where]:.4g} at {self.time[where[0]]:.4g} s; only points in "
                 "front of the camera, at positive inverse distances, are seen"
             )
+
+    @cached_property
+    def elapsed(self) -> Array:
+        """Seconds since the first sample, shape (K,): the clock in which people are told of times."""
+        return self.time - self.time[0]
 
     @property
     def seen(self) -> Flags:
@@ -192,12 +246,17 @@ class Recording:
         """
         if name != "truth" and name not in self.distances:
             known = ", ".join(["truth", *self.distances])
-            raise ValueError(f"the recording {self.source!r} has no distance {name!r}; it has {known}")
+            raise ValueError(f"the recording {self.source!r} has no distance with the name {name!r}; it has {known}")
         return self.distance if name == "truth" else self.distances[name]
 
     def between(self, begin: float, end: float) -> Recording:
         """The part of the recording with begin <= time <= end."""
         keep = (self.time >= begin) & (self.time <= end)
+        if keep.sum() < 2:
+            raise ValueError(
+                f"{keep.sum()} samples lie between the begin, {begin} s, and the end, {end} s; two are needed, "
+                f"and there are some from {self.time[0]:.6g} to {self.time[-1]:.6g} s"
+            )
         return replace(
             self,
             time=self.time[keep],
@@ -221,6 +280,8 @@ class Recording:
         ValueError
             If there is no such point.
         """
+        if not begin < end:
+            raise ValueError(f"without() got the times from {begin} to {end} s; the end must come after the begin")
         outputs = self.outputs.copy()
         each = outputs.reshape(len(self.time), -1, len(self.names))
         if not 0 <= point < each.shape[1]:
@@ -236,6 +297,8 @@ class Recording:
         absence : float
             Seconds without a sample after which it is another sighting.
         """
+        if not absence > 0:
+            raise ValueError(f"the absence is {absence} s; it must be positive")
         found = []
         for point, seen in enumerate(self.seen.reshape(len(self.time), -1).T):
             samples = np.flatnonzero(seen)
@@ -258,8 +321,7 @@ class Recording:
         ----------
         path : path
             A column of times in seconds, columns named like the outputs (y1, y2), and if the truth is known a
-            column with the name of the inverse distance (y3 for the pinhole) beside all of the outputs.  Empty
-            cells are lost samples.
+            column with the name of the inverse distance (y3 for the pinhole).  Empty cells are lost samples.
         motion : Motion
             Known motion, with numbers.
         surface : ImagingSurface, optional
@@ -277,7 +339,13 @@ class Recording:
         import pandas as pd
 
         surface = surface or pinhole()
-        rows = pd.read_csv(path)
+        try:
+            rows = pd.read_csv(path)
+        except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
+            raise ValueError(
+                f"{os.fspath(path)} is no table of text ({str(error).strip()}); the path must name a CSV file whose "
+                f"first row has the names of the columns, such as {time},y1,y2"
+            ) from None
         names = tuple(s.name for s in surface.image_coordinates if s.name in rows)
         if time not in rows or not names:
             raise ValueError(
@@ -291,6 +359,9 @@ class Recording:
             raise ValueError(f"{os.fspath(path)} has a cell that is not a number: {error}") from None
         if not len(values):
             raise ValueError(f"{os.fspath(path)} has a header and no rows; at least two samples are needed")
-        complete = inverse in rows and len(names) == len(surface.image_coordinates)
-        outputs, truth = values[:, 1 : 1 + len(names)], values[:, 1:] if complete else None
+        outputs, truth = values[:, 1 : 1 + len(names)], None
+        if inverse in rows:
+            truth = np.full((len(values), len(surface.coordinates)), np.nan)
+            columns = [s.name for s in surface.image_coordinates]
+            truth[:, [*map(columns.index, names), -1]] = values[:, 1:]
         return cls(values[:, 0], outputs, names, surface, motion, truth, source=os.fspath(path))

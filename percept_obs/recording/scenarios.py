@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from percept_obs.border import checked
 from percept_obs.recording import Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import ImagingSurface, pinhole
@@ -11,11 +12,13 @@ _TRANSLATION = [0.5, 0.25, 0.3]
 _START = (1.0, 1.5, 2.5)
 
 
+@checked
 def ma2005_eq35(surface: ImagingSurface | None = None) -> Scenario:
     """A point that comes near the focus of expansion once, and stays excited (Ma 2005, (35), p. 70)."""
     return _ma2005("35", [0.3, -0.4, 0.4], surface)
 
 
+@checked
 def ma2005_eq36(surface: ImagingSurface | None = None) -> Scenario:
     """A point that moves away without end (Ma 2005, (36), p. 71)."""
     return _ma2005("36", [-0.4, 0.4, -0.4], surface)
@@ -26,6 +29,7 @@ def _ma2005(number: str, third_row: list[float], surface: ImagingSurface | None)
     return Scenario(f"Ma 2005 ({number})", motion, _START, 80.0, surface or pinhole(), f"Ma et al. 2005, ({number})")
 
 
+@checked
 def planar() -> Scenario:
     """A point that circles on a plane through the camera, seen on the line y2 = 0.5 (Ma 2005, Fig. 2, p. 65).
 

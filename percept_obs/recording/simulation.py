@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,16 +11,19 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import Array, Flags, Table, solve
+from percept_obs.border import checked
+from percept_obs.compile import Array, Flags, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
-from percept_obs.compile.integrator import EACH, PLANT_STEP, instants, step_grid
+from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
+from percept_obs.recording.path import constant_path, lowest_between, times_of, varying_path
 from percept_obs.recording.recording import Recording
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import TIME, Motion, ask_for_degrees
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Scenario(Scene):
     """A point in motion and the surface on which it is seen.
@@ -50,7 +54,7 @@ class Scenario(Scene):
         self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
-        """Positions of the point, integrated with steps of at most `PLANT_STEP`.
+        """Positions of the point: exact if the motion is constant, else to a relative error of 1e-10 a step.
 
         Parameters
         ----------
@@ -61,6 +65,13 @@ class Scenario(Scene):
         -------
         array of shape (K, 3)
             Metres.
+
+        Raises
+        ------
+        BehindCamera
+            If the point leaves every bound before.
+        TooMuchWork
+            If there are too many times, or the motion is too fast.
         """
         points = self._path(times)
         bounded = np.isfinite(points).all(axis=1)
@@ -75,11 +86,14 @@ class Scenario(Scene):
 
     def _path(self, times: ArrayLike) -> Array:
         """Positions of the point, NaN from where it left every bound on."""
-        grid, last = step_grid(np.concatenate([[0.0], np.asarray(times, dtype=float)]), PLANT_STEP)
-        steps, known = np.diff(grid), self.motion.known(instants(grid))
-        table = Table(steps, np.zeros((len(steps), EACH + 1, 0)), known, np.zeros((len(grid), 0)))
-        equations = point_in_motion(self.motion.A, self.motion.b, self.motion.parameters)
-        return solve(equations, self.position, table).states[last[1:]]
+        times, start, motion = times_of(times, len(POINT)), np.array(self.position), self.motion
+        motion.known(times[:1])
+        if motion.signal is None or motion.signal.constant:
+            A, b = _coefficients(motion, times[:1])
+            return constant_path(A[0], b[0], start, times)
+        breaks = () if motion.signal.times is None else motion.signal.times
+        flow = _flow(point_in_motion(motion.A, motion.b, motion.parameters))
+        return varying_path(lambda t, x: flow(x, (), motion.known(t)[0]), start, times, breaks)
 
     @property
     def view(self) -> View:
@@ -99,14 +113,37 @@ class Scenario(Scene):
         BehindCamera
             If the point is not in front of the camera at one of the times.
         """
+        times = times_of(times, len(POINT))
         points = self.points(times)
         try:
-            return self.surface.project(points)
+            seen = self.surface.project(points)
         except BehindCamera as error:
-            when = np.asarray(times)[np.argmin(self.surface.distances(points) > 0)]
+            when = times[np.argmin(self.surface.distances(points) > 0)]
             raise BehindCamera(f"in the scenario {self.name!r}, at {when:.4g} s, {error}") from None
+        self._refuse_a_dip(times, points)
+        return seen
+
+    def _refuse_a_dip(self, times: Array, points: Array) -> None:
+        """Refuse a motion that takes the point behind the camera and back between two of the times."""
+        A, b = _coefficients(self.motion, times)
+        fastest = float(np.abs(A).sum(axis=-1).max(initial=0))
+        grid, _ = step_grid(times, 0.25 / max(fastest, 1e-9))
+        if len(grid) > len(times):
+            times, points = grid, self.points(grid)
+            A, b = _coefficients(self.motion, times)
+        velocities = (A @ points[:, :, None])[..., 0] + b
+        surface = self.surface
+        expressions = (surface.distance, *(surface.distance.diff(x) for x in POINT))
+        distance, *gradient = vectorised(POINT, expressions, surface.values)(*points.T)
+        lowest, time = lowest_between(distance, np.einsum("ik,ki->k", gradient, velocities), times)
+        if lowest <= 0:
+            raise BehindCamera(
+                f"in the scenario {self.name!r} the point dips behind the {surface.name} between two samples, at about "
+                f"{time:.4g} s; stop before, or change the motion"
+            )
 
 
+@checked
 def record(scenario: Scene, duration: float | None = None, camera: Camera | None = None, seed: Seed = 0) -> Recording:
     """Simulate what a camera records of a scenario.
 
@@ -136,7 +173,11 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
     """
     camera = camera or scenario.camera
     duration = scenario.duration if duration is None else float(duration)
-    time, view = camera.times(duration), scenario.view
+    view = scenario.view
+    time = camera.times(duration, len(view.coordinates) + len(view.image_coordinates) * math.prod(view.point_shape))
+    known = scenario.known_motion
+    if known.signal is not None and callable(known.signal.samples):
+        ask_for_degrees(known, time)
     truth = scenario.coordinates(time)
     outputs, variance = camera.samples(scenario, time, truth, seeded(seed))
     named = "of a given generator" if isinstance(seed, np.random.Generator) else seed
@@ -169,3 +210,17 @@ def _signal(scene: Scene) -> Callable[[Array], Array]:
 def point_in_motion(A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, parameters: tuple[sp.Symbol, ...]) -> Equations:
     """The motion of a single point as equations without outputs."""
     return Equations(POINT, tuple(A * sp.ImmutableMatrix(POINT) + b), (), parameters)
+
+
+@lru_cache(maxsize=64)
+def _flow(equations: Equations) -> Callable[..., list[float]]:
+    return right_hand_side(equations, {})
+
+
+def _coefficients(motion: Motion, times: Array) -> tuple[Array, Array]:
+    """A and b at the times, shapes (T, 3, 3) and (T, 3), or (1, ...) when constant."""
+    known = motion.known(times)
+    columns = known.T if known.shape[1] else [np.zeros(len(known))]
+    symbols = motion.parameters or (TIME,)
+    rows = np.stack(vectorised(symbols, (*motion.A, *motion.b))(*columns), axis=-1)
+    return rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]

@@ -24,6 +24,7 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.spatial.transform import Rotation
 
+from percept_obs.border import checked, write_whole
 from percept_obs.compile import Array, Flags
 from percept_obs.recording import Recording, Sighting
 from percept_obs.system.motion import Motion, rigid
@@ -118,6 +119,7 @@ class UtiasTables:
         return rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
 
 
+@checked
 def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
     """Find the recording's file on this machine, or fetch it on first use.
 
@@ -149,6 +151,7 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
     return _fetched()
 
 
+@checked
 def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, ...]:
     """Tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
 
@@ -172,6 +175,7 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
     return tuple(recordings)
 
 
+@checked
 def utias_tables(path: str | os.PathLike[str] | None = None) -> UtiasTables:
     """Convert the recording to the camera's motion and the landmarks' tracks.
 
@@ -242,9 +246,7 @@ def _fetched() -> Path:
         if found != UTIAS_SHA256:
             raise ConnectionError(f"another file came, such as a login page of the network: its SHA-256 is {found}")
         file.parent.mkdir(parents=True, exist_ok=True)
-        new = file.with_suffix(f".{os.getpid()}")
-        new.write_bytes(content)
-        new.replace(file)  # at once, so that half a file is never found here
+        write_whole(file, content)
     except OSError as error:
         raise DatasetUnavailable(
             f"the UTIAS recording could not be fetched ({error}); is there no network?  Download "

@@ -11,12 +11,13 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.system.view import OnePoint, View
+from percept_obs.system.view import DISTANCE, OnePoint, View
 
 y1, y2, ybar3 = OUTPUTS = sp.symbols("y1 y2 ybar3", real=True)
 d_s = sp.Symbol("d_s", real=True)
@@ -69,6 +70,7 @@ def scaled_dynamics() -> ScaledDynamics:
     return ScaledDynamics((camera / d_s).expand(), rotation, (object_ / d_s).expand())
 
 
+@checked
 @dataclass(frozen=True)
 class StructureAndMotion(OnePoint):
     """A choice of what is unknown among the scale, the camera's and the object's velocity.
@@ -115,7 +117,7 @@ class StructureAndMotion(OnePoint):
             strange = [name for name in names if name not in QUANTITIES]
             if strange:
                 raise ImpossibleChoice(
-                    f"there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
+                    f"{group}: there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
                 )
             if len(set(names)) != len(names):
                 raise ImpossibleChoice(f"{group} names a quantity twice: {', '.join(names)}")
@@ -284,7 +286,9 @@ class StructureAndMotion(OnePoint):
 
     def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
-        times = np.asarray(times, dtype=float)
+        times = np.atleast_1d(numbers(times, "the times"))
+        if np.ndim(scale) and np.shape(scale) != times.shape:
+            raise ValueError(f"the scale has the shape {np.shape(scale)}; give one number, or one for each time")
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
@@ -316,6 +320,39 @@ class StructureAndMotion(OnePoint):
             raise ValueError("the estimate of d_s from the earlier stage is missing; set scale to it")
         scale = np.where(np.asarray(scale) > 0, scale, np.nan)
         return {name: scale if name == d_s.name else values / scale for name, values in by_name.items()}
+
+    @property
+    def judged(self) -> str:
+        """What is unknown; with the scale, the distance."""
+        return ", ".join(DISTANCE if name == d_s.name else name for name in self.unknown)
+
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
+        """Largest relative error of the unknowns, shape (K,); see `View`.
+
+        That of a velocity is relative to the greatest speed of the point against the camera.
+        """
+        error = np.where(np.isfinite(estimate).all(axis=-1), 0.0, np.nan)
+        if d_s.name in self.unknown:
+            error = super().relative_error(truth, estimate, known)
+        true, found = (self.quantities(rows[:, len(OUTPUTS) :]) for rows in (truth, estimate))
+        speed = self._greatest_speed(truth, known)
+        for name in filter(lambda name: name != d_s.name, self.unknown):
+            off = np.abs(found[name] - true[name])
+            share = np.divide(off, speed, out=np.where(off > 0, np.inf, off), where=bool(speed > 0))
+            error = np.where(np.isinf(error), error, np.maximum(error, share))
+        return error
+
+    def _greatest_speed(self, truth: Array, known: Array) -> float:
+        """Of the point against the camera, |v_p - v_c|, in m/s."""
+        theta = truth[:, len(OUTPUTS) :]
+        M, m = self.translation
+        scale = [self.values[symbol] for symbol in self.parameters]
+        columns = np.broadcast_to(known, (len(theta), known.shape[1])).T
+        scaled = vectorised((*self.form.x2, *self.form.parameters), list(M * sp.ImmutableMatrix(self.form.x2) + m))(
+            *theta.T, *columns, *scale
+        )
+        d = self.scale or theta[:, self.unknown.index(d_s.name)]
+        return float(np.nanmax(np.linalg.norm(np.stack(scaled, axis=-1), axis=-1) / d))
 
     @property
     def name(self) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.observers import (
     Observer,
     de_luca,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@checked
 def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
     """Observers of structure and motion on one recording, each in the coordinates that suit it.
 
@@ -73,6 +75,7 @@ def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
     }
 
 
+@checked
 def scale_spread(
     decibels: Sequence[float] = (100.0, 80.0, 60.0, 40.0),
     depth: DepthSource = EXACT_DEPTH,

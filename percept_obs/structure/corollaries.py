@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from percept_obs.border import checked
 from percept_obs.structure.choice import StructureAndMotion
 
 
+@checked
 @dataclass(frozen=True)
 class Corollary:
     """A case that the paper states (Chwa 2019, sections IV to VI, pp. 6-9).

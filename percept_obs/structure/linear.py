@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.structure.choice import StructureAndMotion, d_s
 from percept_obs.system.forms import CanonicalForm
@@ -19,6 +20,7 @@ from percept_obs.system.view import OnePoint
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 
 
+@checked
 @dataclass(frozen=True)
 class LinearView(OnePoint):
     """Scaled positions xbar = (y1, y2, 1) / ybar3 = d_s X, which obey a linear equation.
@@ -82,6 +84,15 @@ class LinearView(OnePoint):
     def locate(self, coordinates: ArrayLike) -> Array:
         """Points in metres, shape (..., 3), from xbar and theta; infinite where no positive inverse depth follows."""
         return self.choice.locate(self._ybar(coordinates))
+
+    @property
+    def judged(self) -> str:
+        """As of the choice."""
+        return self.choice.judged
+
+    def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
+        """As of the choice."""
+        return self.choice.relative_error(self._ybar(truth), self._ybar(estimate), known)
 
     @staticmethod
     def _ybar(coordinates: ArrayLike) -> Array:

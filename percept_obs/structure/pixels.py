@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
 
 
+@checked
 @dataclass(frozen=True)
 class PixelCamera:
     """Pinhole camera with pixels: p = A_c m, m = (y1, y2, 1) (Chwa 2019, (1), p. 4).
@@ -48,15 +50,15 @@ class PixelCamera:
 
     def pixels(self, image: ArrayLike) -> Array:
         """Pixel coordinates of image coordinates (y1, y2), shape (..., 2)."""
-        return np.asarray(image, dtype=float) * self.focal + self.centre
+        return numbers(image, "the image coordinates", 2) * self.focal + self.centre
 
     def image(self, pixels: ArrayLike) -> Array:
         """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2)."""
-        return (np.asarray(pixels, dtype=float) - self.centre) / self.focal
+        return (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
 
     def sees(self, pixels: ArrayLike) -> Flags:
         """Whether pixel coordinates lie in the image, shape (...)."""
-        pixels = np.asarray(pixels, dtype=float)
+        pixels = numbers(pixels, "the pixels", 2)
         if self.size is None:
             return np.ones(pixels.shape[:-1], dtype=bool)
         return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
@@ -69,6 +71,7 @@ CHWA_EXPERIMENT_CAMERA = PixelCamera((150, 150), (320, 240), (640, 480))
 """A camera that keeps the paper's experiment in view for ten seconds; that of the simulations would not."""
 
 
+@checked
 @dataclass(frozen=True)
 class SignalToNoise:
     """White Gaussian noise, given by the signal's power over the noise's.
@@ -89,9 +92,12 @@ class SignalToNoise:
 
     def sigma(self, pixels: ArrayLike) -> float:
         """Standard deviation of the noise on these pixel coordinates, in pixels."""
+        if not (np.size(pixels) and np.isfinite(numbers(pixels, "the pixels")).all()):
+            raise ValueError("the pixels must be finite, at least one; leave out the pictures in which one was lost")
         return float(np.sqrt(np.mean(np.square(pixels))) * 10 ** (-self.decibels / 20))
 
 
+@checked
 def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     """Homographies that carry the image of a planar patch in a reference picture to its image in others.
 
@@ -134,8 +140,32 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     to_reference, to_images = _normalising(reference), _normalising(images)
     p = _carried(to_images, images)
     m = np.broadcast_to(_carried(to_reference, reference), p.shape)
+    if np.linalg.svd(_equations(m, m), compute_uv=False)[..., -2].min(initial=np.inf) < 1e-9:
+        raise ValueError(
+            "the points of the reference picture do not determine a map; take four of which no three lie on a line"
+        )
+    solution = np.linalg.svd(_equations(m, p), full_matrices=False)[2][..., -1, :]
+    H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
+    H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
+    depths = H[..., 2, :] @ _homogeneous(reference).T
+    return H * np.sign(depths.sum(axis=-1))[..., None, None]
+
+
+@checked
+def apparent_size(images: ArrayLike) -> Array:
+    """Root mean square distance of image points to their centre, shape (...), for images of shape (..., n, 2).
+
+    For an object of constant size that neither turns nor is turned to by the camera it is proportional to the
+    inverse depth if its points share one depth.
+    """
+    images = numbers(images, "the images", "n", 2)
+    return np.sqrt(np.sum((images - images.mean(axis=-2, keepdims=True)) ** 2, axis=-1).mean(axis=-1))
+
+
+def _equations(m: Array, p: Array) -> Array:
+    """The rows of the direct linear transform from points m to p, shape (..., 2 n + 1, 9)."""
     zero = np.zeros_like(m)
-    rows = np.concatenate(
+    return np.concatenate(
         [
             np.concatenate([m, zero, -p[..., :1] * m], axis=-1),
             np.concatenate([zero, m, -p[..., 1:2] * m], axis=-1),
@@ -143,21 +173,6 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
         ],
         axis=-2,
     )
-    solution = np.linalg.svd(rows, full_matrices=False)[2][..., -1, :]
-    H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
-    H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
-    depths = H[..., 2, :] @ _homogeneous(reference).T
-    return H * np.sign(depths.sum(axis=-1))[..., None, None]
-
-
-def apparent_size(images: ArrayLike) -> Array:
-    """Root mean square distance of image points to their centre, shape (...), for images of shape (..., n, 2).
-
-    For an object of constant size that neither turns nor is turned to by the camera it is proportional to the
-    inverse depth if its points share one depth.
-    """
-    images = np.asarray(images, dtype=float)
-    return np.sqrt(np.sum((images - images.mean(axis=-2, keepdims=True)) ** 2, axis=-1).mean(axis=-1))
 
 
 def _homogeneous(points: Array) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.structure.corollaries import COROLLARIES
 from percept_obs.structure.simulation import StructureScenario
 from percept_obs.system.motion import rigid
@@ -26,6 +27,7 @@ _CHWA_EXPERIMENT = {
 """Section: corollary, velocities of the camera and of the object in m/s."""
 
 
+@checked
 def chwa2019_experiment(section: str) -> StructureScenario:
     """A case of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
 
@@ -71,6 +73,7 @@ _CHWA_SIMULATION = {
 }
 
 
+@checked
 def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL) -> StructureScenario:
     """A case of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
 
@@ -102,6 +105,7 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
     return _structure(name, (*image, 0.05), 4.0, number, (tuple(w.tolist()), camera, object_), source)
 
 
+@checked
 def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenario:
     """An object that stands still and then moves, with both stages in one motion (Chwa 2019, section IV).
 
@@ -123,6 +127,8 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     ValueError
         If there is no such set-up.
     """
+    if not 0 < 2 * moves_at < math.inf:
+        raise ValueError(f"moves_at is {moves_at} s; the object must begin to move at a finite time after 0")
     cases = {"simulation": _CHWA_SIMULATION, "experiment": _CHWA_EXPERIMENT}
     stages = [_stated(set_up, cases)[section] for section in ("IV.A", "IV.B")]
     still, moving = (chwa2019_simulation if set_up == "simulation" else chwa2019_experiment)("IV.A"), stages[1]
@@ -136,6 +142,7 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     return replace(still, name=name, motion=motion, duration=2 * moves_at, choice=choice)
 
 
+@checked
 def chwa2019_crossing() -> StructureScenario:
     """Corollary 3 with a camera that turns back along its axis, so that v_c3 crosses 0 at 2.1 s and every 3.1 s."""
 
@@ -148,7 +155,7 @@ def chwa2019_crossing() -> StructureScenario:
 
 def _stated(section: str, cases: dict[str, Any]) -> Any:
     if section not in cases:
-        raise ValueError(f"there is no case {section!r}; there are {', '.join(cases)}")
+        raise ValueError(f"there is no case (section or set-up) {section!r}; there are {', '.join(cases)}")
     return cases[section]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
@@ -9,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
@@ -43,6 +45,7 @@ class DepthSource(Protocol):
         """
 
 
+@checked
 @dataclass(frozen=True)
 class GivenDepth:
     """A scaled inverse depth that is given, with errors of one's choice: ybar3 + bias + drift t + noise.
@@ -60,6 +63,10 @@ class GivenDepth:
     bias: float = 0.0
     drift: float = 0.0
 
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.bias) and math.isfinite(self.drift)):
+            raise ValueError(f"the bias is {self.bias} and the drift {self.drift}; both must be finite numbers")
+
     @property
     def offsets(self) -> Array:
         """The tracked point alone."""
@@ -70,6 +77,7 @@ class GivenDepth:
         return exact + self.bias + self.drift * time + self.noise.draw(generator, exact.shape)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class PatchDepth:
     """The scaled inverse depth from the homography between the first picture of a planar patch and each other.
@@ -85,12 +93,18 @@ class PatchDepth:
 
     offsets: Array
 
+    def __post_init__(self) -> None:
+        offsets = numbers(self.offsets, "the offsets", "n", 3)
+        if not np.isfinite(offsets).all():
+            raise ValueError("the offsets are not finite; give n points of a patch in metres, as from grid_patch()")
+
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
         first = np.append(images[0, 0], 1.0)
         return exact[0] / (homography(images[0], images)[:, 2] @ first)
 
 
+@checked
 def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:
     """Points of a square grid around a tracked one, as offsets from it.
 
@@ -126,6 +140,7 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
     return grid[nearest_first] @ basis
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class StructureScenario(Scenario):
     """A point of an object in rigid motion, its scale, and what is known of them.
@@ -184,6 +199,7 @@ IMAGE_PLANE = PixelCamera((1.0, 1.0))
 EXACT_DEPTH = GivenDepth()
 
 
+@checked
 @dataclass(frozen=True)
 class ScaledDepthCamera(Camera):
     """A camera that measures (y1, y2, ybar3) of an object's tracked point from its pictures.
@@ -241,6 +257,7 @@ def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
     return tracked[:, None] + offsets @ np.stack(turned, axis=1)
 
 
+@checked
 def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, scale: float | None = None) -> Recording:
     """The same samples, with another choice of what is known.
 
@@ -257,11 +274,14 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     """
     truth = None
     if scale is not None:
+        if not 0 < scale < math.inf:
+            raise ValueError(f"the scale d_s is {scale}; it is one over a distance in metres, finite and positive")
         ybar = recording.outputs if recording.truth is None else recording.truth[:, : len(OUTPUTS)]
         truth = np.hstack([ybar, choice.theta_values(scale, motion, recording.time)])
     return replace(recording, view=choice, motion=choice.known_motion(motion), truth=truth)
 
 
+@checked
 def linear_view(recording: Recording) -> Recording:
     """The same recording in scaled positions, for the Kalman filter.
 
@@ -277,7 +297,9 @@ def linear_view(recording: Recording) -> Recording:
     """
     choice = recording.view
     if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
-        raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
+        raise ValueError(
+            f"the linear view needs a recording of the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}"
+        )
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,

@@ -9,18 +9,20 @@ from typing import Any, Literal
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.system.motion import Motion, Signal, rigid
+from percept_obs.system.motion import Motion, Signal, rigid, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
 _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class SemigeneralRun:
     """What two observers found, one after the other.
@@ -46,6 +48,7 @@ class SemigeneralRun:
         return np.stack([velocities[name] for name in _OBJECT], axis=-1)
 
 
+@checked
 def semigeneral(
     recording: Recording,
     motion: Motion,
@@ -101,7 +104,7 @@ def semigeneral(
         raise ValueError(f"the object moves at {moves_at} s; each stage needs two samples: {begin:.4g} to {end:.4g} s")
     first = seen_as(recording.between(-np.inf, moves_at), choice, motion, scale)
     static = track(first, make(choice.form), **settings)
-    last = static.estimate[static.time >= moves_at - average - 1e-9, -len(choice.unknown) :]
+    last = static.estimate[static.time >= moves_at - average - slack_of(static.time), -len(choice.unknown) :]
     usable = last[np.isfinite(last).all(axis=1)]
     found = {n: float(v) for n, v in choice.quantities(usable.mean(axis=0)).items()} if len(usable) else {}
     if not found.get("d_s", np.nan) > 0:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.observers.base import Observer, with_point
 from percept_obs.recording import Recording, Scenario, step_grid
@@ -21,6 +22,7 @@ METHODS = ("RK45", "LSODA", "Radau")
 """Adaptive solvers of scipy: explicit, switching by stiffness, implicit."""
 
 
+@checked
 def chatter(
     recording: Recording,
     observer: Observer,
@@ -65,6 +67,8 @@ def chatter(
 
     if not len(steps):
         raise ValueError("there are no steps to compare; give some, in seconds")
+    if not 0 <= after < recording.time[-1] - recording.time[0]:
+        raise ValueError(f"after is {after} s; it must be from 0 on and shorter than the recording")
     names = [symbol.name for symbol in observer.form.coordinates]
     begin, end = recording.time[0] + after, recording.time[-1]
     rows = []
@@ -102,6 +106,7 @@ class Effort:
         return np.diff(self.time)
 
 
+@checked
 def effort(
     scenario: Scenario,
     observer: Observer,
@@ -141,7 +146,7 @@ def effort(
     if method not in METHODS:
         raise ValueError(f"the method {method!r} is none of {', '.join(METHODS)}")
     if not (np.isfinite([duration, tolerance]).all() and duration > 0 and tolerance > 0 and most > 0):
-        raise ValueError(f"duration {duration} s, tolerance {tolerance} and {most} evaluations must be positive")
+        raise ValueError(f"duration {duration} s, tolerance {tolerance} and most {most} must be positive numbers")
     point = scenario.coordinates([0.0])[0]
     known = dict(zip((symbol.name for symbol in scenario.surface.coordinates), point.tolist(), strict=True))
     outputs = {name: known[name] for name in observer.form.measured}

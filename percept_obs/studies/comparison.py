@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
@@ -12,11 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
-from percept_obs.tracking.following import track
+from percept_obs.system.motion import from_the_start, slack_of
+from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,12 +32,14 @@ MEASURES = ("settling_time", "final", "rms", "worst", "cost")
 """Columns of `compare` of which a summary has the median and quantiles."""
 
 
+@checked
 def compare(
     recordings: Sequence[Recording],
     observers: Mapping[str, Observer] | Sequence[Observer],
     start: Mapping[str, float] | Sequence[float] | None = None,
-    tolerance: float = 0.05,
+    tolerance: float = TOLERANCE,
     after: float = 0.0,
+    coordinates: Sequence[str] = (),
     **settings: Any,
 ) -> pd.DataFrame:
     """Run every observer on every recording, so that all see the same noise.
@@ -46,9 +52,11 @@ def compare(
         A sequence is labelled with the observers' names.
     start : see `track`
     tolerance : float
-        For the settling time of the inverse distance.
+        Bound on the relative error of the distance, or on the absolute errors of the `coordinates`; see `Run.outcome`.
     after : float
-        Seconds from which on errors count for their root mean square and their largest value.
+        Seconds since the first sample from which on errors count for their root mean square and their largest value.
+    coordinates : sequence of str, optional
+        Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
     **settings
         Passed to `track`, such as ``hold`` and ``believed``.
 
@@ -56,8 +64,9 @@ def compare(
     -------
     pandas.DataFrame
         One row for a recording and an observer, with errors of the inverse distance in 1/m: observer, recording,
-        settling_time (s, infinite if it does not settle), final, rms, worst (after the given time), resets,
-        diverged_at (s, infinite if it does not), cost (s of computing for a s of data).
+        outcome (a kind of `Outcome`), settling_time (s, infinite if it has not converged), final, rms, worst (after the
+        given time), resets, diverged_at (s since the first sample, infinite if it does not), cost (s of computing for
+        a s of data).
 
     Raises
     ------
@@ -82,26 +91,29 @@ def compare(
     rows = []
     for recording, label in tqdm([*product(recordings, follow)], desc="runs", delay=2, leave=False):
         (run,), cost = timed(follow[label], [recording])
-        error = np.abs(run.error[:, -1])
-        late = error[recording.time - recording.time[0] >= after - 1e-9]
+        surface, found = recording.imaging_surface, run.outcome(tolerance, *coordinates)
+        error = np.abs(surface.inverse(run.error))
+        late = error[from_the_start(run.elapsed, after)]
         if not len(late):
             raise ValueError(f"no sample of {recording.source!r} lies {after} s or more after its first one")
         rows.append(
             {
                 "observer": label,
                 "recording": recording.source,
-                "settling_time": run.settling_time(tolerance, recording.imaging_surface.inverse_distance.name),
+                "outcome": found.kind,
+                "settling_time": found.settled if found.converged else math.inf,
                 "final": _known(error[-1]),
                 "rms": _known(math.sqrt(np.mean(late**2))),
                 "worst": _known(late.max()),
                 "resets": len(run.resets),
-                "diverged_at": math.inf if run.diverged_at is None else run.diverged_at,
+                "diverged_at": math.inf if run.diverged_at is None else run.diverged_at - float(run.time[0]),
                 "cost": cost,
             }
         )
     return pd.DataFrame(rows)
 
 
+@checked
 def summary(table: pd.DataFrame) -> pd.DataFrame:
     """What `compare` found, an observer a row.
 
@@ -113,7 +125,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        runs; failed (not settled at the end, or diverged), reset (runs with a reset), diverged; and for
+        runs; failed (not converged), reset (runs with a reset), diverged; and for
         settling_time, final, rms, worst, cost the median with the 16 % and 84 % quantiles (columns name, name_low,
         name_high).
     """
@@ -132,6 +144,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found).rename_axis(None)
 
 
+@checked
 def described(found: pd.DataFrame) -> str:
     """A summary as text: counts, and medians with their quantiles."""
     import pandas as pd
@@ -157,6 +170,7 @@ def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -
     return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
 
 
+@checked
 def relative_distance_errors(
     runs: Iterable[Run],
     after: float,
@@ -187,31 +201,39 @@ def relative_distance_errors(
     Raises
     ------
     ValueError
-        If the time is negative, no sighting of a run lasts as long, or a recording has no such reference.
+        If the time is negative, no sighting lasts as long, or a recording has no such reference.
     """
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     errors: list[float] = []
+    sources: list[str] = []
     for run in runs:
-        recording, count = run.recording, len(errors)
+        sources.append(repr(run.recording.source))
+        recording = run.recording
         shape = (len(recording.time), -1)
+        there = set(range(recording.seen[0].size))
+        asked = set(points) if isinstance(points, Iterable) else there
+        if not asked <= there:
+            raise ValueError(f"the points {sorted(asked - there)} are not there; there are 0 to {max(there)}")
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
             samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
-            later = samples[run.time[samples] - run.time[sighting.first] >= after - 1e-9]
+            later = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
             if len(later) and (points is None or sighting.point in points):
                 place = (later[0], sighting.point)
                 errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
-        if len(errors) == count:
-            raise ValueError(f"no sighting in the recording {recording.source!r} lasts {after} s")
+    if not errors:
+        raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s; after must be shorter")
     return np.array(errors)
 
 
+@checked
 def best_setting(
     recordings: Sequence[Recording],
     observers: Iterable[Observer],
     follow: Callable[[Recording, Observer], Run],
     after: Sequence[float] = (2.0,),
+    reference: str = "truth",
 ) -> Observer:
     """The observer whose median relative distance error is least, added up over the given times.
 
@@ -220,18 +242,33 @@ def best_setting(
     Parameters
     ----------
     recordings : sequence of Recording
-        With a truth.
+        With a truth or the reference; those that end too early do not count.
     observers : iterable of Observer
         One structure with different gains, or several structures.
     follow : function of (recording, observer)
         How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
     after : sequence of float
         Seconds since the first sample.
+    reference : str
+        "truth", or the name of a measured distance of the recordings.
+
+    Raises
+    ------
+    ValueError
+        If there are no recordings, observers or times, or no recording lasts as long.
     """
+    candidates = list(observers)
+    if not (len(recordings) and candidates and len(after)):
+        raise ValueError(
+            f"{len(recordings)} recordings, {len(candidates)} observers and {len(after)} times: at least one of "
+            "each is needed to choose the best"
+        )
 
     def score(observer: Observer) -> float:
-        runs = [follow(recording, observer) for recording in recordings]
-        total = float(sum(np.median(relative_distance_errors(runs, seconds)) for seconds in after))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
+            runs = [follow(recording, observer) for recording in recordings]
+        total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
-    return min(observers, key=score)
+    return min(candidates, key=score)

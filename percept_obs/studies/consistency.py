@@ -9,6 +9,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
+from percept_obs.system.motion import from_the_start
 from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]
@@ -26,6 +28,7 @@ JUDGEMENTS = MappingProxyType(
 """What each judgement says."""
 
 
+@checked
 def claimed_interval(run: Run) -> tuple[Array, Array]:
     """Ends of the interval of two claimed standard deviations around the estimate.
 
@@ -39,6 +42,7 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
     return run.estimate - spread, run.estimate + spread
 
 
+@checked
 def claimed_distance(run: Run) -> tuple[Array, Array]:
     """Ends of the same interval as a distance in metres.
 
@@ -55,6 +59,7 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     return nearest, farthest
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Consistency:
     """Whether normalised innovations squared (NIS) are as large as they should be.
@@ -134,6 +139,7 @@ class Consistency:
         return f"<Consistency: {self.verdict()}>"
 
 
+@checked
 def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
     """Test whether a filter's innovations are as large as it claims.
 
@@ -165,10 +171,12 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
-        raise ValueError(f"the run diverged at {run.diverged_at:.3g} s; a filter that diverges is not consistent")
+        raise ValueError(
+            f"the run diverged at {run.diverged_at - run.time[0]:.3g} s; a filter that diverges is not consistent"
+        )
     nis = run.nis
-    counted = np.isfinite(nis) & (run.time >= run.time[0] + after)
+    counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
     found = int(counted.sum())
     if not 1 <= samples <= found:
-        raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} to average")
+        raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} after {after} s")
     return Consistency(run.time[counted], nis[counted], len(run.observer.form.x1), samples, confidence)

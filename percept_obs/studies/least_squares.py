@@ -9,9 +9,11 @@ import numpy as np
 import sympy as sp
 from scipy.linalg import expm
 
+from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import slack_of
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.run import Run
 
@@ -19,6 +21,7 @@ LARGEST_CONDITION = 1e6
 """A window whose normal equations are conditioned worse than this determines no point."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class LeastSquares:
     """Least squares where a run asks for its observer: what they are called, and what they estimate.
@@ -48,6 +51,7 @@ class LeastSquares:
         return PerspectiveSystem(recording.motion, recording.imaging_surface).measure(*recording.names)
 
 
+@checked
 def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Run:
     """Least-squares position at the end of a window, from all samples in it.
 
@@ -91,7 +95,7 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     # from the position at the window's end to that of the sample some places before it
     to_earlier = np.broadcast_to(np.eye(4), (count, 4, 4)).copy()
     for lag in range(count):
-        ends = np.flatnonzero((time[lag:] - time[: count - lag]) <= window + 1e-9) + lag
+        ends = np.flatnonzero((time[lag:] - time[: count - lag]) <= window + slack_of(time)) + lag
         if not len(ends):
             break
         if lag:

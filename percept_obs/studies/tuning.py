@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from percept_obs.border import checked
+from percept_obs.observability.windowed import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
@@ -27,13 +29,17 @@ Estimate = Callable[[Recording], Run]
 SHARE = 0.9
 """The share of recordings whose errors the table bounds, beside half of them."""
 
+USUAL_SPEED = 0.2
+"""Lengths a second at which candidates are meant to be used: the root mean square of |w| that they were made for."""
+
 COLUMNS = (
-    *("observer", "gains", "reference", "after", "median", "nine_in_ten"),
+    *("observer", "gains", "at_edge", "reference", "after", "median", "nine_in_ten"),
     *("behind", "reset", "diverged", "cost", "refusal"),
 )
 """Columns of the table."""
 
 
+@checked
 def choose_and_report(
     choosing: Sequence[Recording],
     reporting: Sequence[Recording],
@@ -43,6 +49,7 @@ def choose_and_report(
     batch: Mapping[str, Estimate] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),
+    length: float | None = None,
 ) -> pd.DataFrame:
     """Choose each observer's gains on some recordings, and report its errors of the distance on others.
 
@@ -62,22 +69,26 @@ def choose_and_report(
     after : sequence of float
         Seconds since the first sample.
     references : sequence of str
-        "truth", or names of measured distances of the recordings.
+        "truth", or names of measured distances of the recordings; gains are chosen by the first of them.
+    length : float, optional
+        The unit in metres in which the candidates' gains are stated; `own_length` of the recordings to choose on when
+        left out, so that nothing depends on the unit of length.
 
     Returns
     -------
     pandas.DataFrame
-        One row for an observer, a reference and a time, with relative errors of the distance over the reporting
-        recordings: observer, gains (the chosen ones), reference, after (s), median, nine_in_ten (the 90 % quantile),
-        behind (number of recordings whose estimate is not in front of the camera then), reset, diverged (numbers of
-        recordings), cost (s of computing for a s of data), and refusal: why the observer cannot follow these
-        recordings, if it cannot; its numbers are then NaN.
+        One row for an observer, a reference and a time, with relative errors of the distance over those reporting
+        recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of those that are
+        the smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
+        nine_in_ten (the 90 % quantile), behind (number of recordings whose estimate is not in front of the camera
+        then), reset, diverged (numbers of recordings), cost (s of computing for a s of data), and refusal: why the
+        observer cannot follow these recordings, if it cannot; its numbers are then NaN.
 
     Raises
     ------
     ValueError
-        If there are no recordings or candidates, a recording is in both halves, or one is too short or has no such
-        reference.
+        If there are no recordings or candidates, a recording is in both halves, or all are too short or one has no
+        such reference.
     """
     import pandas as pd
     from tqdm.auto import tqdm
@@ -91,11 +102,15 @@ def choose_and_report(
     if not candidates or not all(len(gains) for gains in candidates.values()):
         raise ValueError("every observer needs at least one candidate for its gains")
     questions = list(product(references, after))
+    if not len(references) or not len(after):
+        raise ValueError(f"{len(references)} references and {len(after)} times: at least one of each is needed")
+    unit = own_length(form, choosing) if length is None else length
     rows: list[dict[str, Any]] = []
 
-    def answer(label: str, gains: str, estimate: Estimate) -> None:
+    def answer(label: str, gains: str, edge: str, estimate: Estimate) -> None:
         runs, cost = timed(estimate, reporting)
         told = {"observer": label, "gains": gains, "cost": cost, "refusal": ""}
+        told["at_edge"] = edge
         told["reset"] = sum(len(run.resets) > 0 for run in runs)
         told["diverged"] = sum(run.diverged_at is not None for run in runs)
         for reference, seconds in questions:
@@ -108,21 +123,45 @@ def choose_and_report(
     for make, settings in tqdm(candidates.items(), desc="choosing gains", delay=2, leave=False):
         refusal, chosen = make.refusal(form), None
         try:
-            observers = [] if refusal else [make(form, **gains) for gains in settings]
-            chosen = best_setting(choosing, observers, follow, after) if observers else None
+            observers = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
+            chosen = best_setting(choosing, observers, follow, after, references[0]) if observers else None
         except DoesNotFit as misfit:
             refusal = str(misfit)
         if chosen is None:
-            told = {"observer": make.name, "gains": "", "refusal": refusal}
+            told = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal}
             rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
             continue
         values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
-        answer(chosen.name, ", ".join(f"{n} {v:.3g}" for n, v in values.items()), partial(_swapped, follow, chosen))
+        answer(
+            chosen.name,
+            ", ".join(f"{n} {v:.3g}" for n, v in values.items()),
+            ", ".join(_at_edge(values, observers)),
+            partial(_swapped, follow, chosen),
+        )
     for label, estimate in (batch or {}).items():
-        answer(label, "", estimate)
+        answer(label, "", "", estimate)
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
+def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
+    """The length in metres in which |w| has the root mean square `USUAL_SPEED` along recordings; 1 without a form.
+
+    How fast the camera moves past a point, not how far away it is, decides what a hidden gain does: w e is fed back.
+    """
+    if form.culprits:
+        return 1.0
+    squares = [np.trace(information_along(form, recording), axis1=1, axis2=2) for recording in recordings]
+    speed = float(np.sqrt(np.mean(np.concatenate(squares))))
+    return speed / USUAL_SPEED if speed > 0 else 1.0
+
+
+def _at_edge(chosen: Gains, observers: Sequence[Observer]) -> list[str]:
+    """Names of chosen gains that are the smallest or the largest of several that were tried."""
+    tried = {name: [g.value for o in observers for g in o.gains if g.name == name] for name in chosen}
+    return [n for n, value in chosen.items() if value in (min(tried[n]), max(tried[n])) and len(set(tried[n])) > 1]
+
+
+@checked
 def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     """What `choose_and_report` found as text, an observer a row.
 
@@ -136,7 +175,7 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     pandas.DataFrame
         A column for each reference and time, with the median error and in brackets what nine in ten stay below;
         behind (recordings, at the time with the most), reset, diverged, cost (us for a s of data), and a remark: the
-        gains, or why the observer cannot follow.
+        gains, those that lie at an edge of their candidates, or why the observer cannot follow.
     """
     import pandas as pd
 
@@ -150,7 +189,9 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
         for name in ("behind", "reset", "diverged"):
             line[name] = "–" if refusal else f"{rows[name].max():.0f}"
         line["cost"] = "–" if refusal else f"{1e6 * rows['cost'].iloc[0]:.0f} us/s"
-        lines[label] = line | {"remark": f"cannot: {refusal}" if refusal else rows["gains"].iloc[0]}
+        gains, edge = rows["gains"].iloc[0], rows["at_edge"].iloc[0]
+        remark = f"{gains}; at the edge of what was tried: {edge}" if edge else gains
+        lines[label] = line | {"remark": f"cannot: {refusal}" if refusal else remark}
     return pd.DataFrame.from_dict(lines, orient="index")
 
 

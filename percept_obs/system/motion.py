@@ -10,7 +10,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import Array
+from percept_obs.border import MOST_TERMS, Coefficients, checked, limit, matrix, numbers, warn
+from percept_obs.compile import Array, Flags, vectorised
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
@@ -18,6 +19,17 @@ TIME = sp.Symbol("t", real=True)
 """Time in seconds: a motion whose coefficients are expressions in nothing else is known at all times."""
 
 
+def slack_of(times: Array) -> float:
+    """By how many seconds two times may differ and still be the same one: a thousandth of the usual interval."""
+    return 1e-3 * float(np.median(np.diff(times)))
+
+
+def from_the_start(elapsed: Array, after: float) -> Flags:
+    """Which samples lie `after` seconds or more behind the first one, shape (K,)."""
+    return np.asarray(elapsed >= after - slack_of(elapsed))
+
+
+@checked
 @dataclass(frozen=True, eq=False)
 class Signal:
     """Numbers known over time: constant, sampled, or given by a function.
@@ -43,6 +55,8 @@ class Signal:
             return
         samples = _frozen(np.atleast_2d(np.asarray(self.samples, dtype=float)), "the signal's samples")
         object.__setattr__(self, "samples", samples)
+        if not len(samples):
+            raise ValueError("the signal has no samples; give a row of values for each of its times")
         if self.times is None:
             if len(samples) != 1:
                 raise ValueError(f"{len(samples)} rows of samples need as many times; only one row is a constant")
@@ -79,11 +93,11 @@ class Signal:
         """
         times = np.atleast_1d(np.asarray(times, dtype=float))
         if callable(self.samples):
-            rows = np.array([np.asarray(self.samples(float(t)), dtype=float).ravel() for t in times])
+            rows = np.array([numbers(self.samples(float(t)), "what the function of time gives").ravel() for t in times])
             return _frozen(rows, "the signal's function values")
         if self.times is None or len(self.samples) == 1:
             return self.samples
-        slack = 1e-9 * max(1.0, float(np.abs(self.times).max()))
+        slack = slack_of(self.times)
         if times.size and (times.min() < self.times[0] - slack or times.max() > self.times[-1] + slack):
             raise ValueError(
                 f"the signal is known from {self.times[0]:.6g} to {self.times[-1]:.6g} s, but is asked for from "
@@ -92,6 +106,7 @@ class Signal:
         return np.stack([np.interp(times, self.times, column) for column in self.samples.T], axis=-1)
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Motion:
     """A motion X' = A X + b, in symbols, with numbers for the symbols if they are known.
@@ -145,7 +160,8 @@ class Motion:
         return rf"$\displaystyle \dot X = {sp.latex(self.A)} X + {sp.latex(self.b)}$"
 
 
-def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Motion:
+@checked
+def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: ArrayLike | None = None) -> Motion:
     """Affine motion (Ma 2005, (1), p. 63).
 
     Parameters
@@ -167,10 +183,11 @@ def affine(A: Any = None, b: Any = None, times: ArrayLike | None = None) -> Moti
     return bound("affine", A_symbols, b_symbols, [(A, A_symbols), (b, b_symbols)], times)
 
 
+@checked
 def rigid(
-    angular_velocity: Any = None,
-    camera_velocity: Any = None,
-    point_velocity: Any = None,
+    angular_velocity: Coefficients | None = None,
+    camera_velocity: Coefficients | None = None,
+    point_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
 ) -> Motion:
     """Rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)).
@@ -199,7 +216,13 @@ def cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
 
 
-def linear(A: Any = None, v: Any = None, states: int | None = None, times: ArrayLike | None = None) -> Motion:
+@checked
+def linear(
+    A: Coefficients | None = None,
+    v: Coefficients | None = None,
+    states: int | None = None,
+    times: ArrayLike | None = None,
+) -> Motion:
     """Linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
 
     Parameters
@@ -226,7 +249,11 @@ def linear(A: Any = None, v: Any = None, states: int | None = None, times: Array
     shown = [np.shape(value)[-1] for value in (A, v) if value is not None and not callable(value) and np.ndim(value)]
     n = states if states is not None else (shown or [0])[0]
     if n < 1:
-        raise ValueError("nothing shows how many states the linear motion has; pass states=")
+        raise ValueError(f"the linear motion has {n} states, or nothing shows how many; pass states=, at least 1")
+    different = [size for size in shown if states is not None and size != n]
+    if different:
+        raise ValueError(f"{n} states were asked for, but A or v has {different[0]}; give both for the same states")
+    limit(n * n, f"entries of A for {n} states", "describe fewer states", MOST_TERMS)
     between = "_" if n > 9 else ""
     A_symbols = sp.ImmutableMatrix(n, n, lambda i, j: sp.Symbol(f"a{i + 1}{between}{j + 1}", real=True))
     v_symbols = sp.ImmutableMatrix(sp.symbols(f"v1:{n + 1}", real=True))
@@ -260,18 +287,51 @@ def bound(
     if all(value is None for value in values):
         return Motion(name, A, b, symbols)
     if any(value is None for value in values):
-        raise ValueError(f"a {name} motion takes all of its coefficients or none of them")
+        given_names = ", ".join(_called(block) for value, block in given if value is None)
+        raise ValueError(f"a {name} motion takes all of its coefficients or none of them; give also {given_names}")
     if any(_has_symbols(value) for value in values):
-        entries = [e for value, block in given for e in sp.ImmutableMatrix(value).reshape(*block.shape)]
+        entries = [e for value, block in given for e in _entries(value, block)]
         A, b = (matrix.xreplace(dict(zip(symbols, entries, strict=True))) for matrix in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
         return Motion(name, A, b, free, Signal(lambda t: [t]) if free == (TIME,) else None)
     if any(callable(value) for value in values):
         return Motion(name, A, b, symbols, Signal(lambda t: _row(given, t)))
     if times is None:
-        return Motion(name, A, b, symbols, Signal(_row(given, 0.0)))
-    rows = [_rows(value, block, len(np.asarray(times))) for value, block in given]
-    return Motion(name, A, b, symbols, Signal(np.hstack(rows), np.asarray(times, dtype=float)))
+        motion = Motion(name, A, b, symbols, Signal(_row(given, 0.0)))
+    else:
+        times = np.atleast_1d(np.asarray(times, dtype=float))
+        if not times.size:
+            raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
+        rows = [_rows(value, block, len(times)) for value, block in given]
+        motion = Motion(name, A, b, symbols, Signal(np.hstack(rows), times))
+    assert motion.signal is not None
+    ask_for_degrees(motion, motion.signal.times if motion.signal.times is not None else 0.0)
+    return motion
+
+
+class AreTheseDegrees(UserWarning):
+    """Something turns so fast that its angular velocity may have been given in degrees."""
+
+
+LARGEST_TURNING = 20.0
+"""Angular velocity in rad/s above which it is asked whether degrees were meant: three turns a second."""
+
+
+def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
+    """Warn of an angular velocity that may have been given in degrees; it is read from the first place's A."""
+    A = motion.A
+    if A.shape[0] < 3 or motion.signal is None:
+        return
+    spin = [(A[i, j] - A[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0))]
+    turning = np.stack(vectorised(motion.parameters, spin)(*motion.known(times).T), axis=-1)
+    fastest = float(np.linalg.norm(turning, axis=-1).max(initial=0)) if motion.parameters else 0.0
+    if fastest > LARGEST_TURNING:
+        warn(
+            AreTheseDegrees(
+                f"the {motion.name} motion turns with {fastest:.3g} rad/s, {fastest / (2 * np.pi):.2g} turns a second; "
+                "were degrees meant?  Then pass np.radians(...) of them"
+            )
+        )
 
 
 def _row(given: list[Coefficient], time: float) -> Array:
@@ -281,15 +341,31 @@ def _row(given: list[Coefficient], time: float) -> Array:
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
     """One coefficient as rows, repeated when it is constant."""
-    array = np.asarray(value, dtype=float)
+    array = numbers(value, "a coefficient of the motion")
     shape = block.shape if block.shape[1] > 1 else block.shape[:1]
     if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
         array = array.reshape(shape)
     if array.shape not in (shape, (count, *shape)):
         sampled = f" or {(count, *shape)}" if count > 1 else ""
-        raise ValueError(f"a coefficient of the motion has shape {array.shape}; expected {shape}{sampled}")
+        raise ValueError(f"{_called(block)} has shape {array.shape}; expected {shape}{sampled}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{_called(block)} is not finite; remove or repair the NaN or infinite entries")
     rows = array.reshape(-1, len(block))
     return rows if len(rows) == count else np.repeat(rows, count, axis=0)
+
+
+def _entries(value: Any, block: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """One coefficient in expressions."""
+    return matrix(value, _called(block), *block.shape)
+
+
+def _called(block: sp.ImmutableMatrix) -> str:
+    """The argument that stands for a block of symbols."""
+    first, last = block[0].name, block[len(block) - 1].name
+    names = {"a": "A", "b": "b", "v": "v", "w": "angular_velocity", "v_c": "camera_velocity", "v_p": "point_velocity"}
+    names |= {"w_c": "camera_angular_velocity", "w_b": "body_angular_velocity"}
+    name = names.get(first.rstrip("0123456789_"), "a coefficient")
+    return f"the motion's {name} ({first} ... {last})"
 
 
 def _has_symbols(value: object) -> bool:

@@ -10,12 +10,14 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.border import checked
 from percept_obs.system.derivation import Derivation, equals, rates
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
+@checked
 @dataclass(frozen=True)
 class PerspectiveSystem:
     """A point in motion, seen on an imaging surface.
@@ -35,6 +37,14 @@ class PerspectiveSystem:
 
     motion: Motion
     surface: ImagingSurface
+
+    def __post_init__(self) -> None:
+        states = self.motion.A.shape[0]
+        if states != len(POINT):
+            raise ValueError(
+                f"the motion has {states} states, but an imaging surface sees a point, which has {len(POINT)}; pass "
+                "affine() or rigid(), or see several points of one state with PointsForm(motion, C)"
+            )
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:

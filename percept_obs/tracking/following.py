@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from functools import singledispatch
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
+from percept_obs.border import Kind, checked, limit, refuse_kind, warn
 from percept_obs.compile import Array, Indices, Language, Table, solve, vectorised
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
@@ -38,9 +38,24 @@ class StepTooLong(UserWarning):
     """The steps become too long for the fastest part of an observer, which will then chatter."""
 
 
+def width(observer: Any) -> int:
+    """How many numbers the state of an observer has."""
+    equations = getattr(observer, "equations", None)
+    return len(equations.state) if equations else int(observer.form.states)
+
+
+def _follows(observer: Any) -> bool:
+    return follow.dispatch(type(observer)) is not follow.dispatch(object)
+
+
+AnyObserver = Annotated[Any, Kind("an observer of a form", _follows, "ibo(form)")]
+"""Whatever `follow` knows how to run."""
+
+
+@checked
 def track(
     recording: Recording,
-    observer: Any,
+    observer: AnyObserver,
     start: Any = None,
     hold: Hold = "zero",
     believed: Motion | None = None,
@@ -106,6 +121,13 @@ def track(
             raise ValueError(f"the {name} is {value}; it must be positive, in seconds")
     if not math.isfinite(step):
         raise ValueError(f"the step is {step} s; it must be finite")
+    length, each = float(recording.time[-1] - recording.time[0]), width(observer) + 2 * recording.outputs[0].size
+    steps = max(length / step, len(recording.time))
+    limit(
+        steps * each,
+        f"numbers, from {steps:.3g} steps",
+        "track a shorter part, recording.between(begin, end), or take longer steps",
+    )
     along = Course(recording, *step_grid(recording.time, step), hold, longest_hold)
     return follow(observer, along, start, believed, language)
 
@@ -131,12 +153,15 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, along.grid)
     known = _known(along, believed)
+    given = _named(start, form.coordinates)
     initial = observer.initial_state(
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
-        _named(start, form.coordinates),
+        given,
         dict(zip(form.parameters, known[0].tolist(), strict=True)),
     )
-    table = Table(along.steps, along.held(filled=True)[..., columns], known, along.arriving(samples))
+    arriving = along.arriving(samples)
+    arriving[0, [name not in given for name in form.measured]] = np.nan  # a sample that is the start corrects nothing
+    table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states[index]
     at_samples = known if len(known) == 1 else known[EACH * index]
@@ -178,19 +203,16 @@ def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
     late = np.flatnonzero(rate * steps >= LARGEST_STEP_RATE)
     if len(late):
         k = late[0]
-        warnings.warn(
-            TOO_LONG.format(
-                time=f"{grid[k] - grid[0]:.3g}",
-                name=observer.name,
-                rate=f"{rate[k]:.4g}",
-                step=f"{steps[k]:.3g}",
-                limit=f"{LARGEST_STEP_RATE:g}",
-                remedy=observer.fastest.remedy,
-                shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
-            ),
-            StepTooLong,
-            stacklevel=5,
+        told = TOO_LONG.format(
+            time=f"{grid[k] - grid[0]:.3g}",
+            name=observer.name,
+            rate=f"{rate[k]:.4g}",
+            step=f"{steps[k]:.3g}",
+            limit=f"{LARGEST_STEP_RATE:g}",
+            remedy=observer.fastest.remedy,
+            shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
         )
+        warn(StepTooLong(told))
 
 
 def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None:
@@ -231,6 +253,7 @@ def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None
 
 def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
     """Estimates at the start by the names of their coordinates."""
+    refuse_kind("track", "start", start, Start)
     if start is None or isinstance(start, Mapping):
         return {name: float(value) for name, value in (start or {}).items()}
     names = [symbol.name for symbol in coordinates]

@@ -4,47 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from itertools import pairwise
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.border import checked
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
 from percept_obs.tracking.course import Hold
+from percept_obs.tracking.information import NOTHING, Fit, Information, gathered, one_point, relative_deviation
+from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, outcome
 
 Array = NDArray[np.float64]
 
-REMEDY = "choose smaller gains or shorter steps"
-"""What to do about a run that diverged."""
 
-SETTLED_PART = 0.1
-"""Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
-
-VERDICTS = MappingProxyType(
-    {
-        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
-        "followed": "followed {time} s; no truth to compare with",
-        "outside": "not converged: the error of {judged} ends at {error}, outside {tolerance}",
-        "late": (
-            "not converged yet: the error of {judged} is within {tolerance} only since {time} s, too short before the "
-            "end to be sure of"
-        ),
-        "converged": "converged: the error of {judged} stays within {tolerance} after {time} s",
-        "reset once": "; driven to the bound and reset once, at {time} s",
-        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
-        "gap": "; no estimate from {begin} to {end} s, for {reason}",
-        "more gaps": ", and in {count} more gaps",
-    }
-)
-"""What a verdict says, by what happened; live labs use the same words."""
-
-
+@checked
 @dataclass(frozen=True, eq=False)
 class Run:
     """An observer's estimates at the samples of a recording.
@@ -58,11 +37,11 @@ class Run:
     state : array of shape (K, s)
         The observer's state.
     diverged_at : float or None
-        When the state stopped being finite, in seconds.
+        When the state stopped being finite, by the recording's clock.
     hold : "zero", "first" or "exact"
         How samples were held between them.
     resets : array
-        Times, in seconds, at which the estimate was reset.
+        Times by the recording's clock at which the estimate was reset.
     unobservable : array of shape (K,) of int
         Which of `Observer.unobservable` hides the hidden coordinates, counted from 1; 0 where they have an estimate.
     """
@@ -80,6 +59,11 @@ class Run:
     def time(self) -> Array:
         """Times of the samples in seconds, shape (K,)."""
         return self.recording.time
+
+    @property
+    def elapsed(self) -> Array:
+        """Seconds since the first sample, shape (K,)."""
+        return self.recording.elapsed
 
     @property
     def view(self) -> View:
@@ -136,8 +120,8 @@ class Run:
     def nis(self) -> Array:
         """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
 
-        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost, or
-        where P equals R to rounding.  With the residual r after the update, its covariance R - P and
+        Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost or is the
+        start itself, or where P equals R to rounding.  With the residual r after the update, its covariance R - P and
         r = R S^-1 (innovation), the squared innovation is r^T (R - P)^-1 r.
 
         Raises
@@ -174,19 +158,64 @@ class Run:
         return np.divide(1, inverse, out=none, where=np.isfinite(inverse) & (inverse > 0))
 
     @cached_property
-    def deviation(self) -> Array:
-        """What the verdict judges, shape (K,): the largest error of a hidden coordinate."""
-        return np.asarray(np.abs(self.error[:, self._columns(())]).max(axis=1))
+    def relative_error(self) -> Array:
+        """What the verdict judges, shape (K,): the relative error of the distance, or of all that the view seeks.
+
+        Infinite where the estimate is infinitely far away or behind the camera, NaN where there is none.
+        """
+        return self.view.relative_error(self.truth, self.estimate, self.recording.motion.known(self.time))
+
+    @cached_property
+    def information(self) -> Information:
+        """What the samples tell at the end, whatever the observer makes of them; it needs no truth."""
+        return gathered(self._least_squares, self.elapsed, self.estimate[-1])
+
+    @property
+    def _least_squares(self) -> Fit:
+        return one_point(self.observer.form, self.recording)
+
+    def trust(self, tolerance: float = TOLERANCE) -> Trust:
+        """Whether the last estimate can be trusted, by what can be known without a truth.
+
+        It can where the samples by themselves tell what is sought to within the tolerance, with two standard
+        deviations, and the estimate is no farther than both together from what they tell.  A wrong scale of the known
+        motion leaves no trace in them.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative, as for `outcome`.
+
+        Examples
+        --------
+        >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+        >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+        >>> track(record(scenarios.ma2005_eq35(), 5), ibo(form)).trust().kind
+        'agrees'
+        """
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+        known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
+        said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
+        if not np.isfinite(last).all():
+            return said("no estimate")
+        if not view.point_shape and not view.inverse(last) > 0:
+            return said("nowhere")
+        if self.observer.covariance is not None:
+            claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
+            said = partial(said, claimed=relative_deviation(view, last, claims, known))
+        found = self.information
+        said = partial(said, information=found)
+        if not 2 * found.deviation <= tolerance:
+            return said("vague" if found.deviation < NOTHING else "hidden")
+        difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
+        agrees = difference <= tolerance + 2 * found.deviation
+        return said("agrees" if agrees else "differs", difference=difference)
 
     @property
     def remedy(self) -> str:
         """What to do about it if it diverged."""
         return REMEDY
-
-    @property
-    def judged(self) -> str:
-        """What the verdict judges, in words."""
-        return ", ".join(self.observer.form.hidden)
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:
@@ -207,69 +236,73 @@ class Run:
         edges = np.flatnonzero(np.diff(self.unobservable, prepend=0, append=0))
         return [(int(k), int(end)) for k, end in pairwise(edges) if self.unobservable[k]]
 
-    def settling_time(self, tolerance: float = 0.05, *names: str) -> float:
-        """When the error entered the tolerance for good.
+    def outcome(self, tolerance: float = TOLERANCE, *names: str) -> Outcome:
+        """What became of the error.
 
         Parameters
         ----------
         tolerance : float
-            Bound on the error's absolute value; positive.
+            Bound on the `relative_error`, or on the absolute errors of the named coordinates; positive.
         *names : str
-            Coordinates that count; the hidden ones when left out.
+            Coordinates whose absolute error is asked for.
 
-        Returns
-        -------
-        float
-            Seconds since the first sample; infinite if the error is outside at the end.
+        Raises
+        ------
+        ValueError
+            If there is no truth, or the tolerance or a name makes no sense.
         """
-        if not tolerance > 0:
-            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
-        error = np.abs(self.error[:, self._columns(names)]).max(axis=1) if names else self.deviation
-        outside, times = ~(error[self._known] < tolerance), self.time[self._known]
-        if not len(times) or outside[-1]:
-            return math.inf
-        last = np.flatnonzero(outside)
-        return float(times[last[-1] + 1] - self.time[0]) if len(last) else 0.0
+        error = np.abs(self.error[:, self._columns(names)]).max(axis=1) if names else self.relative_error
+        known = self._known
+        if not known.any():
+            raise ValueError("the truth is NaN at every sample, so that there is nothing to compare with")
+        length = float(self.elapsed[-1])
+        found = outcome(self.elapsed[known], error[known], tolerance, length)
+        return found if self.diverged_at is None else replace(found, kind="diverged", settled=math.inf)
+
+    def settling_time(self, tolerance: float = TOLERANCE, *names: str) -> float:
+        """When the error entered the tolerance for good: seconds since the first sample, or infinite; see `outcome`."""
+        return self.outcome(tolerance, *names).settled
 
     def rms(self, begin: float = -math.inf, end: float = math.inf, *names: str) -> float:
-        """Root mean square of the error between two times, over the hidden coordinates or those named."""
+        """Root mean square of the error between two times of its clock, over the hidden coordinates or those named."""
         part = (self.time >= begin) & (self.time <= end) & self._known
         if not part.any():
             raise ValueError(f"no sample with a truth lies between {begin} and {end} s")
         return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
 
-    def verdict(self, tolerance: float = 0.05) -> str:
-        """What happened, in words.
+    def verdict(self, tolerance: float = TOLERANCE, *names: str) -> str:
+        """What happened, in words; times count from the first sample.
 
         An estimate has converged if its error stayed within the tolerance for at least the last tenth of the run.
+
+        Parameters
+        ----------
+        tolerance, *names
+            See `outcome`.
         """
         if self.diverged_at is not None:
-            return VERDICTS["diverged"].format(time=f"{self.diverged_at:.3g}", remedy=self.remedy)
-        besides = ""
+            time = f"{self.diverged_at - self.time[0]:.3g}"
+            return VERDICTS["diverged"].format(time=time, remedy=self.remedy)
+        if self.recording.truth is None or not self._known.any():
+            said = VERDICTS["followed"].format(time=f"{self.elapsed[-1]:.3g}")
+            said += "" if names else str(self.trust(tolerance))
+        else:
+            said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
+        return said + self._besides()
+
+    def _besides(self) -> str:
+        """Resets, and when there was no estimate."""
+        said, begun = "", self.time[0]
         if len(self.resets):
             which = "reset once" if len(self.resets) == 1 else "reset often"
-            besides = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0]:.3g}")
+            said = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0] - begun:.3g}")
         for reason in dict.fromkeys(self.reasons):
             alike = [part for part, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
-            begin, end = (f"{time:.3g}" for time in alike[0])
-            besides += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
+            begin, end = (f"{time - begun:.3g}" for time in alike[0])
+            said += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
             if len(alike) > 1:
-                besides += VERDICTS["more gaps"].format(count=len(alike) - 1)
-        length = float(self.time[-1] - self.time[0])
-        if self.recording.truth is None or not self._known.any():
-            return VERDICTS["followed"].format(time=f"{length:.3g}") + besides
-        settled = self.settling_time(tolerance)
-        if math.isinf(settled):
-            which = "outside"
-        else:
-            which = "converged" if length - settled >= SETTLED_PART * length else "late"
-        words = VERDICTS[which].format(
-            judged=self.judged,
-            error=f"{self.deviation[self._known][-1]:.2g}",
-            tolerance=f"{tolerance:g}",
-            time=f"{settled:.3g}",
-        )
-        return words + besides
+                said += VERDICTS["more gaps"].format(count=len(alike) - 1)
+        return said
 
     @property
     def _known(self) -> NDArray[np.bool_]:

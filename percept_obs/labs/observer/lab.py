@@ -21,8 +21,10 @@ from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, stan
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import BehindCamera, plane
+from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
-from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import REMEDY, for_the_page
 
 
 class ObserverLab(Lab):
@@ -72,8 +74,8 @@ class ObserverLab(Lab):
             scenarios={name: {"title": s.name, **known[name]} for name, s in offered.items()},
             recordings={n: track_for_the_page(r, tracks[n].motion.name) for n, r in self._recordings.items()},
             pictures=PICTURES,
-            verdicts=dict(VERDICTS),
-            settledPart=SETTLED_PART,
+            **for_the_page(),
+            judged=DISTANCE,
             remedy=REMEDY,
         )
 
@@ -108,11 +110,11 @@ class ObserverLab(Lab):
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
         observers = {name: (*seen, name, _way(settings, name)) for name in settings["observers"]}
-        told = [name for name, observer in observers.items() if has_words(observer)]
         try:
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
         except BehindCamera as error:
             return {"sentences": [str(error)]}
+        told = [name for name, observer in observers.items() if recording.truth is None or has_words(observer)]
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(form_of(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:

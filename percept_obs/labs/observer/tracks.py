@@ -13,14 +13,18 @@ from percept_obs.system.motion import affine
 
 
 def track_for_the_page(recording: Recording, motion: str) -> dict[str, Any]:
-    """A recording in numbers, with the name of its own motion; a lost sample is null, since JSON knows no NaN."""
+    """A recording in numbers, with the name of its own motion; times count from its first sample.
+
+    A lost sample is null, since JSON knows no NaN.
+    """
     signal = recording.motion.signal
     if signal is None or callable(signal.samples):
         raise ValueError(f"the motion of {recording.source!r} has no sampled numbers; bind it to numbers first")
-    times = [0.0] if signal.times is None else signal.times.tolist()
+    begun = recording.time[0]
+    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
     return {
         "names": recording.names,
-        "time": recording.time.tolist(),
+        "time": recording.elapsed.tolist(),
         "samples": [[None if np.isnan(v) else v for v in row] for row in recording.outputs.tolist()],
         "truth": None if recording.truth is None else recording.truth.tolist(),
         "motion": {"times": times, "rows": signal.samples.tolist()},

@@ -42,20 +42,22 @@ def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
     """What is to be said of one observer's run; nothing where it diverged."""
     if run.diverged_at is not None:
         return []
+    if run.recording.truth is None:
+        sentences = [f"{run.observer.name}: {run.trust().sentence}"]
+        return [*sentences, _consistency_in_words(run)] if run.observer.covariance is not None else sentences
     if run.observer.covariance is not None:
         spread = f"{2 * np.sqrt(max(0.0, run.covariance[-1, -1, -1])):.2g} (2σ) at the end"
         claim = f"{run.observer.name}: it claims to know the inverse distance to within {spread}."
         return [claim, _consistency_in_words(run)]
-    if run.recording.truth is None or not _can_be_linearised(chosen):
+    if not _can_be_linearised(chosen):
         return []
     return _error_in_words(chosen, run, window)
 
 
 def _consistency_in_words(run: Run) -> str:
-    if not np.isfinite(run.nis[1:]).any():
-        return f"{run.observer.name}: there is no complete sample after the first to test its innovations by."
-    # the estimate starts from the first sample, which therefore tells nothing
-    found = check_consistency(run, samples=1, after=float(run.time[1] - run.time[0]) / 2)
+    if not np.isfinite(run.nis).any():
+        return f"{run.observer.name}: there is no complete sample besides its start to test its innovations by."
+    found = check_consistency(run, samples=1)
     return f"{run.observer.name}: it is {found.summary}."
 
 

@@ -28,12 +28,12 @@ from percept_obs.points import (
     riccati,
     scheduled,
 )
-from percept_obs.points.form import points_form
+from percept_obs.points.form import JUDGED, points_form
 from percept_obs.points.manoeuvre import Manoeuvre
-from percept_obs.points.run import JUDGED, REMEDY
+from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
 from percept_obs.tracking import track
-from percept_obs.tracking.run import SETTLED_PART, VERDICTS
+from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
@@ -70,8 +70,7 @@ class PointsLab(Lab):
             SCHEMA.opening,
             pictures=PICTURES,
             error=ERROR,
-            verdicts={**VERDICTS, **GRAMIAN_VERDICTS},
-            settledPart=SETTLED_PART,
+            **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},
             remedy=REMEDY,
             judged=JUDGED,
             unseen=UNSEEN,

@@ -103,14 +103,14 @@ def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, doubt: Any,
     }
 
 
-def cascade_equations(x: Any, P: Any, F: Any, f: Any, C: Any, y: Any, one: Any, Q: Any, R: Any) -> Matrices:
+def cascade_equations(x: Any, P: Any, F: Any, f: Any, C: Any, y: Any, W: Any, Q: Any, R: Any) -> Matrices:
     """One filter of the linear approximation observer: innovation, gain K, flow."""
     K, e = sp.MatrixSymbol("K", x.shape[0], y.shape[0]), sp.MatrixSymbol("e", *y.shape)
     return {
         "e": y - C * x,
         "K": P * C.T / R,
         "x'": F * x + f + K * e,
-        "P'": F * P + P * F.T + Q * one - K * C * P,
+        "P'": F * P + P * F.T + Q * W - K * C * P,
     }
 
 
@@ -146,14 +146,20 @@ def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] =
     x, F, P = (sp.MatrixSymbol(f"{s}_i", n, width) for s, width in (("xhat", 1), ("F", n), ("P", n)))
     rate, C, y = sp.MatrixSymbol("f_0", n, 1), sp.MatrixSymbol("C", m, n), sp.MatrixSymbol("y", m, 1)
     Q, R, P0 = (letters[name] for name in ("process_weight", "measurement_weight", "start_weight"))
-    rows = cascade_equations(x, P, F, rate, C, y, sp.Identity(n), Q, R)
+    W = sp.MatrixSymbol("W", n, n)
+    rows = cascade_equations(x, P, F, rate, C, y, W, Q, R)
     J, before = sp.Function("J"), sp.Symbol("xhat_i-1")
     frozen = sp.Matrix([[0, sp.Symbol("w^T")], [0, (J(0) + J(before)) / 2]])
     return [
         row("for i = 1, 2, ...:", formula(dotted(x), rows["x'"]), ",", formula("<mi>e</mi>", rows["e"])),
         row(formula(F, frozen), ",", formula(sp.Symbol("J"), sp.Derivative(sp.Function("g")(X2), X2)), ",", _OFFSET),
         row(formula("<mi>K</mi>", rows["K"], letters), ",", formula(dotted(P), rows["P'"], letters)),
-        row("at the start", formula(P, P0 * sp.Identity(n), letters)),
+        row(
+            "at the start",
+            formula(P, P0 * W, letters),
+            "with",
+            formula(W, sp.diag(1, letters["hidden_weight"]), letters),
+        ),
     ]
 
 

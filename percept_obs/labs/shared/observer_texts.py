@@ -10,7 +10,7 @@ from percept_obs.labs.shared.markup import markup
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Gain, Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
-from percept_obs.observers.parts import hats
+from percept_obs.observers.parts import first_seen, hats
 
 
 def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:
@@ -60,7 +60,7 @@ def kernel_for_the_page(observer: Observer) -> Texts:
         "gains": [gain.name for gain in observer.gains],
         "run": source(equations, "javascript"),
         "states": len(equations.state),
-        "start": function_source((*known, *hats(form.coordinates)), observer.start),
+        "start": function_source((*known, *hats(form.coordinates), *first_seen(form)), observer.start),
         "estimate": function_source((*known, *equations.state), observer.estimate),
         "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
         "gap": None

@@ -28,8 +28,10 @@ from percept_obs.structure import (
 )
 from percept_obs.system.motion import Motion, Signal, rigid
 from percept_obs.system.surfaces import BehindCamera, pinhole
+from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
-from percept_obs.tracking.run import REMEDY, SETTLED_PART, VERDICTS, Run
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import REMEDY, for_the_page
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
@@ -60,8 +62,8 @@ class StructureLab(Lab):
             opening,
             opening,
             pictures=PICTURES,
-            verdicts=dict(VERDICTS),
-            settledPart=SETTLED_PART,
+            **for_the_page(),
+            judged=DISTANCE,
             remedy=REMEDY,
             tooLong=TOO_LONG,
             largestStepRate=LARGEST_STEP_RATE,

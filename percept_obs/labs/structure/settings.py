@@ -16,6 +16,7 @@ from percept_obs.labs.shared.schema import (
 )
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES
+from percept_obs.tracking.verdict import TOLERANCE
 
 PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
 VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
@@ -63,7 +64,7 @@ SCHEMA = Schema(
     hold=Choice("first", ("zero", "first", "exact")),
     step=Number(1e-3, 1e-5, 0.1, (1e-4, 0.01), unit="s", label="longest step", about="the observers' longest step"),
     start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),
-    tolerance=Number(0.05, 1e-6, 10, (1e-4, 1), about="the error of theta that counts as settled"),
+    tolerance=Number(TOLERANCE, 1e-6, 10, (1e-4, 1), about="the relative error that counts as settled"),
     pictures=Names(["unknowns", "error", "determinant"], PICTURES, label="Time charts", about="those that are shown"),
     kept=KEPT,
 )

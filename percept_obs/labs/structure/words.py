@@ -3,7 +3,8 @@
 import numpy as np
 
 from percept_obs.structure import StructureAndMotion
-from percept_obs.tracking.run import SETTLED_PART, Run
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import SETTLED_PART
 
 
 def late_errors(title: str, run: Run) -> list[str]:

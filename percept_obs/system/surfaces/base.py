@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from percept_obs.border import checked, expression, expressions
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.view import OnePoint
 
@@ -23,6 +24,7 @@ class BehindCamera(ValueError):
     """A point is not in front of the imaging surface, so it has no image there."""
 
 
+@checked
 @dataclass(frozen=True)
 class ImagingSurface(OnePoint):
     """A chart of an imaging surface through which a camera sees points of space.
@@ -55,9 +57,9 @@ class ImagingSurface(OnePoint):
     values: Mapping[sp.Symbol, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "image", tuple(map(sp.sympify, self.image)))
-        object.__setattr__(self, "ray", tuple(map(sp.sympify, self.ray)))
-        object.__setattr__(self, "distance", sp.sympify(self.distance))
+        object.__setattr__(self, "image", expressions(self.image, "the surface's image"))
+        object.__setattr__(self, "ray", expressions(self.ray, "the surface's ray"))
+        object.__setattr__(self, "distance", expression(self.distance, "the surface's distance"))
         object.__setattr__(self, "values", MappingProxyType({s: float(v) for s, v in self.values.items()}))
         if not self.image or len(self.ray) != 3:
             raise ValueError(

@@ -7,9 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
+from percept_obs.border import checked
 from percept_obs.system.surfaces.base import POINT, ImagingSurface
 
 
+@checked
 def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSurface:
     """General image plane n . X = 1 (Ma 2005, (5)-(8), p. 64).
 

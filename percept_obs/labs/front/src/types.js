@@ -15,7 +15,7 @@
  * @property {[begin: number, end: number, reason: number][]} gaps  when hidden coordinates have no estimate
  * @property {string[]} gapReasons  for the numbers of gaps, from 1 on
  * @property {number | null} divergedAt  in s
- * @property {Float64Array | null} error  the largest error of a hidden coordinate at each sample
+ * @property {Float64Array | null} error  the relative error of what is judged at each sample
  * @property {number | null} settling  seconds from the first sample until the error stays in the tolerance, or Infinity
  *
  * @typedef {object} SharedResult  what the labs of single points show
@@ -33,7 +33,8 @@
  * @property {number[]} hidden     which of them are not
  * @property {string[]} hiddenNames
  * @property {number | null} leavesAt  when the point leaves the half-space in front of the camera, in s
- * @property {number} tolerance    of the error
+ * @property {number} tolerance    of the relative error
+ * @property {string} [judged]     what it is an error of, in words
  * @property {ObserverRun[]} runs
  *
  * @typedef {object} Excitation
@@ -50,6 +51,7 @@
  * @typedef {object} OfStructureLab
  * @property {Float64Array} image  rows of the true y1, y2 and ybar3
  * @property {number} scale        the true d_s, in 1/m
+ * @property {number} [speed]      the point's greatest against the camera, in m/s
  * @property {{unknown: string[], scaled: boolean[], square: boolean} | null} choice  of unknowns, if it is possible
  * @property {{sizes: Float64Array, determinants: Float64Array} | null} guard  how much errors are amplified
  * @property {{name: string, time: number, rate: number, step: number, shorter: number, remedy: string}[]} limits
@@ -79,6 +81,8 @@
  * @property {{images: Float64Array, depths: Float64Array}} estimated  the same of the estimate
  * @property {Float64Array} size   norm of the error at each sample
  * @property {Float64Array[]} errors  of each point, in m
+ * @property {number} tolerance    of the largest of the next
+ * @property {Float64Array[]} relative  the same over each point's distance
  * @property {{rate: number, begin: number, level: number} | null} fit  the exponential fitted to the error's end
  * @property {{first: number, last: number, begin: number, end: number}[][]} absences  of each point: samples and times
  * @property {number | null} divergedAt  in s

@@ -1,16 +1,16 @@
 // How far an estimate is from the truth, and since when it has settled.
 
-/** Largest absolute error of the hidden coordinates at each sample. */
-export function hiddenError(truth, estimate, width, hidden) {
+/**
+ * |estimated distance / true distance - 1| at each sample, from inverse distances, as OnePoint.relative_error():
+ * infinite where the estimate is not in front of the camera, NaN where there is none.
+ */
+export function distanceError(truth, estimate, width, inverseOf) {
   const error = new Float64Array(truth.length / width);
   for (let k = 0; k < error.length; k++) {
-    let largest = 0;
-    for (let i = 0; i < hidden.length; i++) {
-      const size = Math.abs(truth[k * width + hidden[i]] - estimate[k * width + hidden[i]]);
-      // Not Math.max alone: what is not a number must stay so.
-      if (!(size <= largest)) largest = size;
-    }
-    error[k] = largest;
+    const row = estimate.subarray(k * width, (k + 1) * width);
+    const found = inverseOf(estimate, k);
+    if (!row.every(Number.isFinite)) error[k] = NaN;
+    else error[k] = found > 0 ? Math.abs(inverseOf(truth, k) / found - 1) : Infinity;
   }
   return error;
 }

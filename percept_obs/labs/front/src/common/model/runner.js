@@ -2,7 +2,7 @@
 // Observers on a recording: the same numbers as track() in Python.
 
 import { columnOf } from "./derived.js";
-import { hiddenError, settlingTime } from "./errors.js";
+import { settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
 import { arriving, EACH, held, lastSamples } from "./tables.js";
 
@@ -15,17 +15,29 @@ export class Runner {
     this.room = (part, length) => this.memory.room(part, length);
   }
 
+  /**
+   * The relative error of what is sought, as the view's relative_error() in Python; each lab seeks something else.
+   *
+   * @returns {Float64Array}
+   */
+  relativeError(_result, _estimate) {
+    throw new Error("a lab says what its verdicts judge");
+  }
+
   /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
-  layOut({ time, outputs, measured, sampled }, lines, known, hold, exact) {
+  layOut({ time, outputs, measured, sampled }, lines, known, hold, exact, own) {
     const { grid, index } = lines;
     const columns = measured.map((c) => columnOf(outputs, sampled, c));
     const room = (part) => (length) => this.room(part, length);
+    const samples = arriving(columns, index, grid.length, room("arriving"));
+    if (own) samples.fill(NaN, 0, columns.length); // a sample that is the start corrects nothing
     return {
       ...lines,
       columns,
       last: columns.map((values, m) => lastSamples(values, room(`last ${m}`))),
       held: held(columns, time, grid, index, hold, exact, room("held")),
-      arriving: arriving(columns, index, grid.length, room("arriving")),
+      arriving: samples,
+      own,
       known,
     };
   }
@@ -48,7 +60,7 @@ export class Runner {
     const estimate = new Float64Array(time.length * width);
     const lacking = this.room("lacking", time.length).fill(0);
     readEstimates(functions, kernel, states, inputs, gains, result, estimate, lacking);
-    const error = truth && hiddenError(truth, estimate, width, result.hidden);
+    const error = truth && this.relativeError(result, estimate);
     return {
       name,
       title: this.model.observers[name].title,
@@ -65,10 +77,13 @@ export class Runner {
   }
 }
 
-/** The state at the first sample, from it, from what is known there, and from the estimates that are asked for. */
-function startState({ columns, known: table }, kernel, functions, gains, asked) {
+/**
+ * The state at the first sample, from it, from what is known there, from the estimates that are asked for, and from
+ * whether those of the outputs are the sample itself.
+ */
+function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
-  const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked];
+  const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked, ...columns.map(() => (own ? 1 : 0))];
   return functions.start(inputs, new Float64Array(kernel.states));
 }
 

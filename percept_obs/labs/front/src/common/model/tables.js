@@ -1,6 +1,6 @@
 // What an observer may know at the instants of every step, laid out once; see tracking.py.
 
-import { INSTANTS, PLANT_STEP } from "./integrator.js";
+import { INSTANTS, PLANT_STEP, STEP_ROUNDING } from "./integrator.js";
 
 /** Rows that a step adds to a table of known signals; its end is the next one's start. */
 export const EACH = INSTANTS.length - 1;
@@ -11,7 +11,7 @@ export function stepGrid(times, longest) {
   const counts = new Int32Array(times.length - 1);
   for (let k = 0; k < counts.length; k++) {
     const interval = times[k + 1] - times[k];
-    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - 1e-9)) : 0;
+    counts[k] = interval > 0 ? Math.max(1, Math.ceil(interval / longest - STEP_ROUNDING)) : 0;
     index[k + 1] = index[k] + counts[k];
   }
   const grid = new Float64Array(index[index.length - 1] + 1);
@@ -143,6 +143,13 @@ export function knownAt(motion, shape, places) {
   const columns = [...motion.columns.map((values) => interpolate(places, motion.times, values)), ...still];
   columns.forEach((values, p) => values.forEach((value, k) => (rows[k * width + p] = value)));
   return { rows, width, varying: true };
+}
+
+/** By how many seconds two times may differ and still be the same one, as slack_of() in Python. */
+export function slackOf(time) {
+  const gaps = Float64Array.from({ length: time.length - 1 }, (_, k) => time[k + 1] - time[k]).sort();
+  const middle = (gaps.length - 1) / 2;
+  return (1e-3 * (gaps[Math.floor(middle)] + gaps[Math.ceil(middle)])) / 2;
 }
 
 /** The last sample that is not after a time. */

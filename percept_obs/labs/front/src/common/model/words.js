@@ -8,31 +8,40 @@ export function filled(text, values) {
 }
 
 /** What happened to one observer, as Run.verdict() in Python. */
-export function verdict(run, shown, { verdicts, settledPart, remedy }) {
+export function verdict(run, shown, model) {
+  const { verdicts, remedy } = model;
   const say = (which, values) => filled(verdicts[which], values);
-  if (run.divergedAt !== null) return say("diverged", { time: short(run.divergedAt), remedy });
+  const since = (time) => short(time - shown.time[0]);
+  if (run.divergedAt !== null) return say("diverged", { time: since(run.divergedAt), remedy });
   const count = run.resets.length;
-  let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: short(run.resets[0]) }) : "";
+  let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: since(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
     const gaps = run.gaps.filter((gap) => gap[2] === which);
-    besides += say("gap", { begin: short(gaps[0][0]), end: short(gaps[0][1]), reason: run.gapReasons[which - 1] });
+    besides += say("gap", { begin: since(gaps[0][0]), end: since(gaps[0][1]), reason: run.gapReasons[which - 1] });
     if (gaps.length > 1) besides += say("more gaps", { count: gaps.length - 1 });
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
-  const judged = { judged: shown.hiddenNames.join(", "), error: run.error.at(-1), tolerance: shown.tolerance };
-  return settledInWords(judged, run.settling, length, { verdicts, settledPart }) + besides;
+  const judged = { judged: shown.judged, error: run.error.at(-1), tolerance: shown.tolerance };
+  return settledInWords(judged, run.settling, length, model) + besides;
 }
 
-/** Whether an error settled, with its last value; `settling` is infinite where it ends outside of the tolerance. */
-export function settledInWords({ judged, error, tolerance }, settling, length, { verdicts, settledPart }) {
+/** What became of a relative error, with its last value; `settling` is infinite where it ends outside. */
+export function settledInWords({ judged, error, tolerance }, settling, length, { verdicts, settledPart, farOff }) {
   const inside = length - settling >= settledPart * length ? "converged" : "late";
-  return filled(verdicts[settling === Infinity ? "outside" : inside], {
+  const outside = Number.isNaN(error) ? "none" : error === Infinity ? "behind" : "outside";
+  return filled(verdicts[settling === Infinity ? outside : inside], {
+    error_of: verdicts.relative,
     judged,
-    error: short(error, 2),
-    tolerance: short(tolerance, 6),
+    error: error <= farOff ? percent(error) : `more than ${short(100 * farOff, 6)} %`,
+    tolerance: percent(tolerance, 6),
     time: short(settling),
   });
+}
+
+/** A share in per cent. */
+export function percent(share, digits = 3) {
+  return `${short(100 * share, digits)} %`;
 }
 
 export function readingAt(shown, cursor) {

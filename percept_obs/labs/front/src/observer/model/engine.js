@@ -2,14 +2,13 @@
 
 import { LONGEST_STEP } from "../../common/model/integrator.js";
 import { columnOf } from "../../common/model/derived.js";
+import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
 import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { windowed } from "./measures.js";
-
-const TOLERANCE = 0.05;
 
 export class Engine extends Runner {
   constructor(model) {
@@ -27,7 +26,8 @@ export class Engine extends Runner {
       ...this.camera.record(settings, functions),
       ...this.geometry(settings, functions, form),
       ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
-      tolerance: TOLERANCE,
+      tolerance: this.model.tolerance,
+      judged: this.model.judged,
       runs: [],
       excitation: null,
       whole: false,
@@ -59,7 +59,12 @@ export class Engine extends Runner {
     const table = memory.once("known", [clock, settings.believed ?? (recorded ? "" : believed.rows), shape], () =>
       known(believed, shape, lines.grid),
     );
-    return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]));
+    return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]), settings.start.mode === "own");
+  }
+
+  /** Of the distance, whose inverse is the last coordinate. */
+  relativeError({ truth, width }, estimate) {
+    return distanceError(truth, estimate, width, (rows, k) => rows[k * width + width - 1]);
   }
 
   exact(settings, grid, functions) {

@@ -1,5 +1,7 @@
 // What is read off a run: excitation.
 
+import { slackOf } from "../../common/model/tables.js";
+
 /** Smallest eigenvalue of a symmetric matrix of size 1 or 2, given row by row. */
 export function smallestEigenvalue(matrix) {
   if (matrix.length === 1) return matrix[0];
@@ -32,7 +34,8 @@ export function windowed(time, w, hidden, measured, window) {
     }
     before.set(now);
   }
-  const first = time.findIndex((t) => t >= time[0] + window - 1e-9);
+  const least = window - slackOf(time);
+  const first = time.findIndex((t) => t - time[0] >= least);
   const ends = time.subarray(first < 0 ? samples : first);
   const smallest = new Float64Array(ends.length);
   const inside = new Array(size);

@@ -35,14 +35,14 @@ export const PRESETS = presetsOf([
         changes: { outputs: ["y1"] },
         answer:
           "Over time it can: w wᵀ has rank 1 at every instant, yet its integral over ten seconds has rank 2. " +
-          "It takes 13 s instead of 1.5 s.",
+          "It takes 12 s instead of 1.9 s.",
       },
     ],
   },
   {
     name: "gain",
     title: "Too much gain",
-    question: "With gain 10 the error is gone after 1.5 s. The outputs carry noise now. Would a gain of 60 be better?",
+    question: "With gain 10 the error is below 10 % after 1.9 s. The outputs carry noise now. Would a gain of 60 be better?",
     acts: [
       {
         changes: { noise: NOISE, gains: { identifier_based: { gain: 60 } }, pictures: ["inverse", "distance", "error"] },

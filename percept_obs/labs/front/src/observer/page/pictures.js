@@ -2,6 +2,7 @@
 
 import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
+import { percent } from "../../common/model/words.js";
 import { SOLID } from "../../common/page/lines.js";
 import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
 
@@ -11,7 +12,7 @@ export const LABELS = {
   outputs: "Image coordinates over time",
   inverse: "Inverse distance over time",
   distance: "Distance over time",
-  error: "Error of the hidden coordinates over time",
+  error: "Relative error of the distance over time",
   excitation: "Excitation over time",
 };
 
@@ -47,7 +48,7 @@ const BUILD = {
   error(shown, ghost, theme) {
     const [own, kept] = [shown, ghost].map((result) => (result?.truth ? result : null));
     const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
-    const title = `Largest |error| of ${shown.hiddenNames.join(", ")}, with the tolerance ${shown.tolerance}`;
+    const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
     return { title, lines, scale: decades(lines, 1e-6, 1e2), level: shown.tolerance, marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {

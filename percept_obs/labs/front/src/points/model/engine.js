@@ -24,10 +24,14 @@ export class PointsEngine {
     const { estimate, divergedAt } = this.observer.track(scene, recording);
     const { time, truth, outputs } = recording;
     const size = norms(truth, estimate, n);
+    const errors = pointErrors(layout, truth, estimate, n);
+    const distances = pointErrors(layout, truth, new Float64Array(truth.length), n);
     const result = {
       ...{ settings, points, n, names: layout.names, ...recording, estimate, divergedAt, size },
       estimated: this.camera.project(scene, estimate),
-      errors: pointErrors(layout, truth, estimate, n),
+      errors,
+      relative: errors.map((values, p) => values.map((value, k) => value / distances[p][k])),
+      tolerance: this.model.tolerance,
       fit: decayRate(time, size),
       absences: Array.from({ length: points }, (_, k) => spansOf(time, outputs, points, k)),
       gramian: null,

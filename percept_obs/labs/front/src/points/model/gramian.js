@@ -1,5 +1,6 @@
 // Condition (14): what the images of each window tell of the state, as points/gramian.py has it.
 
+import { slackOf } from "../../common/model/tables.js";
 import { ENTRIES } from "./flow.js";
 import { spectrum } from "./symmetric.js";
 
@@ -116,9 +117,10 @@ function between(gathered, first, last, n, kindOf, back) {
 /** For each window that fits, the sample at which it ends. */
 function endsOf(time, window) {
   const ends = [];
+  const least = window - slackOf(time);
   let end = 0;
   for (let k = 0; k < time.length; k++) {
-    while (end < time.length && time[end] < time[k] + window - 1e-9) end++;
+    while (end < time.length && time[end] < time[k] + least) end++;
     if (end === time.length) break;
     ends.push(end);
   }

@@ -131,7 +131,7 @@ export const PRESETS = presetsOf([
         beside: {},
         answer:
           "A P that keeps the books: small at first, so that much is corrected while nothing is known, and large in " +
-          "directions that have been seen well. The error is below 0.05 after 2 s.",
+          "directions that have been seen well. After 1 s every point is within 10 % of its distance.",
       },
     ],
   },

@@ -9,14 +9,14 @@ import { inWords, mainly } from "./directions.js";
 import { eigen } from "./symmetric.js";
 
 const MOST_ABSENCES = 3;
-const TOLERANCE = 0.05;
 
 /** What happened to the error, as PointsRun.verdict() in Python. */
-export function verdict({ time, size, divergedAt }, model) {
-  const { verdicts, remedy, judged } = model;
+export function verdict({ time, relative, divergedAt }, model) {
+  const { verdicts, remedy, judged, tolerance } = model;
   if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
-  const error = { judged, error: size.at(-1), tolerance: TOLERANCE };
-  return settledInWords(error, settlingTime(time, size, TOLERANCE), time.at(-1) - time[0], model);
+  const worst = relative[0].map((_, k) => Math.max(...relative.map((values) => values[k])));
+  const error = { judged, error: worst.at(-1), tolerance };
+  return settledInWords(error, settlingTime(time, worst, tolerance), time.at(-1) - time[0], model);
 }
 
 /** How fast the error decays, and what is guaranteed. */

@@ -2,6 +2,7 @@
 
 import { columnOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
+import { percent } from "../../common/model/words.js";
 import { decades, line, rangeAround, withKept } from "../../common/page/chart_parts.js";
 import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/lines.js";
 
@@ -42,12 +43,13 @@ const BUILD = {
     const lines = [...kept, ...certain, ...estimated];
     return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
   },
-  points({ time, errors }, ghost, theme) {
-    const lines = errors.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
-    ghost?.errors.forEach((values, k) => {
+  points({ time, relative, tolerance }, ghost, theme) {
+    const lines = relative.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
+    ghost?.relative.forEach((values, k) => {
       lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
     });
-    return { title: "Error of each point in m", lines, scale: decades(lines, 1e-8, 1e6) };
+    const title = `Error of each point over its distance, with the tolerance ${percent(tolerance, 6)}`;
+    return { title, lines, scale: decades(lines, 1e-8, 1e6), level: tolerance };
   },
   gramian(shown, ghost, theme, { unseen }) {
     const { time, smallest, largest, window } = shown.gramian;

@@ -1,10 +1,12 @@
 // The whole of a run: object, camera, observers. The same numbers as record() and track() in Python.
 
 import { columnOf } from "../../common/model/derived.js";
+import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { EACH, instants, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { motionOf, StructureCamera } from "./camera.js";
 import { keyOf } from "./kernels.js";
+import { quantityOf } from "./quantities.js";
 
 const OUTPUTS = ["y1", "y2", "ybar3"];
 
@@ -31,11 +33,13 @@ export class StructureEngine extends Runner {
     const width = 3 + hidden.length;
     const truth = this.truth(seen, hidden.length, functions);
     const names = [...OUTPUTS, ...hiddenNames];
-    const result = { ...seen, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
+    const judged = unknown.map((name) => (name === "d_s" ? this.model.judged : name)).join(", ");
+    const speed = this.greatestSpeed(seen, functions);
+    const result = { ...seen, judged, speed, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
     const lines = this.lines(result);
     const known = this.known(result, lines, functions);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
-    const inputs = this.layOut(result, lines, known, settings.hold, exact);
+    const inputs = this.layOut(result, lines, known, settings.hold, exact, settings.start === "own");
     const asked = OUTPUTS.map((_, c) => (settings.start === "own" ? inputs.columns[c][0] : 0));
     asked.push(...hidden.map(() => 0));
     result.runs = settings.observers.map((name) => {
@@ -44,6 +48,34 @@ export class StructureEngine extends Runner {
     });
     if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
     return { ...result, guard: null, limits: [], whole: false };
+  }
+
+  /** The largest of the unknowns, as StructureAndMotion.relative_error(): a velocity's is relative to the speed. */
+  relativeError(result, estimate) {
+    const { truth, choice, width, time } = result;
+    const error = choice.unknown.includes("d_s")
+      ? distanceError(truth, estimate, width, (rows, k) => quantityOf(result, rows, "d_s")[k] * rows[k * width + 2])
+      : distanceError(truth, estimate, width, () => 1);
+    const { speed } = result;
+    for (const name of choice.unknown.filter((each) => each !== "d_s")) {
+      const [found, right] = [estimate, truth].map((rows) => quantityOf(result, rows, name));
+      for (let k = 0; k < time.length; k++) {
+        const off = Math.abs(found[k] - right[k]);
+        const share = speed > 0 ? off / speed : off > 0 ? Infinity : off;
+        if (error[k] !== Infinity && !Number.isNaN(error[k]) && !(share <= error[k])) error[k] = share;
+      }
+    }
+    return error;
+  }
+
+  /** Of the point against the camera, in m/s. */
+  greatestSpeed({ settings, time }, { swinging }) {
+    const { rows } = this.camera.velocities(settings, swinging, time);
+    let most = 0;
+    for (let k = 0; k < rows.length; k += 9) {
+      most = Math.max(most, Math.hypot(rows[k + 6] - rows[k + 3], rows[k + 7] - rows[k + 4], rows[k + 8] - rows[k + 5]));
+    }
+    return most;
   }
 
   /** A result with all that is read off it. */

@@ -1,7 +1,7 @@
 // What each time chart shows of a run: lines, scale, gaps, and the same in words.
 
 import { columnOf, derived } from "../../common/model/derived.js";
-import { readable } from "../../common/model/scales.js";
+import { percent } from "../../common/model/words.js";
 import { DASHES, SOLID } from "../../common/page/lines.js";
 import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
@@ -10,7 +10,7 @@ export const LABELS = {
   unknown1: "First unknown over time",
   unknown2: "Second unknown over time",
   unknown3: "Third unknown over time",
-  error: "Error of theta over time",
+  error: "Relative error of the unknowns over time",
   image: "Image coordinates over time",
   depth: "Scaled inverse depth over time",
   innovation: "Innovation over time",
@@ -58,7 +58,7 @@ function UNKNOWN(shown, ghost, theme, which) {
 
 const BUILD = {
   error(shown, ghost, theme) {
-    const title = `Largest |error| of θ, with the tolerance ${readable(shown.tolerance)}`;
+    const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
     const lines = runLines(shown, ghost, theme, "error", (_, run) => run.error);
     return { title, lines, scale: decades(lines, 1e-8, 1e3), level: shown.tolerance };
   },

@@ -1,0 +1,27 @@
+"""What comes in from outside: of which kind it must be, how a number becomes sympy's, and how much work is allowed."""
+
+from percept_obs.border.checking import WrongKind, checked, numbers, refuse_kind
+from percept_obs.border.expressions import derived, expression, expressions, matrix
+from percept_obs.border.files import write_whole
+from percept_obs.border.kinds import Coefficients, Entries, Kind
+from percept_obs.border.limits import MOST_TERMS, TooMuchWork, limit
+from percept_obs.border.warning import warn
+
+__all__ = [
+    "MOST_TERMS",
+    "Coefficients",
+    "Entries",
+    "Kind",
+    "TooMuchWork",
+    "WrongKind",
+    "checked",
+    "derived",
+    "expression",
+    "expressions",
+    "limit",
+    "matrix",
+    "numbers",
+    "refuse_kind",
+    "warn",
+    "write_whole",
+]

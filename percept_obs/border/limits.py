@@ -1,0 +1,36 @@
+"""How much work is done at once: one place for the limit, which is looked at before the work begins."""
+
+from __future__ import annotations
+
+MOST_NUMBERS = 10_000_000
+"""Numbers that one call may keep: with what is computed from them they take about 1 GiB."""
+
+MOST_TERMS = 20_000
+"""Entries of symbolic matrices that one derivation may have: about half a minute of sympy."""
+
+
+class TooMuchWork(ValueError):
+    """What is asked for would take more memory or time than is allowed; nothing of it has begun."""
+
+
+def limit(amount: float, what: str, remedy: str, most: float = MOST_NUMBERS) -> None:
+    """Refuse work before it begins.
+
+    Parameters
+    ----------
+    amount : float
+        How much it would be.
+    what : str
+        Of what, such as "numbers of 3 states at 1e+09 instants".
+    remedy : str
+        What to change.
+    most : float
+        `MOST_NUMBERS`, or another of this module's limits.
+
+    Raises
+    ------
+    TooMuchWork
+        If it is more than the limit.
+    """
+    if not amount <= most:
+        raise TooMuchWork(f"this would be {amount:.3g} {what}, and at most {most:.3g} are allowed; {remedy}")

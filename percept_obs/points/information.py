@@ -1,0 +1,81 @@
+"""What the samples tell of many points at the end of a run, by least squares."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from percept_obs.compile import Array, Flags
+from percept_obs.compile.integrator import by_step, instants, step
+from percept_obs.points.form import PointsForm
+from percept_obs.recording import Recording
+from percept_obs.tracking.information import FINEST, ROUNDING, Fit
+
+LARGEST_TABLE = 4_000_000
+"""Entries at most of the table of transitions; of more samples every so many are taken."""
+
+PASSES = 4
+"""How often the samples are weighted by the distances that were found before."""
+
+
+def many_points(form: PointsForm, recording: Recording) -> Fit:
+    """Least squares on the images: B C (Phi x + c) = 0 for the state x at the end, over the distance of each point."""
+
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array]:
+        every = max(1, (len(recording.time) - first) * form.states**2 // LARGEST_TABLE)
+        used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
+        outputs = recording.outputs[used]
+        back = _backwards(form, recording.time[used])
+        m = outputs.shape[-1]
+        rows = form.rows(outputs).reshape(len(used), form.points, m, form.states) @ back[:, None]
+        l = form.surface_numbers[1]
+        x, finest = np.zeros(form.states), FINEST * float(np.nanmax(np.abs(outputs), initial=FINEST))
+        weight = np.ones((len(used), form.points))
+        for _ in range(PASSES):
+            flat = (weight[..., None, None] * rows).reshape(-1, form.states + 1)
+            product = flat.T @ flat
+            M, b = product[:-1, :-1], product[:-1, -1]
+            values, vectors = np.linalg.eigh(M)
+            there = values > ROUNDING**2 * values[-1]
+            x = -vectors[:, there] @ ((vectors[:, there].T @ b) / values[there])
+            depth = form.locate(back @ np.append(x, 1.0)) @ l
+            seen = np.isfinite(outputs).all(axis=-1)
+            if not (depth[seen] > 0).all():
+                break
+            weight = 1 / np.where(seen, depth, 1.0)
+        free = m * int(seen.sum()) - form.states
+        left = product[-1, -1] + 2 * x @ b + x @ M @ x
+        given = math.sqrt(recording.noise_variance or 0.0)
+        noise = max(math.sqrt(max(left, 0.0) / free), finest, given) if free > 0 else math.nan
+        if free < 1 or not (depth[seen] > 0).all():
+            return x, math.inf, np.full(m, noise)
+        return x, _worst(form, x, values, vectors, there, noise), np.full(m, noise)
+
+    return fit
+
+
+def _backwards(form: PointsForm, time: Array) -> Array:
+    """Maps from the state at the first of decreasing times, and 1, to that at each of them, shape (T, n, n + 1)."""
+    places = instants(time)
+    A, v = form.coefficients(places)
+    A, v = (by_step(np.broadcast_to(part, (len(places), *part.shape[1:]))) for part in (A, v))
+    found = [np.eye(form.states, form.states + 1)]
+    for k, length in enumerate(np.diff(time)):
+
+        def rate(instant: int, state: Array, k: int = k) -> Array:
+            moved = A[k, instant] @ state
+            moved[:, -1] += v[k, instant]
+            return np.asarray(moved)
+
+        found.append(step(found[-1], np.asarray(length), rate))
+    return np.stack(found)
+
+
+def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, there: Flags, noise: float) -> float:
+    """Standard deviation of the position of the point that is known least, relative to its distance."""
+    spread = np.linalg.norm(form.blocks @ vectors, axis=1)  # of each point along each direction of the state
+    if (spread[:, ~there] > ROUNDING).any():
+        return math.inf
+    off = noise * np.sqrt((spread[:, there] ** 2 / values[there]).sum(axis=1))
+    return float((off / np.linalg.norm(form.locate(x), axis=-1)).max())

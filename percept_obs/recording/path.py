@@ -1,0 +1,142 @@
+"""Where a linear motion x' = A x + b leads: exactly if it is constant, else to a relative error of a solver's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.border import TooMuchWork, limit
+from percept_obs.compile import Array
+from percept_obs.compile.integrator import LARGEST_SQUARED_STATE
+
+Rate = Callable[[float, Array], ArrayLike]
+
+REACH = 0.5
+"""|A| times the time over which the exponential series is summed; longer times are products of such pieces."""
+TERMS = 15
+"""Terms of that series: the next one is below 1e-18 of the first."""
+
+RELATIVE_ERROR, ABSOLUTE_ERROR = 1e-10, 1e-12
+"""Error that a step of the solver may leave of a motion that varies."""
+LONGEST_LOOK = 0.25
+"""Seconds after which a motion that varies is looked at, however smooth it seems."""
+MOST_LOOKS = 400_000
+"""Looks at a motion that varies: about ten seconds of computing."""
+
+
+def times_of(times: ArrayLike, states: int) -> Array:
+    """Times at which a path is asked for: finite, from 0 on, not decreasing, and not too many for so many states."""
+    array = np.atleast_1d(np.asarray(times, dtype=float))
+    if (
+        array.ndim != 1
+        or not array.size
+        or not np.isfinite(array).all()
+        or (array < 0).any()
+        or (np.diff(array) < 0).any()
+    ):
+        raise ValueError(
+            "the times must be a list, not empty, of finite seconds from 0 on that do not decrease; sort them"
+        )
+    limit(len(array) * (states + 4), "numbers along the path", "ask for fewer times")
+    return array
+
+
+def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
+    """States at the times under a constant motion, shape (K, n), by the matrix exponential.
+
+    NaN from where they leave every bound on, as for a motion that varies.
+    """
+    from scipy.linalg import expm
+    from scipy.sparse import csr_array
+
+    n, last = len(start), float(times[-1])
+    whole = np.zeros((n + 1, n + 1))  # of (x, 1), so that b is a part of the matrix
+    whole[:n, :n], whole[:n, n] = A, b
+    size = float(np.abs(whole[:n, :n]).sum(axis=0).max())
+    pieces = max(1, int(np.ceil(min(size * last / REACH, 1e18))))
+    limit(
+        pieces * (n + 1),
+        f"numbers along a motion this fast, up to times of {last:.4g} s",
+        "shorten the duration or slow the motion down",
+    )
+    length = last / pieces
+    states = np.append(start, 1.0)[None]
+    with np.errstate(over="ignore", invalid="ignore"):
+        across = expm(whole * length)
+        while len(states) <= pieces:
+            states = np.concatenate([states, states @ across.T])
+            across = across @ across
+        piece = np.minimum((times / length).astype(int) if last else 0 * times.astype(int), pieces)
+        begin, share = states[piece].T, times - piece * length
+        rate, path = csr_array(whole), begin
+        for k in range(TERMS, 0, -1):
+            path = begin + share / k * (rate @ path)
+    return _bounded(np.ascontiguousarray(path[:n].T))
+
+
+def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ()) -> Array:
+    """States at the times under a motion that varies, shape (K, n), by scipy's DOP853 and its dense output.
+
+    Parameters
+    ----------
+    rate : function of (time, state)
+    start : array of shape (n,)
+    times : array of shape (K,)
+    breaks : array, optional
+        Times at which the rate has a kink, so that no step crosses them.
+
+    Raises
+    ------
+    TooMuchWork
+        If the motion changes so fast that it would have to be looked at too often.
+    """
+    from scipy.integrate import DOP853
+    from tqdm.auto import tqdm
+
+    last = float(times[-1])
+    inner = np.asarray(breaks, dtype=float)
+    ends = [*inner[(inner > 0) & (inner < last)].tolist(), last]
+    path = np.full((len(times), len(start)), np.nan)
+    begin, state, looks = 0.0, start, 0
+    path[times == 0] = start
+    with tqdm(total=last, desc="moving", unit="s", delay=2, leave=False) as bar, np.errstate(all="ignore"):
+        for end in ends if last else ():
+            longest = min(LONGEST_LOOK, end - begin)
+            solver = DOP853(rate, begin, state, end, longest, RELATIVE_ERROR, ABSOLUTE_ERROR, first_step=longest)
+            while solver.status == "running":
+                solver.step()
+                if looks + solver.nfev > MOST_LOOKS or solver.status == "failed":
+                    raise TooMuchWork(
+                        f"up to {solver.t:.4g} s of {last:.4g} s the motion had to be looked at {MOST_LOOKS} times; "
+                        "it changes too fast: slow it down or shorten the duration"
+                    )
+                between = slice(*np.searchsorted(times, [solver.t_old, solver.t], side="right"))
+                if between.start < between.stop:
+                    path[between] = solver.dense_output()(times[between]).T
+                bar.update(solver.t - solver.t_old)
+                if not (solver.y**2).sum() < LARGEST_SQUARED_STATE:
+                    return _bounded(path)
+            begin, state, looks = end, solver.y, looks + solver.nfev
+    return _bounded(path)
+
+
+def _bounded(path: Array) -> Array:
+    """A path, NaN from where it left every bound on."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        inside = (path**2).sum(axis=1) < LARGEST_SQUARED_STATE
+    path[~np.logical_and.accumulate(inside)] = np.nan
+    return path
+
+
+def lowest_between(values: Array, rates: Array, times: Array) -> tuple[float, float]:
+    """The lowest value that a cubic through values and rates takes between the times, and when."""
+    dips = np.flatnonzero((rates[:-1] < 0) & (rates[1:] > 0))
+    if not len(dips):
+        return float(np.inf), 0.0
+    s, h = np.linspace(0, 1, 65)[:, None], np.diff(times)[dips]
+    cubic = (1 + 2 * s) * (1 - s) ** 2 * values[dips] + s**2 * (3 - 2 * s) * values[dips + 1]
+    cubic = cubic + h * s * (1 - s) * ((1 - s) * rates[dips] - s * rates[dips + 1])
+    where = np.unravel_index(int(np.argmin(cubic)), cubic.shape)
+    return float(cubic[where]), float(times[dips[where[1]]] + s[where[0], 0] * h[where[1]])

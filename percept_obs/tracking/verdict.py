@@ -1,0 +1,186 @@
+"""What is said of a run: one rule for when an estimate has converged, and the words for it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from percept_obs.compile import Array
+from percept_obs.tracking.information import Information
+
+REMEDY = "choose smaller gains or shorter steps"
+"""What to do about a run that diverged."""
+
+TOLERANCE = 0.1
+"""Relative error within which an estimate counts as right, unless another is asked for.
+
+Samples that are off by a hundredth of the focal length make good observers scatter by 2 to 4 %; a tenth is what they
+then hardly ever leave, and what an observer that is off by a fifth never enters.
+"""
+
+SETTLED_PART = 0.1
+"""Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
+
+FAR_OFF = 10.0
+"""Relative error beyond which no number is told."""
+
+VERDICTS = MappingProxyType(
+    {
+        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
+        "followed": "followed {time} s; no truth to compare with",
+        "none": "not converged: there is no estimate at the end",
+        "behind": "not converged: the estimate ends infinitely far away or behind the camera",
+        "outside": "not converged: the {error_of} of {judged} ends at {error}, outside {tolerance}",
+        "late": (
+            "not converged yet: the {error_of} of {judged} is within {tolerance} only since {time} s, too short before "
+            "the end to be sure of"
+        ),
+        "converged": "converged: the {error_of} of {judged} stays within {tolerance} after {time} s",
+        "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",
+        "differs": (
+            "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
+            "to within {within} (2σ)"
+        ),
+        "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
+        "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
+        "no estimate": "; do not trust it: there is no estimate at the end",
+        "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
+        "unexcited": ", hardly excited since {begin} s",
+        "claimed": "; it claims {claimed} (2σ)",
+        "relative": "relative error",
+        "absolute": "error",
+        "reset once": "; driven to the bound and reset once, at {time} s",
+        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
+        "gap": "; no estimate from {begin} to {end} s, for {reason}",
+        "more gaps": ", and in {count} more gaps",
+    }
+)
+"""What a verdict says, by what happened; live labs use the same words.  Times count from the first sample."""
+
+
+def for_the_page() -> dict[str, Any]:
+    """The same words and numbers for live labs."""
+    return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of an error.
+
+    Parameters
+    ----------
+    kind : str
+        "converged", "late" (inside at the end, but not for long enough), "outside", "behind" (an infinite error: the
+        estimate is infinitely far away or behind the camera), "none" (no estimate) or "diverged".
+    settled : float
+        Seconds from the first sample until the error stays inside for good; infinite if it ends outside.
+    final : float
+        The last error.
+    """
+
+    kind: str
+    settled: float
+    final: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether it stayed inside for at least the last tenth of the run."""
+        return self.kind == "converged"
+
+
+@dataclass(frozen=True, eq=False)
+class Trust:
+    """What can be said of the last estimate without a truth; its text begins where a sentence is to go on.
+
+    Parameters
+    ----------
+    kind : str
+        "agrees" (with what the samples tell), "differs", "vague" (they tell too little), "hidden" (they tell nothing),
+        "nowhere" (the estimate is infinitely far away or behind the camera) or "no estimate".
+    judged : str
+        What the estimate is of.
+    length : float
+        Seconds that the run lasts.
+    information : Information, optional
+        What the samples tell.
+    difference : float
+        How far the estimate is from that, relatively; NaN where they tell too little.
+    claimed : float, optional
+        The relative standard deviation that the observer claims, if it claims one.
+    """
+
+    kind: str
+    judged: str
+    length: float
+    information: Information | None = None
+    difference: float = math.nan
+    claimed: float | None = None
+
+    @property
+    def trusted(self) -> bool:
+        """Whether the estimate agrees with what the samples tell well enough."""
+        return self.kind == "agrees"
+
+    @property
+    def sentence(self) -> str:
+        """What is known, in a sentence."""
+        return f"{str(self).removeprefix('; ')}."
+
+    def __str__(self) -> str:
+        """What is known, in words."""
+        words = {"judged": self.judged, "difference": percent(self.difference)}
+        if self.information is None:
+            return VERDICTS[self.kind]
+        window, unexcited = self.information.window, self.information.unexcited
+        words |= {"window": f"{window:.3g}", "within": percent(2 * self.information.deviation)}
+        said = VERDICTS[self.kind].format(**words)
+        if unexcited >= SETTLED_PART * self.length:
+            said += VERDICTS["unexcited"].format(begin=f"{self.length - unexcited:.3g}")
+        if self.claimed is not None:
+            said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
+        return said
+
+
+def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:
+    """What became of an error over time.
+
+    Parameters
+    ----------
+    elapsed : array of shape (K,)
+        Seconds since the first sample, at the samples whose error is known; at least one.
+    error : array of shape (K,)
+        Not negative; infinite behind the camera, NaN without an estimate.
+    tolerance : float
+        Positive.
+    length : float
+        Seconds that the run lasts.
+    """
+    if not tolerance > 0:
+        raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+    final = float(error[-1])
+    outside = np.flatnonzero(~(error < tolerance))
+    if len(outside) and outside[-1] == len(error) - 1:
+        kind = "none" if math.isnan(final) else "behind" if math.isinf(final) else "outside"
+        return Outcome(kind, math.inf, final)
+    settled = float(elapsed[outside[-1] + 1]) if len(outside) else 0.0
+    return Outcome("converged" if length - settled >= SETTLED_PART * length else "late", settled, final)
+
+
+def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str] = ()) -> str:
+    """The sentence that says it: of the relative error, or with names of coordinates of their absolute error."""
+    kind = "absolute" if names else "relative"
+    error, within = (f"{found.final:.2g}", f"{tolerance:g}") if names else (percent(found.final), percent(tolerance, 6))
+    return VERDICTS[found.kind].format(
+        **{"error_of": VERDICTS[kind], "judged": judged, "error": error},
+        **{"tolerance": within, "time": f"{found.settled:.3g}"},
+    )
+
+
+def percent(share: float, digits: int = 3) -> str:
+    """A share in per cent, with an end to how far off one is told to be."""
+    return f"{100 * share:.{digits}g} %" if share <= FAR_OFF else f"more than {100 * FAR_OFF:g} %"
