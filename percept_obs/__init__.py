@@ -1,6 +1,7 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
 from percept_obs.border import TooMuchWork, WrongKind
+from percept_obs.checking import CannotRead, Review, check
 from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import (
     Observer,
@@ -31,6 +32,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BehindCamera",
     "Camera",
+    "CannotRead",
     "CanonicalForm",
     "DoesNotFit",
     "FirstSight",
@@ -44,6 +46,7 @@ __all__ = [
     "PointsForm",
     "PointsScenario",
     "Recording",
+    "Review",
     "Run",
     "Scenario",
     "StructureAndMotion",
@@ -52,6 +55,7 @@ __all__ = [
     "WrongKind",
     "affine",
     "chained",
+    "check",
     "check_consistency",
     "ekf",
     "extended_kalman",

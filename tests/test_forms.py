@@ -7,6 +7,7 @@ import sympy as sp
 from examples import AFFINE, BOTH, MOTIONS, ON_SPHERE, ONE, OTHER, SURFACES
 
 from percept_obs import NotAffine, PerspectiveSystem
+from percept_obs.structure import StructureAndMotion
 from percept_obs.system.forms import partition
 
 OUTPUTS = [("y1",), ("y2",), ("y1", "y2"), ("y2", "y1")]
@@ -91,6 +92,19 @@ def test_another_part_makes_another_rate():
     assert still != BOTH
     with pytest.raises((TypeError, ValueError), match="rate"):  # the latter before Python 3.13
         replace(BOTH, rate=still.rate)
+
+
+@pytest.mark.parametrize("view", [ONE, OTHER, BOTH, "square"], ids=["one", "other", "both", "square"])
+def test_every_step_that_leads_on_leads_to_the_rate(view):
+    form = StructureAndMotion(("v_c1", "v_c2", "v_c3")).form if view == "square" else view
+    steps = [step for step in form.derivation() if step.leads_on]
+    assert len(steps) == 3
+    assert all(step.onward(list(step.values.values())) == form.rate for step in steps)
+    assert list(steps[0].values.values()) == list(form.w.T), "in the order in which it is shown"
+    w, phi, g = ([2 * value for value in step.values.values()] for step in steps)
+    assert steps[0].onward(w) == replace(form, w=2 * form.w).rate
+    assert steps[1].onward(phi) == replace(form, phi=2 * form.phi).rate
+    assert steps[2].onward(g) == replace(form, g=2 * form.g).rate
 
 
 def test_the_form_shows_its_parts():

@@ -18,6 +18,7 @@ FLOORS = (
     ("cli",),
     ("labs",),
     ("figures", "papers"),
+    ("checking",),
     ("studies",),
     ("observability",),
     ("structure", "points"),

@@ -1,9 +1,13 @@
 """Slips are found in every place of a formula, and what they make is told from what it says."""
 
+from collections import Counter
+
 import pytest
 import sympy as sp
-from ledger_mutations import say_the_same, slips, symbols_in
+from ledger_mutations import say_the_same
 
+from percept_obs.checking.search import at, put
+from percept_obs.checking.slips import MISTAKES, siblings_in, slips, slips_in, symbols_in
 from percept_obs.papers import base
 from percept_obs.papers.base import dot, equal
 
@@ -86,3 +90,16 @@ def test_a_printed_bound_must_admit_and_exclude():
     assert base.separates(base.at_most(x, M), x, 1, 3, {M: sp.Integer(2)})
     assert not base.separates(base.at_most(-x, M), x, 1, 3, {M: sp.Integer(2)})
     assert not base.separates(base.at_most(x, M), x, 1, 3, {})
+
+
+def test_a_slip_knows_its_place_its_kind_and_its_term():
+    y1, y2, z = sp.symbols("y1 y2 z", real=True)
+    formula = y2 + z * (y1 - y2)
+    found = list(slips_in(formula, siblings_in({y1, y2, z}), MISTAKES))
+    assert Counter(slip.kind for slip in found) == {"letter": 3, "sign": 4, "factor": 4, "dropped": 4}
+    for slip in found:
+        assert at(formula, slip.path) == slip.before
+        assert put(formula, slip.path, slip.after) == slip.formula
+        assert slip.term in (y2, z * (y1 - y2), y1, -y2)
+    (inside,) = (slip for slip in found if slip.kind == "letter" and slip.before == y1)
+    assert (inside.after, inside.term, inside.formula) == (y2, y1, y2)

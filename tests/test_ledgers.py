@@ -7,9 +7,10 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 import pytest
-from ledger_mutations import say_the_same, slips, symbols_in
+from ledger_mutations import say_the_same
 
 from percept_obs import papers
+from percept_obs.checking.slips import slips, symbols_in
 from percept_obs.papers import CHWA2019, INABA2005, MA2005, Ledger, Verdict, ma2005_examples
 
 

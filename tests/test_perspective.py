@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from percept_obs import PerspectiveSystem, affine, chained, pinhole, plane
+from percept_obs.checking.deciding import same
 from percept_obs.compile import vectorised
 from percept_obs.system.surfaces.base import X, Y, Z
 
@@ -85,6 +86,27 @@ def test_the_derivation_ends_at_the_rate_and_shows_every_part():
     formulas = [line for line in derivation._repr_markdown_().split("\n\n") if "$$" in line]
     assert all(re.fullmatch(r"\$\$ .* \$\$", formula) for formula in formulas), "each alone, at the edge"
     assert r"\frac{d}{dt}" in AFFINE._repr_latex_()
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+def test_every_step_that_leads_on_leads_to_the_rate(motion, surface):
+    system = PerspectiveSystem(motion, surface)
+    steps = [step for step in system.derivation() if step.leads_on]
+    assert len(steps) == 6
+    for step in steps:
+        assert all(same(*pair) for pair in zip(step.onward(list(step.values.values())), system.rate, strict=True))
+
+
+def test_what_follows_from_a_slip_in_a_step():
+    b3, y = sp.Symbol("b3", real=True), AFFINE.coordinates
+    gradients, velocity = AFFINE.derivation()[3], AFFINE.derivation()[4]
+    turned = [entry.xreplace({b3: -b3}) for entry in velocity.values.values()]
+    assert velocity.onward(turned).expand() == AFFINE.rate.xreplace({b3: -b3})
+    forgotten = [0 if "y1 = X/Z with respect to Z" in name else value for name, value in gradients.values.items()]
+    assert (gradients.onward(forgotten)[0] - AFFINE.rate[0]).expand().has(y[0] * y[2] * b3)
+    with pytest.raises(ValueError, match="it is not known what follows"):
+        AFFINE.derivation()[-1].onward([])
 
 
 def test_a_part_of_a_derivation_is_one_too():

@@ -2,19 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import overload
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, overload
 
 import sympy as sp
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a derivation: why, and what follows."""
+    """One step of a derivation: why, and what follows.
+
+    Parameters
+    ----------
+    reason, formula : str
+        Why, and the formula in LaTeX.
+    values : mapping of names to expressions
+        What the step finds, so that it can be compared with somebody else's.
+    follows : function of a list of values, optional
+        For `onward`; linear in each of the values.
+    """
 
     reason: str
     formula: str
+    values: Mapping[str, sp.Expr] = field(default_factory=dict, hash=False)
+    follows: Callable[[Sequence[sp.Expr]], sp.ImmutableMatrix] | None = field(default=None, compare=False)
+
+    @property
+    def leads_on(self) -> bool:
+        """Whether it is known what follows from the step."""
+        return self.follows is not None
+
+    def onward(self, values: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        """The result of the whole derivation, a column, if this step had found these values instead.
+
+        Raises
+        ------
+        ValueError
+            If it is not known what follows from the step.
+        """
+        if self.follows is None:
+            raise ValueError(f"it is not known what follows from {self.reason!r}; ask `leads_on` first")
+        return self.follows(values)
 
     def __str__(self) -> str:
         return f"{self.reason}\n    {self.formula}"
@@ -27,9 +56,9 @@ class Derivation(Sequence[Step]):
     steps: tuple[Step, ...]
 
     @classmethod
-    def of(cls, formulas: Mapping[str, str]) -> Derivation:
-        """A derivation of formulas by their reasons."""
-        return cls(tuple(Step(reason, formula) for reason, formula in formulas.items()))
+    def of(cls, formulas: Mapping[str, str | tuple[Any, ...]]) -> Derivation:
+        """A derivation of formulas by their reasons; a formula may come with what its step finds."""
+        return cls(tuple(Step(why, *([part] if isinstance(part, str) else part)) for why, part in formulas.items()))
 
     @overload
     def __getitem__(self, index: int) -> Step: ...
@@ -47,6 +76,11 @@ class Derivation(Sequence[Step]):
     def _repr_markdown_(self) -> str:
         # No list and nothing indented: four spaces make code of a formula, and front ends differ in how a list goes on.
         return "\n\n".join(f"**{k}.** {s.reason}\n\n$$ {s.formula} $$" for k, s in enumerate(self, 1))
+
+
+def rates(symbols: Iterable[sp.Symbol], values: Iterable[sp.Expr]) -> dict[str, sp.Expr]:
+    """Values by the names of the symbols whose rates they are: y1' for y1."""
+    return {f"{symbol.name}'": value for symbol, value in zip(symbols, values, strict=True)}
 
 
 def equals(left: str, right: object) -> str:

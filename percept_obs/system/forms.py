@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from itertools import product
+from typing import Any
 
 import sympy as sp
 
-from percept_obs.system.derivation import Derivation, equals
+from percept_obs.system.derivation import Derivation, equals, rates
 from percept_obs.system.view import View
 
 
@@ -192,13 +193,25 @@ class CanonicalForm(PartitionedSystem):
     def derivation(self) -> Derivation:
         """The form in formulas, one part after the other."""
         x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
-        formulas = {
+        hidden, measured = ([s.name for s in part] for part in (self.x2, self.x1))
+        shares = [f"what multiplies {h} in {m}'" for m in measured for h in hidden]
+        formulas: dict[str, str | tuple[Any, ...]] = {
             "Measured and hidden:": rf"x_1 = {sp.latex(x1)},\quad x_2 = {sp.latex(x2)}",
             "What multiplies the hidden coordinates in the measured ones' rate:": (
-                equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T)
+                equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
+                dict(zip(shares, self.w.T, strict=True)),
+                lambda turned: replace(self, w=sp.ImmutableMatrix(*self.w.T.shape, turned).T).rate,
             ),
-            "What is left of it without them:": equals(r"\phi", self.phi),
-            "How the hidden coordinates change:": equals(r"g", self.g),
+            "What is left of it without them:": (
+                equals(r"\phi", self.phi),
+                {f"what is left of {s}'": entry for s, entry in zip(measured, self.phi, strict=True)},
+                lambda phi: replace(self, phi=sp.ImmutableMatrix(phi)).rate,
+            ),
+            "How the hidden coordinates change:": (
+                equals(r"g", self.g),
+                rates(self.x2, self.g),
+                lambda g: replace(self, g=sp.ImmutableMatrix(g)).rate,
+            ),
         }
         return Derivation.of(formulas)
 

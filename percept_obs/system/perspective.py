@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
 import sympy as sp
 
 from percept_obs.border import checked
-from percept_obs.system.derivation import Derivation, equals
+from percept_obs.system.derivation import Derivation, equals, rates
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -62,9 +64,7 @@ class PerspectiveSystem:
     @cached_property
     def rate(self) -> sp.ImmutableMatrix:
         """Time derivative of `coordinates`, expanded.  Ma 2005, (4), p. 64 for affine motion and the pinhole."""
-        image_rate = self._image_gradient * self._velocity
-        inverse_rate = -self.surface.inverse_distance * (self._distance_gradient * self._velocity)
-        return sp.ImmutableMatrix([*image_rate, *inverse_rate]).expand()
+        return self._moved(self._gradients, self._velocity).expand()
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of `rate` with respect to `coordinates`."""
@@ -118,25 +118,51 @@ class PerspectiveSystem:
         surface, motion = self.surface, self.motion
         y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
         eta = sp.latex(surface.inverse_distance)
-        formulas = {
+        ways = [f"{y_k} = {e}" for y_k, e in zip(surface.image_coordinates, surface.image, strict=True)]
+        ways += [f"{surface.inverse_distance} = {1 / surface.distance}"]
+        formulas: dict[str, str | tuple[Any, ...]] = {
             "The point moves:": (
-                equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}")
+                equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
+                rates(POINT, motion.A * sp.ImmutableMatrix(POINT) + motion.b),
+                lambda found: self._moved(self._gradients, self._seen_on_the_ray(found)),
             ),
             f"It is seen on the {surface.name} surface:": (
-                rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}"
+                rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}",
+                dict(zip(map(str, surface.coordinates), (*surface.image, 1 / surface.distance), strict=True)),
             ),
             "So the point lies on a ray, at the distance one over the inverse distance:": (
-                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(sp.Matrix(surface.ray))}"
+                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(sp.Matrix(surface.ray))}",
+                {f"m{k}": entry for k, entry in enumerate(surface.ray, 1)},
+                lambda ray: self._moved(self._gradients, self._velocity_along(ray)),
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
-                rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}"
+                rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}",
+                {
+                    f"the derivative of {way} with respect to {axis}": self._gradients[i, j]
+                    for i, way in enumerate(ways)
+                    for j, axis in enumerate(POINT)
+                },
+                lambda found: self._moved(sp.ImmutableMatrix(len(ways), 3, found), self._velocity),
             ),
-            "The velocity, times the inverse distance:": equals(rf"A m + b\,{eta}", self._velocity),
+            "The velocity, times the inverse distance:": (
+                equals(rf"A m + b\,{eta}", self._velocity),
+                {f"the velocity along {axis}": entry for axis, entry in zip(POINT, self._velocity, strict=True)},
+                lambda found: self._moved(self._gradients, sp.ImmutableMatrix(found)),
+            ),
             "Image coordinates do not change with scale, so the inverse distance cancels:": (
-                rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})"
+                rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",
+                rates(self.coordinates, self._moved(self._gradients, self._velocity)),
+                sp.ImmutableMatrix,
             ),
-            "Multiplied out:": equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
-            "The focus of expansion, where the distance drops out of the image's motion:": equals(y, self.foe),
+            "Multiplied out:": (
+                equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
+                rates(self.coordinates, self.rate),
+                sp.ImmutableMatrix,
+            ),
+            "The focus of expansion, where the distance drops out of the image's motion:": (
+                equals(y, self.foe),
+                dict(zip(map(str, surface.image_coordinates), self.foe, strict=True)),
+            ),
         }
         return Derivation.of(formulas)
 
@@ -145,7 +171,26 @@ class PerspectiveSystem:
 
     @cached_property
     def _velocity(self) -> sp.ImmutableMatrix:
-        return self.motion.A * sp.ImmutableMatrix(self.surface.ray) + self.motion.b * self.surface.inverse_distance
+        return self._velocity_along(self.surface.ray)
+
+    def _velocity_along(self, ray: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        """A m + b eta, with the ray m."""
+        return self.motion.A * sp.ImmutableMatrix(ray) + self.motion.b * self.surface.inverse_distance
+
+    def _seen_on_the_ray(self, velocity: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        """A velocity in terms of the point, at the point m / eta and times eta."""
+        eta = self.surface.inverse_distance
+        point = {axis: entry / eta for axis, entry in zip(POINT, self.surface.ray, strict=True)}
+        return sp.ImmutableMatrix([eta * entry.subs(point, simultaneous=True) for entry in velocity])
+
+    def _moved(self, gradients: sp.ImmutableMatrix, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """Rate of the coordinates, from the gradients of image and distance and the velocity times eta."""
+        *image, distance = gradients * velocity
+        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * distance])
+
+    @cached_property
+    def _gradients(self) -> sp.ImmutableMatrix:
+        return self._image_gradient.col_join(self._distance_gradient)
 
     @cached_property
     def _image_gradient(self) -> sp.ImmutableMatrix:

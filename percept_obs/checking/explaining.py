@@ -1,0 +1,174 @@
+"""What is wrong with a formula, in words: the slip, the term in which it is, the step in which it happened."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from percept_obs.checking.points import PRIME
+from percept_obs.checking.search import THROUGHOUT, Search, at, less
+from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
+from percept_obs.checking.target import VALUE, ZEROS, Target
+from percept_obs.checking.terms import Comparison, compared
+
+SECONDS = 1.2
+"""How long slips are looked for; after that what was found is told."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What is wrong with a line.
+
+    Parameters
+    ----------
+    slips : tuple of Slip
+        Changes that mend the formula, one or two; "missing" has nothing before, and "throughout" concerns all terms.
+    comparison : Comparison
+    steps : tuple of str
+        In which step of the derivation it can have happened.
+    """
+
+    slips: tuple[Slip, ...]
+    comparison: Comparison
+    steps: tuple[str, ...] = ()
+
+
+def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Explanation:
+    """What is wrong with a line.
+
+    Parameters
+    ----------
+    mine : expression
+    row : int
+        Which line of the target it should be.
+    target : Target
+    right : mapping of rows to expressions
+        The lines that are right, so that a step is not blamed that would have spoiled them as well.
+    """
+    line = target.lines[row]
+    search = Search(mine, line, frozenset(target.letters.values()), time.monotonic() + SECONDS)
+    if not search.places:
+        return Explanation((), Comparison())
+    one = search.single()
+    everywhere = None if one else search.throughout()
+    steps = tuple(_steps(search, row, target, right)) if line.kind == VALUE else ()
+    found = tuple(filter(None, (one, everywhere))) or (() if steps else search.pair())
+    return Explanation(found, Comparison() if line.kind == ZEROS else compared(mine, line.formula), steps)
+
+
+def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Iterator[str]:
+    """The steps of the derivation in which one slip leads to my line and to the lines that are right.
+
+    What follows from a step is linear in each of its values, which tells where to look; then it is worked out.
+    """
+    row_of = target.result
+    if row not in row_of:
+        return
+    siblings = siblings_in(search.letters)
+    moved = sp.Symbol("moved", real=True)
+    unit = search.values(moved) or ()
+    wanted = [(row_of[row], search.lacking)]
+    wanted += [(row_of[other], (0,) * len(unit)) for other in right if other != row and other in row_of]
+    for number, step in target.steps:
+        names, values = list(step.values), list(step.values.values())
+        truth = step.onward(values)
+        for k, value in enumerate(values):
+            if search.over:
+                return
+            shifted = step.onward([*values[:k], value + moved, *values[k + 1 :]])
+            effect = {r: less(search.values(shifted[r]) or (), search.values(truth[r]) or ()) for r, _ in wanted}
+            if not any(effect[row_of[row]]):
+                continue
+            at = search.values(value) or ()
+            slip = next(
+                (
+                    slip
+                    for slip in (*factored(value, MISTAKES), *slips_in(value, siblings, MISTAKES))
+                    if (now := search.values(slip.formula)) is not None
+                    and all(
+                        (e * (n - v) + u * lack) % PRIME == 0
+                        for r, lacking in wanted
+                        for e, n, v, u, lack in zip(effect[r], now, at, unit, lacking, strict=True)
+                    )
+                ),
+                None,
+            )
+            if slip and search.values(
+                step.onward([*values[:k], slip.formula, *values[k + 1 :]])[row_of[row]]
+            ) == search.values(search.mine):
+                yield f"{number} “{step.reason.rstrip(':')}”, {_said(names[k], slip)}"
+                break
+
+
+def _said(name: str, slip: Slip) -> str:
+    """What happened in a step."""
+    what = plain(slip.before)
+    if slip.kind == "dropped":
+        return f"{name} was left out" if not slip.path else f"in {name} the term {what} was left out"
+    if slip.kind == "sign":
+        return f"in {name} the sign of {what} was turned"
+    return f"in {name} {what} became {plain(slip.after)}"
+
+
+def plain(e: sp.Basic) -> str:
+    """An expression as it may be typed."""
+    return str(e).replace("**", "^").replace("*", " ")
+
+
+def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...], sp.Expr]]:
+    """Places of the wrong terms, and what stands there; what is missing has no place."""
+    places: dict[tuple[int, ...], sp.Expr] = {}
+    for path in [slip.path for slip in found.slips if slip.path or slip.kind not in ("missing", *THROUGHOUT)]:
+        # up from the slip to the term in which it is
+        while path and not at(mine, path[:-1]).is_Add:
+            path = path[:-1]
+        places[path] = at(mine, path)
+    if not found.slips:
+        indices = [(k,) for k in found.comparison.wrong] if mine.is_Add else [()]
+        places |= {path: at(mine, path) for path in indices}
+    return [(path, term) for path, term in places.items() if not any(path[:n] in places for n in range(len(path)))]
+
+
+def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]) -> tuple[list[str], list[str]]:
+    """Where to look, and what is wrong there, with formulas shown by a function."""
+    terms = [show(term) for _, term in wrong_terms(found, mine)]
+    places = [f"look at {', '.join(terms)}"] if terms else []
+    lacking = [d for d in found.comparison.differences if d.mine == 0]
+    if any(slip.kind == "missing" for slip in found.slips) or (not found.slips and lacking):
+        places.append("something is missing")
+    slips = [_sentence(slip, show) for slip in found.slips]
+    slips += [
+        f"{show(d.product)}: you have {_signed(d.mine)}, it is {_signed(d.true)}"
+        for d in found.comparison.differences[:6]
+    ]
+    slips += [f"{'or' if k else 'it comes out so'} if in step {step}" for k, step in enumerate(found.steps)]
+    return places or ["look at what all terms share"], slips
+
+
+def _signed(number: sp.Expr) -> str:
+    return f"{'+' if number.is_positive else ''}{number}"
+
+
+def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
+    before, after, kind = show(slip.before), show(slip.after), slip.kind
+    where = f" in {show(slip.term)}" if slip.term not in (slip.before, slip.after) and kind not in THROUGHOUT else ""
+    if kind in ("letter", "other letter", "throughout"):
+        hats = {"hat" in getattr(side, "name", "") for side in (slip.before, slip.after)}
+        what = "the hat: " if len(hats) == 2 else "the index: " if kind != "other letter" else ""
+        return f"{what}{before} stands {'everywhere ' if kind == 'throughout' else ''}where {after} belongs{where}"
+    if kind == "left-out factor":
+        return f"{show(slip.term)} should be {show(slip.term * slip.after / slip.before)}"
+    return {
+        "sign": f"all signs of {before} are turned" if slip.before.is_Add else f"the sign of {before} is wrong",
+        "left out": f"{before} should be {after}: an inverse or a transpose is missing",
+        "exponent": f"the exponent {before} should be {after}{where}",
+        "missing": f"the term {after} is missing{where}",
+        "factor": f"{before} should be {after}: the factor is wrong",
+        "replaced": f"{before} should be {after}",
+        "superfluous": f"the term {before} is one too many",
+        "swapped": f"{before} and {after} are swapped",
+        "sign throughout": f"{before} has the wrong sign everywhere",
+        "signs": f"{before} have the wrong sign everywhere, as in a cross product with the other sign",
+        "transpose": f"indices are swapped, as in the transposed matrix: {before} stands where {after} belongs",
+    }[kind]

@@ -1,0 +1,176 @@
+"""Which line is which, and whether it is right: by itself, by another convention, or from there on."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import sympy as sp
+from sympy.core.relational import Relational
+
+from percept_obs.checking.deciding import proportional, same, same_zeros
+from percept_obs.checking.reading import Reading
+from percept_obs.checking.target import EQUATION, INEQUALITY, VALUE, ZEROS, Target, condition, relation_lines
+
+
+class Verdict(StrEnum):
+    """What is found of a line."""
+
+    RIGHT = "right"
+    WRONG = "wrong"
+    CARRIED = "right from there on"
+    CONVENTION = "right, with another convention"
+    CANNOT_TELL = "cannot tell"
+
+
+TRANSPOSED = "your matrix is the transpose of the one asked for"
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A line that was judged.
+
+    Parameters
+    ----------
+    row : int
+        Which line of the target it should be.
+    mine : expression
+    verdict : Verdict
+    note : str
+        Which convention, which earlier line was wrong, or what is wrong with all lines.
+    """
+
+    row: int
+    mine: sp.Expr
+    verdict: Verdict
+    note: str = ""
+
+
+def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
+    """Each line with its verdict."""
+    given = _assigned(readings, target)
+    lines = [Judged(row, formula, _verdict(formula, target, row)) for row, formula in given]
+    return tuple(_carried(_by_convention(_turned(lines, readings, target), target), target))
+
+
+def _verdict(mine: sp.Expr, target: Target, row: int) -> Verdict:
+    line = target.lines[row]
+    if line.kind == VALUE:
+        found = same(mine, line.formula)
+    elif line.kind == ZEROS:
+        found = same_zeros(mine, line.formula, target.nonzero)
+    else:
+        found = proportional(mine, line.formula, positive=line.kind == INEQUALITY)
+    return Verdict.CANNOT_TELL if found is None else Verdict.RIGHT if found else Verdict.WRONG
+
+
+def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr]]:
+    """Which line each formula should be."""
+    count, rows = len(target.lines), target.rows
+    given: list[tuple[int, sp.Expr]] = []
+    unnamed = [r for r in readings if r.name not in rows and r.name not in target.blocks]
+    start = 0
+    nameless = range(count) if len(unnamed) == count else [k for k, line in enumerate(target.lines) if not line.key]
+    for reading in readings:
+        name, formula = reading.name, reading.formula
+        if isinstance(formula, sp.MatrixBase):
+            names = name.split(",")
+            if all(part in rows for part in names) and len(names) == len(formula):
+                block: Sequence[int] = [rows[part] for part in names]
+            else:
+                block = target.blocks.get(name, range(start, min(start + len(formula), count)))
+                start += len(formula) if name not in target.blocks else 0
+            if len(block) != len(formula):
+                raise ValueError(f"a matrix with {len(formula)} entries does not fit: {_asked(target)} are asked for")
+            given += zip(block, formula.T if name == "wT" else formula, strict=True)
+            continue
+        if name in rows:
+            # of lines with the same name, such as a formula that is printed in two forms, the one that is meant
+            twins = (k for k, line in enumerate(target.lines) if line.key == name)
+            row = next((k for k in twins if _verdict(formula, target, k) == Verdict.RIGHT), rows[name])
+        elif count == 1:
+            row = 0
+            if name in target.letters and target.lines[0].kind == ZEROS:
+                formula = target.letters[name] - formula
+        elif name in target.blocks and len(target.blocks[name]) == 1:
+            (row,) = target.blocks[name]
+        elif len(unnamed) == len(nameless):
+            row, start = nameless[start], start + 1
+        else:
+            what = f"the line {name}" if name else "a line without a name"
+            raise ValueError(f"{what} is none of those asked for: {_asked(target)}; begin it with its name and =")
+        given.append((row, _scalar(formula, target, row)))
+    return given
+
+
+def _asked(target: Target) -> str:
+    named = [line.name for line in target.lines if line.name]
+    return ", ".join(named or [f"{len(target.lines)} lines in a row"])
+
+
+def _turned(lines: list[Judged], readings: Sequence[Reading], target: Target) -> list[Judged]:
+    """The lines, with a note on those that are wrong only because a matrix is given transposed."""
+    if (
+        len(readings) != 1
+        or not isinstance(readings[0].formula, sp.MatrixBase)
+        or not any(line.verdict == Verdict.WRONG for line in lines)
+    ):
+        return lines
+    entries = zip(readings[0].formula.T, range(len(lines)), strict=True)
+    if all(_verdict(entry, target, row) == Verdict.RIGHT for entry, row in entries):
+        return [replace(line, note=TRANSPOSED) if line.verdict == Verdict.WRONG else line for line in lines]
+    return lines
+
+
+def _scalar(formula: sp.Basic, target: Target, row: int) -> sp.Expr:
+    """A line as an expression, of a relation what the target's line makes of it."""
+    kind = target.lines[row].kind
+    if isinstance(formula, sp.And | sp.Or) or (kind == ZEROS and isinstance(formula, Relational)):
+        return condition(formula if not isinstance(formula, sp.Eq) else sp.Ne(*formula.args, evaluate=False))
+    if isinstance(formula, Relational):
+        (line,) = relation_lines(formula)
+        if line.kind not in (kind, VALUE) and kind in (EQUATION, INEQUALITY, VALUE):
+            raise ValueError(f"an expression is asked for, not the relation {formula}")
+        return line.formula
+    return formula
+
+
+def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
+    """The lines, with those that only follow another convention marked."""
+    if not any(line.verdict == Verdict.WRONG for line in lines):
+        return lines
+    for convention in target.conventions:
+        changed = [replace(line, formula=line.formula.xreplace(dict(convention.changes))) for line in target.lines]
+        asked = sp.Tuple(*(target.lines[line.row].formula for line in lines))
+        # one letter alone with the other sign is a slip
+        several = len(asked.free_symbols & set(convention.changes)) > 1
+        other = replace(target, lines=tuple(changed))
+        if several and all(_verdict(line.mine, other, line.row) == Verdict.RIGHT for line in lines):
+            return [
+                replace(line, verdict=Verdict.CONVENTION, note=convention.words)
+                if line.verdict == Verdict.WRONG
+                else line
+                for line in lines
+            ]
+    return lines
+
+
+def _carried(lines: list[Judged], target: Target) -> Iterator[Judged]:
+    """The lines, with those marked that follow correctly from a wrong one before."""
+    for k, line in enumerate(lines):
+        before = [other for other in lines[:k] if other.verdict == Verdict.WRONG]
+        note = _follows(line, before, lines[:k], target) if line.verdict == Verdict.WRONG and before else ""
+        yield replace(line, verdict=Verdict.CARRIED, note=note) if note else line
+
+
+def _follows(line: Judged, wrong: Sequence[Judged], before: Sequence[Judged], target: Target) -> str:
+    """From which wrong line this one follows; empty if from none."""
+    if any(other.row == line.row and same(other.mine, line.mine) for other in wrong):
+        return "this follows from the line before, which is wrong"
+    mine = {other.row: other.mine for other in before}
+    for number, step in target.steps:
+        block = target.blocks.get(f"step{number}", ())
+        if line.row in target.result and any(other.row in block for other in wrong) and line.row not in block:
+            values = [mine.get(row, target.lines[row].formula) for row in block]
+            if same(step.onward(values)[target.result[line.row]], line.mine):
+                return f"this follows from your “{step.reason.rstrip(':')}”, which is wrong"
+    return ""

@@ -1,0 +1,181 @@
+"""Checking somebody's derivation, and showing what is found, hint by hint."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
+from percept_obs.checking.matching import Judged, Verdict, judged
+from percept_obs.checking.search import put
+from percept_obs.checking.target import Target, target_of
+
+MARKS = {
+    Verdict.RIGHT: "✓",
+    Verdict.WRONG: "✗",
+    Verdict.CARRIED: "↳",
+    Verdict.CONVENTION: "✓",
+    Verdict.CANNOT_TELL: "?",
+}
+HINTS = ("which line", "which term", "which slip, and in which step")
+
+
+@dataclass(frozen=True, eq=False)
+class Review:
+    """What is found of a derivation; it shows itself in a notebook, and tells no more than is asked for.
+
+    Parameters
+    ----------
+    target : Target
+    lines : tuple of Judged
+    hints : int
+        How many hints are open; see `hint`.
+    """
+
+    target: Target
+    lines: tuple[Judged, ...]
+    hints: int = 0
+
+    @property
+    def right(self) -> bool | None:
+        """Whether all lines are right; None if that cannot be told."""
+        verdicts = {line.verdict for line in self.lines}
+        if verdicts & {Verdict.WRONG, Verdict.CARRIED}:
+            return False
+        return None if Verdict.CANNOT_TELL in verdicts else True
+
+    def hint(self, number: int) -> Review:
+        """The same review with more said: 1 which line, 2 which term, 3 which slip and in which step.
+
+        Raises
+        ------
+        ValueError
+            If the number is not 1, 2 or 3.
+        """
+        if number not in (1, 2, 3):
+            raise ValueError(f"there is no hint {number!r}; there are 1 (which line), 2 (which term), 3 (which slip)")
+        return replace(self, hints=number)
+
+    @cached_property
+    def explanations(self) -> dict[int, Explanation]:
+        """What is wrong, by the number of the line among `lines`; looked for when it is first asked for."""
+        good = {line.row: line.mine for line in self.lines if line.verdict == Verdict.RIGHT}
+        return {
+            k: explained(line.mine, line.row, self.target, good)
+            for k, line in enumerate(self.lines)
+            if line.verdict == Verdict.WRONG and not line.note
+        }
+
+    @property
+    def summary(self) -> str:
+        """The verdict on all lines, in a sentence."""
+        wrong = [line for line in self.lines if line.verdict == Verdict.WRONG]
+        if wrong:
+            count = len(self.lines)
+            what = f"{len(wrong)} of {count} lines {'is' if len(wrong) == 1 else 'are'} wrong"
+            more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
+            return (what if count > 1 else "Not right yet") + more + "."
+        if self.right is None:
+            return "It cannot be told whether this is the same; write it closer to the usual form."
+        given, asked = len({line.row for line in self.lines}), len(self.target.lines)
+        notes = sorted({line.note for line in self.lines if line.note})
+        return "; ".join(["Right" + (f", {given} of {asked} lines" if given < asked else ""), *notes]) + "."
+
+    def __str__(self) -> str:
+        out = [self.summary]
+        for k, line in enumerate(self.lines):
+            name = self.target.lines[line.row].name
+            out.append(f"{self._mark(line)} {f'{name} = ' if name else ''}{plain(line.mine)}")
+            out += [f"    {text}" for text in self._told(k, plain)]
+        return "\n".join(out)
+
+    def _repr_markdown_(self) -> str:
+        out = [f"**{self.summary}**"]
+        for k, line in enumerate(self.lines):
+            out.append(f"{self._mark(line)}\n\n$$ {_left(self.target.lines[line.row].name)}{self._boxed(k)} $$")
+            out += [f"- {text}" for text in self._told(k, lambda e: f"${sp.latex(e)}$")]
+        return "\n\n".join(out)
+
+    def _mark(self, line: Judged) -> str:
+        """Whether the line is right, unless which line is wrong is a hint that was not asked for."""
+        return " " if self.right is False and not self.hints else MARKS[line.verdict]
+
+    def _told(self, k: int, show: Callable[[sp.Basic], str]) -> Iterator[str]:
+        """What is said of a line."""
+        line = self.lines[k]
+        if line.verdict == Verdict.WRONG and self.hints > 1 and k in self.explanations:
+            yield from sentences(self.explanations[k], line.mine, show)[self.hints - 2]
+        elif (line.verdict == Verdict.CARRIED and self.hints) or (line.verdict == Verdict.WRONG and self.hints > 2):
+            yield line.note
+
+    def _boxed(self, k: int) -> str:
+        """The line in LaTeX, wrong terms in a box if they were asked for."""
+        mine = self.lines[k].mine
+        boxes: dict[sp.Symbol, str] = {}
+        for path, term in wrong_terms(self.explanations[k], mine) if self.hints > 1 and k in self.explanations else ():
+            box, minus = sp.Dummy(), term.could_extract_minus_sign()
+            boxes[box] = rf"\boxed{{{sp.latex(-term if minus else term)}}}"
+            mine = put(mine, path, -box if minus else box)
+        return str(sp.latex(mine, symbol_names=boxes))
+
+
+def _left(name: str) -> str:
+    """The left side of a line in LaTeX."""
+    if name.endswith("'"):
+        return rf"\dot{{{sp.latex(sp.Symbol(name[:-1]))}}} = "
+    return rf"\text{{{name}}} = " if " " in name else f"{sp.latex(sp.Symbol(name))} = " if name else ""
+
+
+def check(mine: Any, target: Any) -> Review:
+    """Check somebody's formulas against what the package derives, or against a formula of one's own.
+
+    Parameters
+    ----------
+    mine : str, sympy expression, matrix or relation, or a list or a mapping of them
+        Text as one types it, "y1' = a13 + (a11 - a33) y1 + ...", with ``^`` or ``**``, or LaTeX as the package prints
+        it.  Letters are matched by name.  One line or several; a line with a new letter on its left, "q = a31 y1",
+        gives that letter a meaning for those after it.  In a mapping, 5 stands for the fifth step of a derivation.
+    target : anything that the package derives
+        A system or a form (their rates), an observer (its flow; its updates are ``observer.equations.update``), a
+        matrix such as ``form.w``, a step of a derivation or all of it, a condition of observability (where it fails
+        counts, not its form), relations as the papers print them, or a formula of one's own, in sympy or as text.
+
+    Returns
+    -------
+    Review
+        Shows itself; ``review.hint(1)`` says which line is wrong, 2 which term, 3 which slip and in which step.
+
+    Raises
+    ------
+    CannotRead
+        If the text is no formula of the target's letters; it says where, and what is allowed.
+    ValueError
+        If lines and target do not fit.
+
+    Notes
+    -----
+    Rational functions are compared exactly, modulo a prime of 128 bits at random points: a "no" is certain, a "yes" is
+    wrong with a probability below 2^-150 for degrees up to 1000.  Where neither that nor values of sixty digits decide,
+    the verdict is "cannot tell".
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, check, pinhole
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> check("y3' = -y3 (a31 y1 + a32 y2 + a33 + b3 y3)", system).right
+    True
+    >>> review = check("y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)", system)
+    >>> print(review)
+    Not right yet; hint(1) says which line.
+      y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)
+    >>> print(review.hint(2))
+    Not right yet; hint(3) says which slip, and in which step.
+    ✗ y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)
+        look at -b3 y3
+    """
+    goal = target_of(target)
+    return Review(goal, judged(goal.read(mine), goal))

@@ -1,0 +1,323 @@
+"""A search for what mends a formula: single slips by the difference they make, pairs by the sum of two."""
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain, islice, takewhile
+from typing import Any
+
+import sympy as sp
+
+from percept_obs.checking.deciding import fraction_of, points, same_zeros, size
+from percept_obs.checking.points import PRIME, ModularPoint, NoValue
+from percept_obs.checking.slips import MENDS, Slip, factored, family, siblings_in, slips_in, symbols_in
+from percept_obs.checking.target import VALUE, ZEROS, Line
+from percept_obs.checking.terms import LARGEST
+
+Values = tuple[int, ...]
+ORDER = (
+    *("sign", "left out", "letter", "exponent", "missing", "factor", "superfluous", "other letter", "left-out factor"),
+    "replaced",
+)
+THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
+
+
+@dataclass(frozen=True)
+class Search:
+    """A search for what mends one line.
+
+    Parameters
+    ----------
+    mine : expression
+    line : Line
+        What it should be.
+    letters : set of symbols
+    until : float
+        The time on the clock at which it ends.
+    """
+
+    mine: sp.Expr
+    line: Line
+    letters: frozenset[sp.Symbol]
+    until: float
+
+    @property
+    def over(self) -> bool:
+        """Whether the time is over."""
+        return time.monotonic() > self.until
+
+    @cached_property
+    def places(self) -> list[ModularPoint]:
+        """Points at which values are compared."""
+        return list(islice(points(self.mine, self.line.formula), 2 if self.line.kind == VALUE else 3))
+
+    def values(self, e: sp.Expr) -> Values | None:
+        """Values of an expression at all points; None where there are none."""
+        try:
+            return tuple(point(e) for point in self.places)
+        except NoValue:
+            return None
+
+    @cached_property
+    def terms(self) -> tuple[sp.Expr, ...]:
+        """My terms."""
+        return sp.Add.make_args(self.mine)
+
+    @cached_property
+    def lacking(self) -> Values:
+        """What my formula lacks: the true one less mine."""
+        return tuple((point(self.line.formula) - point(self.mine)) % PRIME for point in self.places)
+
+    @cached_property
+    def changes(self) -> list[tuple[Values, Slip]]:
+        """Every single slip with what it adds to the formula."""
+        siblings = siblings_in(self.letters | symbols_in(self.mine))
+        found: list[tuple[Values, Slip]] = []
+        for k, term in enumerate(self.terms):
+            start = (k,) if self.mine.is_Add else ()
+            before = self.values(term)
+            for slip in chain(factored(term, MENDS), slips_in(term, siblings, MENDS)):
+                if self.over:
+                    return found
+                after = self.values(slip.formula)
+                if before is not None and after is not None:
+                    named = replace(slip, path=(*start, *slip.path), term=slip.term if slip.path else term)
+                    found.append((less(after, before), named))
+        return found + [(value, _missing(term)) for term in self.true_terms if (value := self.values(term))]
+
+    @cached_property
+    def true_terms(self) -> tuple[sp.Expr, ...]:
+        """The true terms, also multiplied out."""
+        whole = self.line.formula
+        expanded = sp.expand(whole) if size(whole) <= LARGEST else whole
+        return tuple(dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))))
+
+    def mends(self, added: Values, slip: Slip) -> bool:
+        """Whether a change, which adds this, makes the line right."""
+        if self.line.kind == VALUE:
+            return added == self.lacking
+        if self.line.kind == ZEROS:
+            old = self.terms[slip.path[0] if self.mine.is_Add else 0] if slip.kind != "missing" else sp.S.Zero
+            return bool(same_zeros(self.mine - old + slip.formula, self.line.formula))
+        sums = [(point(self.mine) + a, point(self.line.formula)) for point, a in zip(self.places, added, strict=True)]
+        first = sums[0]
+        return sums[0][0] % PRIME != 0 and all((s * first[1] - t * first[0]) % PRIME == 0 for s, t in sums[1:])
+
+    def single(self) -> Slip | None:
+        """The plainest single change that mends the formula."""
+        ways = []
+        for added, slip in self.changes:
+            if self.over and self.line.kind == ZEROS:
+                break
+            if self.mends(added, slip):
+                ways.append(_named(slip))
+        if not ways and self.line.kind == VALUE:
+            ways = [*self.by_ratio(), *self.in_its_place()]
+        return min(ways, key=lambda slip: (ORDER.index(slip.kind), len(slip.path)), default=None)
+
+    def by_ratio(self) -> Iterator[Slip]:
+        """Terms with a wrong factor, found from what they would have to be multiplied by: a number, a letter, two."""
+        u = sp.Symbol("one more", real=True)
+        one = self.values(u)
+        for path, node in takewhile(lambda _: not self.over, _term_places(self.mine)):
+            moved = self.values(put(self.mine, path, node + u))
+            now = self.values(node)
+            if moved is None or now is None or one is None or 0 in now:
+                continue
+            share = [
+                (m - point(self.mine)) * pow(v, -1, PRIME) % PRIME
+                for m, v, point in zip(moved, one, self.places, strict=True)
+            ]
+            if 0 in share:
+                continue
+            needed = tuple(d * pow(c, -1, PRIME) % PRIME for d, c in zip(self.lacking, share, strict=True))
+            ratio = tuple((d * pow(v, -1, PRIME) + 1) % PRIME for d, v in zip(needed, now, strict=True))
+            number = fraction_of(ratio[0]) if len(set(ratio)) == 1 else None
+            if number is not None and number != 1:
+                (slip,) = factored(node, replace(MENDS, factors=(sp.Rational(number.numerator, number.denominator),)))
+                yield _named(replace(slip, path=path))
+            elif ratio in self.ratios:
+                right, wrong = self.ratios[ratio]
+                kind = (
+                    "left-out factor"
+                    if 1 in (abs(right), wrong)
+                    else ("letter" if family(abs_letter(right)) == family(wrong) else "other letter")
+                )
+                yield Slip(kind, wrong, right, path, node, put(self.mine, path, node * right / wrong))
+
+    def in_its_place(self) -> Iterator[Slip]:
+        """The one part that differs where the two formulas have the same build: inside a root, below a fraction."""
+        path, mine, true = _aligned(self.mine, self.line.formula)
+        changed = put(self.mine, path, true)
+        if not path or self.values(changed) != self.values(self.line.formula):
+            return
+        kind = "replaced"
+        if (true.is_Add and mine in true.args) or (true.is_Add and mine.is_Add and set(mine.args) < set(true.args)):
+            kind, mine, true = "missing", sp.S.Zero, true - mine
+        elif mine.is_Add and (true in mine.args or (true.is_Add and set(true.args) < set(mine.args))):
+            kind, mine, true = "superfluous", mine - true, sp.S.Zero
+        yield Slip(kind, mine, true, path, at(self.mine, path), changed)
+
+    @cached_property
+    def ratios(self) -> dict[Values, tuple[sp.Expr, sp.Expr]]:
+        """Quotients of two letters, or of a letter and 1, by their values."""
+        letters = [sp.S.One, *sorted(self.letters, key=str)]
+        values = [self.values(s) or () for s in letters]
+        inverse = [tuple(pow(x, -1, PRIME) for x in value) for value in values]
+        return {
+            tuple(c * x * y % PRIME for x, y in zip(values[i], inverse[j], strict=True)): (c * a, b)
+            for i, a in enumerate(letters)
+            for j, b in enumerate(letters)
+            for c in (1, -1)
+            if i != j
+        }
+
+    def throughout(self) -> Slip | None:
+        """One change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
+        true, mine = self.values(self.line.formula), self.mine
+        candidates: list[tuple[str, sp.Basic, sp.Basic, sp.Expr]] = []
+        used = sorted(mine.free_symbols, key=str)
+        flips = {a: b for a in used if (b := _transposed(a, self.letters))}
+        if len(flips) > 1:
+            candidates.append(("transpose", *next(iter(flips.items())), mine.xreplace(flips)))
+        by_family: dict[object, list[sp.Symbol]] = {}
+        for a in used:
+            by_family.setdefault(family(a), []).append(a)
+        for group in by_family.values():
+            if len(group) > 1:
+                turned = mine.xreplace({a: -a for a in group})
+                candidates.append(("signs", sp.Tuple(*group), sp.Tuple(*(-a for a in group)), turned))
+        for a in used:
+            candidates.append(("sign throughout", a, -a, mine.xreplace({a: -a})))
+            for b in sorted(self.letters - {a}, key=str):
+                if family(a) == family(b):
+                    candidates.append(("throughout", a, b, mine.xreplace({a: b})))
+                    if b in mine.free_symbols and str(a) < str(b):
+                        candidates.append(("swapped", a, b, mine.xreplace({a: b, b: a})))
+        for kind, before, after, changed in takewhile(lambda _: not self.over, candidates):
+            now = self.values(changed)
+            if now is not None and now == true:
+                return Slip(kind, before, after, (), mine, changed)
+        return None
+
+    def pair(self) -> tuple[Slip, ...]:
+        """Two changes that mend the formula together: in different terms, or in one."""
+        if self.line.kind != VALUE:
+            return ()
+        by_value: dict[Values, list[Slip]] = {}
+        for added, slip in self.changes:
+            by_value.setdefault(added, []).append(slip)
+        ways = []
+        for added, slip in self.changes:
+            for other in by_value.get(less(self.lacking, added), ()):
+                if other is not slip and (not slip.path or not other.path or slip.path[0] != other.path[0]):
+                    ways.append((_named(slip), _named(other)))
+        plain_ways = [two for two in ways if {slip.kind for slip in two} != {"superfluous", "missing"}]
+        if plain_ways:
+            best = min(plain_ways, key=lambda two: sum(ORDER.index(slip.kind) for slip in two))
+            return next((one for two in plain_ways for one in _as_a_letter(*two)), None) or best
+        twice = next(self._twice_in_a_term(), ())
+        if twice or not ways:
+            return twice
+        old, new = sorted(min(ways, key=lambda two: len(str(two))), key=lambda slip: slip.kind == "missing")
+        return (replace(old, kind="replaced", after=new.after),)
+
+    def _twice_in_a_term(self) -> Iterator[tuple[Slip, ...]]:
+        siblings = siblings_in(self.letters | symbols_in(self.mine))
+        wanted = self.lacking
+        for k, term in enumerate(self.terms):
+            start = (k,) if self.mine.is_Add else ()
+            before = self.values(term)
+            if before is None:
+                continue
+            for first in chain(factored(term, MENDS), slips_in(term, siblings, MENDS)):
+                if self.over:
+                    return
+                for second in chain(factored(first.formula, MENDS), slips_in(first.formula, siblings, MENDS)):
+                    after = self.values(second.formula)
+                    if after is not None and less(after, before) == wanted:
+                        yield tuple(
+                            _named(replace(s, path=(*start, *s.path), term=s.term if s.path else term))
+                            for s in (first, second)
+                        )
+
+
+def _aligned(mine: sp.Basic, true: sp.Basic) -> tuple[tuple[int, ...], sp.Basic, sp.Basic]:
+    """The smallest part of my formula outside of which it is the same as the true one: where, mine, the true part."""
+    if mine.func != true.func or not mine.args:
+        return (), mine, true
+    left = [k for k, part in enumerate(mine.args) if part not in true.args]
+    right = [part for part in true.args if part not in mine.args]
+    if not (mine.is_Add or mine.is_Mul) and len(mine.args) == len(true.args):
+        left = [k for k, (a, b) in enumerate(zip(mine.args, true.args, strict=True)) if a != b]
+        right = [true.args[k] for k in left]
+    if len(left) != 1 or len(right) != 1:
+        return (), mine, true
+    path, a, b = _aligned(mine.args[left[0]], right[0])
+    return (left[0], *path), a, b
+
+
+def at(e: Any, path: Sequence[int]) -> Any:
+    """What stands at a place of a formula."""
+    for index in path:
+        e = e.args[index]
+    return e
+
+
+def put(formula: sp.Basic, path: Sequence[int], new: sp.Basic) -> sp.Basic:
+    """The formula with something else at a place."""
+    if not path:
+        return new
+    args = list(formula.args)
+    args[path[0]] = put(args[path[0]], path[1:], new)
+    return formula.func(*args)
+
+
+def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:
+    """One wrong letter, where the wrong term was merged with another one or cancelled it."""
+    for lost, merged in ((one, other), (other, one)):
+        wrong = merged.before - merged.after
+        if lost.kind == "missing" and merged.kind in ("missing", "factor", "superfluous"):
+            for a in lost.after.free_symbols:
+                for b in wrong.free_symbols - {a}:
+                    if family(a) == family(b) and lost.after.xreplace({a: b}) == wrong:
+                        yield (Slip("letter", b, a, merged.path, wrong, lost.after),)
+
+
+def less(a: Values, b: Values) -> Values:
+    """Differences modulo the prime."""
+    return tuple((x - y) % PRIME for x, y in zip(a, b, strict=True))
+
+
+def _missing(term: sp.Expr) -> Slip:
+    return Slip("missing", sp.S.Zero, term, (), term, term)
+
+
+def _named(slip: Slip) -> Slip:
+    """A mend in the words for the slip: what has to be dropped was superfluous."""
+    return replace(slip, kind="superfluous") if slip.kind == "dropped" else slip
+
+
+def _term_places(
+    e: sp.Basic, path: tuple[int, ...] = (), is_term: bool = True
+) -> Iterator[tuple[tuple[int, ...], sp.Expr]]:
+    """Places of all terms and sums, outside of functions."""
+    if is_term or e.is_Add:
+        yield path, e
+    if e.is_Add or e.is_Mul:
+        for k, part in enumerate(e.args):
+            yield from _term_places(part, (*path, k), bool(e.is_Add))
+
+
+def abs_letter(e: sp.Expr) -> sp.Symbol:
+    """The letter of a letter with a sign."""
+    return -e if e.could_extract_minus_sign() else e
+
+
+def _transposed(letter: sp.Symbol, letters: Iterable[sp.Symbol]) -> sp.Symbol | None:
+    """The letter with its two indices swapped: a21 for a12."""
+    name = letter.name
+    if len(name) < 3 or not name[-2:].isdigit() or name[-1] == name[-2]:
+        return None
+    return next((s for s in letters if s.name == name[:-2] + name[-1] + name[-2]), None)

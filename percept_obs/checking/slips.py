@@ -1,0 +1,177 @@
+"""Slips: every formula that differs from another one in a single sign, factor, exponent or letter."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import chain
+
+import sympy as sp
+from sympy.core.relational import Relational
+from sympy.functions.elementary.piecewise import ExprCondPair
+from sympy.matrices.exceptions import ShapeError
+from sympy.matrices.expressions.applyfunc import ElementwiseApplyFunction
+
+# Letters that stand beside each other in the papers, besides those that differ in an index or a hat.
+FAMILIES = ("XYZ", "GAP", ("M", "gamma"), ("alpha", "lambda"))
+
+Siblings = dict[tuple[bool, str], list[sp.Basic]]
+
+
+@dataclass(frozen=True)
+class Moves:
+    """Which slips there are, besides a letter for its sibling and an inverse or a transpose left out.
+
+    Parameters
+    ----------
+    factors : numbers that a term may be multiplied by; 0 drops it
+    exponents : numbers that are added to an exponent, counted away from 0
+    """
+
+    factors: Sequence[sp.Rational] = (-sp.S.One, sp.Integer(2))
+    exponents: Sequence[int] = (1,)
+
+
+PRINTS = Moves()
+"""Slips in a printed formula."""
+MISTAKES = Moves((-sp.S.One, sp.Integer(2), sp.S.Zero))
+"""Slips that a student makes: a term may be dropped."""
+MENDS = Moves((-sp.S.One, sp.S.Half, sp.Integer(2), sp.S.Zero, sp.Rational(1, 3), sp.Integer(3)), (-1, 1))
+"""What mends a slip."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A place where a formula was changed.
+
+    Parameters
+    ----------
+    kind : str
+        "sign", "factor", "dropped", "exponent", "letter", "left out" (an inverse or a transpose).
+    before, after : sympy expressions
+        What stood there, and what stands there now.
+    path : tuple of int
+        Which argument of which argument: the place in the formula.
+    term : sympy expression
+        The term, innermost, in which it happened, before the change.
+    formula : sympy expression
+        The whole formula with the change.
+    """
+
+    kind: str
+    before: sp.Basic
+    after: sp.Basic
+    path: tuple[int, ...]
+    term: sp.Basic
+    formula: sp.Basic
+
+
+@lru_cache(maxsize=1024)
+def family(symbol: sp.Symbol | sp.MatrixSymbol) -> tuple[bool, str]:
+    """What a symbol shares with those that may be mistaken for it: all but its index and its hat."""
+    stem = re.sub(r"\d+|hat", "", symbol.name)
+    for letters in FAMILIES:
+        for letter in letters:
+            stem = re.sub(rf"^{letter}(?=_|dot|$)", letters[0], stem)
+    return isinstance(symbol, sp.MatrixSymbol), stem
+
+
+def is_symbol(node: sp.Basic) -> bool:
+    """Whether a node is a letter."""
+    return isinstance(node, sp.Symbol | sp.MatrixSymbol)
+
+
+def symbols_in(node: sp.Basic) -> set[sp.Basic]:
+    """Symbols as they are printed; the sizes of matrix symbols are not."""
+    return {node} if is_symbol(node) else set().union(*map(symbols_in, node.args))
+
+
+def siblings_in(pool: Iterable[sp.Basic]) -> Siblings:
+    """Letters by their families."""
+    siblings: Siblings = {}
+    for symbol in sorted(pool, key=str):
+        siblings.setdefault(family(symbol), []).append(symbol)
+    return siblings
+
+
+def slips(
+    printed: tuple[sp.Basic, ...], pool: Iterable[sp.Basic], moves: Moves = PRINTS
+) -> Iterator[tuple[sp.Basic, ...]]:
+    """The formulas with one sign, factor, exponent or symbol changed.
+
+    Parameters
+    ----------
+    printed : tuple of sympy expressions, matrices or relations
+    pool : symbols that may be mistaken for each other
+    moves : Moves
+    """
+    siblings = siblings_in(pool)
+    for k, formula in enumerate(printed):
+        for slip in slips_in(formula, siblings, moves):
+            yield (*printed[:k], slip.formula, *printed[k + 1 :])
+
+
+def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Iterator[Slip]:
+    """Every single slip in a formula, with its place."""
+    if is_symbol(node):
+        for other in siblings.get(family(node), []):
+            if other != node:
+                yield Slip("letter", node, other, (), node, other)
+        return
+    if isinstance(node, sp.Inverse) or (isinstance(node, sp.Transpose) and node.is_square):
+        yield Slip("left out", node, node.arg, (), node, node.arg)
+    parts = _parts(node)
+    for k, part in enumerate(parts):
+        here: list[Slip] = []
+        is_term = _is_a_term(node, k)
+        if is_term and not _is_sum(part) and part != 0:
+            here += factored(part, moves)
+        if isinstance(node, sp.Pow) and k == 1 and part.is_number:
+            changed = (part + more * sp.sign(part) for more in moves.exponents)
+            here += [Slip("exponent", part, new, (), part, new) for new in changed]
+        for slip in chain(slips_in(part, siblings, moves), here):
+            # What does not fit in size, or compares with what is no number, is no slip but no formula.
+            with suppress(ShapeError, TypeError):
+                formula = _rebuilt(node, [*parts[:k], slip.formula, *parts[k + 1 :]])
+                # a slip in a sum inside the term has named its own term already
+                term = slip.term if _has_term(part, slip) else part if is_term else node
+                yield replace(slip, path=(k, *slip.path), term=term, formula=formula)
+
+
+def factored(term: sp.Expr, moves: Moves) -> list[Slip]:
+    """A term with another sign, another factor, or dropped."""
+    kinds = {-1: "sign", 0: "dropped"}
+    return [Slip(kinds.get(c, "factor"), term, c * term, (), term, c * term) for c in moves.factors]
+
+
+def _has_term(part: sp.Basic, slip: Slip) -> bool:
+    """Whether a sum on the way down to the slip holds its term."""
+    for index in slip.path:
+        if _is_sum(part):
+            return True
+        part = _parts(part)[index]
+    return False
+
+
+def _parts(node: sp.Basic) -> list[sp.Basic]:
+    return list(node) if isinstance(node, sp.MatrixBase) else list(node.args)
+
+
+def _is_sum(node: sp.Basic) -> bool:
+    return isinstance(node, sp.Add | sp.MatAdd | sp.MatrixBase)
+
+
+def _is_a_term(node: sp.Basic, k: int) -> bool:
+    """Whether a part is a term: of a sum, a side of a relation, an entry of a matrix, a branch."""
+    return _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
+
+
+def _rebuilt(node: sp.Basic, parts: list[sp.Basic]) -> sp.Basic:
+    if isinstance(node, sp.MatrixBase):
+        return sp.ImmutableMatrix(*node.shape, parts)
+    if isinstance(node, Relational):
+        return node.func(*parts, evaluate=False)
+    if isinstance(node, ElementwiseApplyFunction):
+        return parts[1].applyfunc(parts[0])
+    return node.func(*parts)

@@ -1,0 +1,85 @@
+"""Two formulas term by term, once their denominators are cleared."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.polys.fields import sfield
+
+from percept_obs.checking.deciding import points, rational, size
+
+LARGEST = 400
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A product of letters with another coefficient: yours, and the true one."""
+
+    product: sp.Expr
+    mine: sp.Expr
+    true: sp.Expr
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Where two formulas differ.
+
+    Parameters
+    ----------
+    differences : tuple of Difference
+    wrong : tuple of int
+        Which of my terms hold a product whose coefficient is not the true one.
+    cleared : expression
+        What both were multiplied by to clear denominators.
+    """
+
+    differences: tuple[Difference, ...] = ()
+    wrong: tuple[int, ...] = ()
+    cleared: sp.Expr = sp.S.One
+
+
+def compared(mine: sp.Expr, true: sp.Expr) -> Comparison:
+    """The products whose coefficients differ; none are looked for in formulas that are too large to multiply out."""
+    if size(mine) + size(true) > LARGEST:
+        return Comparison()
+    parts = [*sp.Add.make_args(mine), true]
+    letters = _letters_for_functions(parts)
+    field, elements = sfield([part.xreplace(letters) for part in parts])
+    common = field.ring.one
+    for element in elements:
+        common = common.lcm(element.denom)
+    polynomials = [element.numer * (common.quo(element.denom)) for element in elements]
+    *own, target = [dict(p.terms()) for p in polynomials]
+    total = dict(sum(polynomials[:-1], field.ring.zero).terms())
+    back = {letter: function for function, letter in letters.items()}
+    differ = [m for m in {**target, **total} if total.get(m, 0) != target.get(m, 0)]
+    found = [
+        Difference(
+            sp.Mul(*(g**k for g, k in zip(field.symbols, m, strict=True))).xreplace(back),
+            *(sp.sympify(field.domain.to_sympy(side.get(m, field.domain.zero))) for side in (total, target)),
+        )
+        for m in differ
+    ]
+    wrong = tuple(k for k, part in enumerate(own) if any(m in part for m in differ))
+    return Comparison(tuple(found), wrong, common.as_expr().xreplace(back))
+
+
+def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]:
+    """A letter for every root and function; those with the same value get the same letter."""
+    if all(map(rational, parts)):
+        return {}
+    point = next(points(*parts), None)
+    outermost: dict[sp.Expr, sp.Symbol] = {}
+
+    def visit(node: sp.Basic) -> None:
+        if node.is_Symbol or node.is_Rational:
+            return
+        if node.is_Add or node.is_Mul or (node.is_Pow and node.exp.is_Integer):
+            for part in node.args:
+                visit(part)
+        else:
+            outermost[node] = sp.Symbol(f"f{point(node) if point else node}")
+
+    for part in parts:
+        visit(part)
+    return outermost
