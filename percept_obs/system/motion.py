@@ -344,9 +344,8 @@ def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.Immutab
 
     def at(time: float) -> Array:
         found = value(time)
-        array = np.asarray(found)
-        usual = array.shape == shape and array.dtype.kind in "fi" and np.isfinite(array).all()
-        return array.ravel() if usual else _rows(found, block, 1)[0]
+        array = numbers(found, "a coefficient of the motion")
+        return array.ravel() if array.shape == shape and np.isfinite(array).all() else _rows(found, block, 1)[0]
 
     return at
 
