@@ -3,6 +3,7 @@
 import math
 import os
 import shutil
+import tempfile
 from pathlib import Path
 
 import hypothesis
@@ -25,6 +26,14 @@ BROWSERS = (
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
 )
+
+
+def pytest_configure(config):
+    """One new folder for the loops that a session compiles: its workers and their kernels share it, not the user's."""
+    if not hasattr(config, "workerinput"):
+        folder = tempfile.TemporaryDirectory()
+        os.environ["NUMBA_CACHE_DIR"] = folder.name
+        config.add_cleanup(folder.cleanup)
 
 
 def pytest_collection_modifyitems(items):

@@ -1,6 +1,9 @@
 """Python, numba and JavaScript run the same loop, and what would differ between them is refused."""
 
 import builtins
+import os
+import subprocess
+import sys
 from functools import cache, partial
 
 import numpy as np
@@ -12,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 import percept_obs.tracking.following as tracking
 from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
-from percept_obs.compile import NotCompilable, Table, integrator, kernels, solve, source
+from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
 from percept_obs.labs.printing import INTEGRATOR
@@ -185,6 +188,44 @@ def test_a_run_is_made_in_the_language_that_was_chosen(monkeypatch):
     for count in (10, kernels.WORTH_COMPILING):
         solve(equations, [1.0], steps(count, parameters=1))
     assert made == [equations]
+
+
+LOOPS = """
+from examples import BOTH
+from percept_obs import ekf
+from percept_obs.compile import kernels
+from percept_obs.points import kernel
+from percept_obs.points.scenarios import moving_body
+equations = ekf(BOTH).equations
+loops = kernels._compiled(equations), kernel._compiled(moving_body(1).form.block)
+compiled = [sum(loop.stats.cache_misses.values()) for loop in loops]
+"""
+
+
+@pytest.mark.slow
+def test_another_process_compiles_nothing():
+    """Whatever the order of sets in it, it prints the same text and finds its machine code."""
+    exec(LOOPS, {})
+    environment = os.environ | {"PYTHONHASHSEED": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    program = [sys.executable, "-c", f"{LOOPS}print(compiled)"]
+    assert subprocess.check_output(program, env=environment, text=True) == "[0, 0]\n"
+
+
+def test_a_loop_is_kept_as_a_file_that_holds_its_text(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "new"))
+    text = "def third(x):\n    return x / 3.0\n\n\ndef run(x):\n    return 1.0 + third(x)\n"
+    assert machine_code(text, "(float64,)")(3.0) == 2.0
+    (file,) = (tmp_path / "new").glob("*.py")
+    assert file.read_text().endswith(text)
+
+
+@pytest.mark.parametrize("refusal", ["a file in the way", "no right to write"])
+def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same(tmp_path, monkeypatch, refusal):
+    place = tmp_path / "place"
+    place.touch() if refusal == "a file in the way" else monkeypatch.setattr(os, "access", lambda *_: False)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(place / "new"))
+    assert machine_code(f"def run(x):\n    return x / 3.0  # {refusal}\n", "(float64,)")(6.0) == 2.0
+    assert not place.is_dir()
 
 
 def test_the_page_steps_by_the_same_method():

@@ -4,6 +4,7 @@ from percept_obs.compile.arrays import Array, Flags, Indices
 from percept_obs.compile.functions import executed, function_source, right_hand_side, vectorised
 from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
 from percept_obs.compile.loop import source
+from percept_obs.compile.machine_code import machine_code
 from percept_obs.compile.text import NotCompilable, Printed
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "choose",
     "executed",
     "function_source",
+    "machine_code",
     "right_hand_side",
     "solve",
     "source",

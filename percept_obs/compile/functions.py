@@ -89,8 +89,8 @@ def function_source(
 
 
 def executed(text: str) -> Callable[..., Any]:
-    """The Python function that a text defines."""
+    """The Python function that a text defines last."""
     namespace: dict[str, Any] = {"math": math}
     exec(compile(text, "<printed>", "exec"), namespace)
-    (function,) = (value for value in namespace.values() if isinstance(value, FunctionType))
+    *_, function = (value for value in namespace.values() if isinstance(value, FunctionType))
     return function

@@ -16,6 +16,7 @@ from percept_obs.compile.arrays import Array, Flags
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.loop import source
+from percept_obs.compile.machine_code import machine_code
 
 Language = Literal["python", "numba"]
 
@@ -142,12 +143,7 @@ def _python(equations: Equations) -> Callable[..., int]:
     return executed(source(equations, "python"))
 
 
-# Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
-@lru_cache(maxsize=512)
 def _compiled(equations: Equations) -> Callable[..., int]:
-    import numba
-
-    block = numba.float64[::1]
-    signature = (block,) * 6 + (numba.boolean,) + (block,) * 2
-    compiled: Callable[..., int] = numba.njit([signature], error_model="numpy")(_python(equations))
-    return compiled
+    block = "float64[::1]"
+    signature = f"({', '.join([block] * 6)}, boolean, {block}, {block})"
+    return machine_code(f"import math\n\n\n{source(equations, 'python')}", signature)

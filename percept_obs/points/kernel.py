@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Any, NamedTuple, cast
+from inspect import getsource
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from percept_obs.compile import Array, Indices, executed
+from percept_obs.compile import Array, Indices, executed, machine_code
 from percept_obs.compile import Language as Language
 from percept_obs.compile import choose as choose_for_steps
 from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, numbers
@@ -66,14 +67,14 @@ def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
     within = place[layout.rows] >= 0
     rows, columns = place[layout.rows[within]], place[layout.columns[within]]
     blocks = form.blocks[points][:, :, states]
-    owners, axes, used = np.nonzero(blocks)
+    owners, axes, used = map(np.ascontiguousarray, np.nonzero(blocks))
     begins = np.searchsorted(owners, np.arange(len(points) + 1))
     shape = np.array([form.surface.values[symbol] for symbol in form.block.parameters])
     entries = blocks[owners, axes, used]
     return Arrays(rows, columns, layout.which[within], begins, axes, used, entries, shape, form.block)
 
 
-def combine(target: Array, first: Array, factor: float, second: Array) -> None:
+def combine_by_loops(target: Array, first: Array, factor: float, second: Array) -> None:
     """Set the target to first + factor second, a copy if that is 0; numba would compile each such line anew."""
     for i in range(len(target)):
         target[i] = first[i] + factor * second[i]
@@ -82,109 +83,6 @@ def combine(target: Array, first: Array, factor: float, second: Array) -> None:
 def combine_by_numpy(target: Array, first: Array, factor: float, second: Array) -> None:
     """The same with numpy, whose loops do not run in Python."""
     target[:] = first + factor * second
-
-
-def loop(compiled: Callable[[Any], Any], combine: Any, solve: Any, point: Any) -> Callable[..., tuple[int, Array]]:
-    """The loop over points and steps, of these parts."""
-
-    @compiled
-    def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
-        """Set the target to the start, moved along the rates of stages for shares of a length, if there are any."""
-        for j in range(len(shares)):
-            if shares[j] != 0.0:
-                combine(target, start, length * shares[j], rates[j])
-                start = target
-
-    @compiled
-    def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array, dx: Array, dP: Array) -> None:
-        """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
-        rows, columns, which, begins, axes, states, entries, shape = form
-        computed, information, forgetting, pull = law
-        n, m = len(x), y.shape[1]
-        dx[:] = 0.0
-        for i in range(n if computed else 0):
-            combine(dP[i], pull[i], -forgetting, P[i])
-        for e in range(len(rows)):
-            i, j, a = rows[e], columns[e], coefficients[which[e]]
-            if j == n:
-                dx[i] += a
-            else:
-                dx[i] += a * x[j]
-                if computed:
-                    combine(dP[:, j], dP[:, j], -a, P[i])
-                    combine(dP[j], dP[j], -a, P[i])
-        correction, anything = np.zeros(n), False
-        given, told = np.zeros(m + 3 + len(shape)), np.zeros(12)
-        for j in range(len(shape)):
-            given[m + 3 + j] = shape[j]
-        for k in range(len(begins) - 1):
-            seen = True
-            for j in range(m):
-                given[j] = y[k, j]
-                seen = seen and y[k, j] == y[k, j]
-            if not seen:
-                continue
-            anything = True
-            given[m : m + 3] = 0.0
-            for e in range(begins[k], begins[k + 1]):
-                given[m + axes[e]] += entries[e] * x[states[e]]
-            point(given, told)
-            for e in range(begins[k], begins[k + 1]):
-                correction[states[e]] += entries[e] * told[axes[e]]
-                for f in range(begins[k], begins[k + 1] if computed else 0):
-                    S = told[3 + 3 * axes[e] + axes[f]]
-                    dP[states[e], states[f]] += information * entries[e] * entries[f] * S
-        if anything and computed:
-            combine(dx, dx, 1.0, solve(P, correction))
-        elif anything:
-            for i in range(n):
-                combine(dx, dx, correction[i], P[i])
-
-    @compiled
-    def run(
-        form: Any,
-        law: Law,
-        x: Array,
-        P: Array,
-        steps: Array,
-        coefficients: Array,
-        inverses: Array,
-        outputs: Array,
-        path: Array,
-    ) -> tuple[int, Array]:
-        """Step the estimate, and P where it is computed, by the Runge-Kutta method, with the blocks of `advance`.
-
-        The estimates go to `path`.  Returns its first row at which they were no longer finite, or -1, and the last P.
-        """
-        n = len(x)
-        size = n if law[0] else 0
-        now, stage = np.zeros(n + size * size), np.zeros(n + size * size)
-        rates = [np.zeros(len(now)) for _ in WEIGHTS]
-        x_stage, P_stage = stage[:n], stage[n:].reshape(size, size)
-        dx, dP = [along[:n] for along in rates], [along[n:].reshape(size, size) for along in rates]
-        combine(now[:n], x, 0.0, x)
-        for i in range(size):
-            combine(now[n + i * size : n + (i + 1) * size], P[i], 0.0, P[i])
-        combine(path[0], x, 0.0, x)
-        for k in range(len(steps)):
-            combine(stage, now, 0.0, now)
-            for i in range(len(WEIGHTS)):
-                row = EACH * k + PLACES[i]
-                known = coefficients[row if len(coefficients) > 1 else 0]
-                move(stage, now, steps[k], COUPLING[i], rates)
-                if not size:
-                    P_stage = inverses[row if len(inverses) > 1 else 0]
-                rate(form, law, x_stage, P_stage, known, outputs[k, PLACES[i]], dx[i], dP[i])
-            move(now, now, steps[k], WEIGHTS, rates)
-            combine(path[k + 1], now[:n], 0.0, now[:n])
-            squared = 0.0
-            for i in range(n):
-                squared += now[i] * now[i]
-            if not squared < LARGEST_SQUARED_STATE:
-                return k + 1, now[n:].reshape(size, size) if size else P
-        return -1, now[n:].reshape(size, size) if size else P
-
-    return run
 
 
 def solve_by_loops(P: Array, right: Array) -> Array:
@@ -223,26 +121,141 @@ def solve_by_numpy(P: Array, right: Array) -> Array:
     return np.asarray(np.linalg.solve(P, right))
 
 
+if TYPE_CHECKING:  # what the next functions call in their text, where `source` says which
+    combine, solve = combine_by_numpy, solve_by_numpy
+
+    def point(given: Array, told: Array) -> Array:
+        """Fill an array with what a point tells, as in `PointBlock.source`."""
+
+
+def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
+    """Set the target to the start, moved along the rates of stages for shares of a length, if there are any."""
+    for j in range(len(shares)):
+        if shares[j] != 0.0:
+            combine(target, start, length * shares[j], rates[j])
+            start = target
+
+
+def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array, dx: Array, dP: Array) -> None:
+    """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
+    rows, columns, which, begins, axes, states, entries, shape = form
+    computed, information, forgetting, pull = law
+    n, m = len(x), y.shape[1]
+    dx[:] = 0.0
+    for i in range(n if computed else 0):
+        combine(dP[i], pull[i], -forgetting, P[i])
+    for e in range(len(rows)):
+        i, j, a = rows[e], columns[e], coefficients[which[e]]
+        if j == n:
+            dx[i] += a
+        else:
+            dx[i] += a * x[j]
+            if computed:
+                combine(dP[:, j], dP[:, j], -a, P[i])
+                combine(dP[j], dP[j], -a, P[i])
+    correction, anything = np.zeros(n), False
+    given, told = np.zeros(m + 3 + len(shape)), np.zeros(12)
+    for j in range(len(shape)):
+        given[m + 3 + j] = shape[j]
+    for k in range(len(begins) - 1):
+        seen = True
+        for j in range(m):
+            given[j] = y[k, j]
+            seen = seen and y[k, j] == y[k, j]
+        if not seen:
+            continue
+        anything = True
+        given[m : m + 3] = 0.0
+        for e in range(begins[k], begins[k + 1]):
+            given[m + axes[e]] += entries[e] * x[states[e]]
+        point(given, told)
+        for e in range(begins[k], begins[k + 1]):
+            correction[states[e]] += entries[e] * told[axes[e]]
+            for f in range(begins[k], begins[k + 1] if computed else 0):
+                S = told[3 + 3 * axes[e] + axes[f]]
+                dP[states[e], states[f]] += information * entries[e] * entries[f] * S
+    if anything and computed:
+        combine(dx, dx, 1.0, solve(P, correction))
+    elif anything:
+        for i in range(n):
+            combine(dx, dx, correction[i], P[i])
+
+
+def run(
+    form: Any,
+    law: Law,
+    x: Array,
+    P: Array,
+    steps: Array,
+    coefficients: Array,
+    inverses: Array,
+    outputs: Array,
+    path: Array,
+) -> tuple[int, Array]:
+    """Step the estimate, and P where it is computed, by the Runge-Kutta method, with the blocks of `advance`.
+
+    The estimates go to `path`.  Returns its first row at which they were no longer finite, or -1, and the last P.
+    """
+    n = len(x)
+    size = n if law[0] else 0
+    now, stage = np.zeros(n + size * size), np.zeros(n + size * size)
+    rates = [np.zeros(len(now)) for _ in WEIGHTS]
+    x_stage, P_stage = stage[:n], stage[n:].reshape(size, size)
+    dx, dP = [along[:n] for along in rates], [along[n:].reshape(size, size) for along in rates]
+    combine(now[:n], x, 0.0, x)
+    for i in range(size):
+        combine(now[n + i * size : n + (i + 1) * size], P[i], 0.0, P[i])
+    combine(path[0], x, 0.0, x)
+    for k in range(len(steps)):
+        combine(stage, now, 0.0, now)
+        for i in range(len(WEIGHTS)):
+            row = EACH * k + PLACES[i]
+            known = coefficients[row if len(coefficients) > 1 else 0]
+            move(stage, now, steps[k], COUPLING[i], rates)
+            if not size:
+                P_stage = inverses[row if len(inverses) > 1 else 0]
+            rate(form, law, x_stage, P_stage, known, outputs[k, PLACES[i]], dx[i], dP[i])
+        move(now, now, steps[k], WEIGHTS, rates)
+        combine(path[k + 1], now[:n], 0.0, now[:n])
+        squared = 0.0
+        for i in range(n):
+            squared += now[i] * now[i]
+        if not squared < LARGEST_SQUARED_STATE:
+            return k + 1, now[n:].reshape(size, size) if size else P
+    return -1, now[n:].reshape(size, size) if size else P
+
+
+@cache
+def source(block: PointBlock, language: Language) -> str:
+    """Text of the loop for points on one kind of surface, with all that it depends on, as `machine_code` needs it."""
+    parts = (combine_by_numpy, solve_by_numpy) if language == "python" else (combine_by_loops, solve_by_loops)
+    return "\n".join(
+        [
+            "import math\n\nimport numpy as np\n",
+            f"EACH, LARGEST_SQUARED_STATE = {EACH}, {LARGEST_SQUARED_STATE!r}",
+            f"COUPLING, WEIGHTS, PLACES = map(np.array, {[table.tolist() for table in numbers()]})",
+            *(getsource(part) for part in parts),
+            f"combine, solve = {', '.join(part.__name__ for part in parts)}",
+            block.source("python"),
+            "point = evaluate",
+            *(getsource(part) for part in (move, rate, run)),
+        ]
+    )
+
+
 @cache
 def _python(block: PointBlock) -> Callable[..., tuple[int, Array]]:
-    """The loop for points on one kind of surface, in Python."""
-    return loop(lambda text: text, combine_by_numpy, solve_by_numpy, executed(block.source("python")))
+    """The loop in Python."""
+    return executed(source(block, "python"))
 
 
-@cache
 def _compiled(block: PointBlock) -> Callable[..., tuple[int, Array]]:
     """The same in machine code."""
-    import numba
-
-    compiled: Any = numba.njit(error_model="numpy")
-    parts = (combine, solve_by_loops, executed(block.source("python")))
-    run: Any = loop(compiled, *map(compiled, parts))
-    line, sheet, book = numba.float64[::1], numba.float64[:, ::1], numba.float64[:, :, ::1]
-    shelf = numba.float64[:, :, :, ::1]
-    form = numba.types.Tuple((numba.intp[::1],) * 6 + (line, line))
-    law = numba.types.Tuple((numba.boolean, numba.float64, numba.float64, sheet))
-    run.compile((form, law, line, sheet, line, sheet, book, shelf, sheet))
-    return cast(Callable[..., tuple[int, Array]], run)
+    line, sheet, book, shelf = (f"float64[{':, ' * further}::1]" for further in range(4))
+    form = f"Tuple(({'intp[::1], ' * 6}{line}, {line}))"
+    law = f"Tuple((boolean, float64, float64, {sheet}))"
+    signature = f"({form}, {law}, {line}, {sheet}, {line}, {sheet}, {book}, {shelf}, {sheet})"
+    return machine_code(source(block, "numba"), signature)
 
 
 def choose(language: Language | None, work: float) -> Language:

@@ -295,9 +295,10 @@ def bound(
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
         return Motion(name, A, b, free, Signal(lambda t: [t]) if free == (TIME,) else None)
     if any(callable(value) for value in values):
-        return Motion(name, A, b, symbols, Signal(lambda t: _row(given, t)))
+        functions = [_function(value, block) for value, block in given]
+        return Motion(name, A, b, symbols, Signal(lambda t: np.concatenate([at(t) for at in functions])))
     if times is None:
-        motion = Motion(name, A, b, symbols, Signal(_row(given, 0.0)))
+        motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(value, block, 1) for value, block in given])))
     else:
         times = np.atleast_1d(np.asarray(times, dtype=float))
         if not times.size:
@@ -334,15 +335,25 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
         )
 
 
-def _row(given: list[Coefficient], time: float) -> Array:
-    """All coefficients at a time, one after the other."""
-    return np.hstack([_rows(value(time) if callable(value) else value, block, 1) for value, block in given])
+def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[float], Array]:
+    """One coefficient as a row, as a function of time; a run asks for ten thousands, so sympy is asked once."""
+    if not callable(value):
+        row = _rows(value, block, 1)[0]
+        return lambda time: row
+    shape = _shape(block)
+
+    def at(time: float) -> Array:
+        found = value(time)
+        array = numbers(found, "a coefficient of the motion")
+        return array.ravel() if array.shape == shape and np.isfinite(array).all() else _rows(found, block, 1)[0]
+
+    return at
 
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
     """One coefficient as rows, repeated when it is constant."""
     array = numbers(value, "a coefficient of the motion")
-    shape = block.shape if block.shape[1] > 1 else block.shape[:1]
+    shape = _shape(block)
     if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
         array = array.reshape(shape)
     if array.shape not in (shape, (count, *shape)):
@@ -366,6 +377,12 @@ def _called(block: sp.ImmutableMatrix) -> str:
     names |= {"w_c": "camera_angular_velocity", "w_b": "body_angular_velocity"}
     name = names.get(first.rstrip("0123456789_"), "a coefficient")
     return f"the motion's {name} ({first} ... {last})"
+
+
+def _shape(block: sp.ImmutableMatrix) -> tuple[int, ...]:
+    """The shape of a coefficient's array; a column is a vector."""
+    rows, columns = block.shape
+    return (rows, columns) if columns > 1 else (rows,)
 
 
 def _has_symbols(value: object) -> bool:

@@ -7,8 +7,10 @@ Prints each figure with the bound that it is to keep, and exits with 1 if one is
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -71,4 +73,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with tempfile.TemporaryDirectory() as os.environ["NUMBA_CACHE_DIR"]:  # so that the loops are compiled here
+        sys.exit(main())

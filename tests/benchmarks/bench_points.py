@@ -8,7 +8,9 @@ compared between numbers of points, so that it does not depend on the machine.
 
 from __future__ import annotations
 
+import os
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -86,4 +88,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with tempfile.TemporaryDirectory() as os.environ["NUMBA_CACHE_DIR"]:  # so that the loops are compiled here
+        sys.exit(main())

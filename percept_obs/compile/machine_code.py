@@ -1,0 +1,52 @@
+"""Machine code by numba, kept in the user's cache, so that a machine compiles each text once."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+from uuid import uuid4
+
+OPTIONS: dict[str, Any] = {"error_model": "numpy"}
+
+
+# Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
+@lru_cache(maxsize=512)
+def machine_code(text: str, signature: str) -> Callable[..., Any]:
+    """The last function of a text in machine code; it may call those before it.
+
+    numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
+    another one.  So the text becomes a file, named by its hash; it must hold all that the code depends on.  It goes to
+    the user's cache, or to NUMBA_CACHE_DIR, and may be deleted at any time.
+    """
+    import numba
+    from platformdirs import user_cache_path
+
+    text = f'"""A loop of percept_obs, which numba compiles with {OPTIONS}."""\n\n{text}'
+    content = text.encode()
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
+    file = folder / f"loop_{hashlib.sha256(content).hexdigest()[:32]}.py"
+    kept = _can_be_written(folder)
+    if kept and not file.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        new = file.with_suffix(f".{uuid4().hex}")
+        new.write_bytes(content)
+        new.replace(file)  # at once, for other processes may want it too
+    module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks when it takes the code from the file
+    exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
+    *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
+    for name in others:
+        setattr(module, name, numba.njit(**OPTIONS)(getattr(module, name)))
+    compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **OPTIONS)(getattr(module, last))
+    return compiled
+
+
+def _can_be_written(folder: Path) -> bool:
+    """Whether a folder can be written, or made where it is not there yet."""
+    there = next(place for place in (folder, *folder.parents) if os.path.exists(place))
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
