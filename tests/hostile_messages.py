@@ -1,4 +1,4 @@
-"""Messages that no page of ours would send, drawn from a seed: wrong kinds, wrong places, and extremes of what is allowed."""
+"""Messages that no page of ours would send, from a seed: wrong kinds, wrong places, extremes of what is allowed."""
 
 import math
 

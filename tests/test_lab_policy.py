@@ -1,4 +1,4 @@
-"""The labs under a strict content policy, as README states it: scripts from `blob:`, inline styles, and nothing else."""
+"""The labs under the strict content policy that README states: scripts from `blob:`, inline styles, nothing else."""
 
 import base64
 import json
@@ -25,7 +25,10 @@ const model = {
 };
 bundle.render({ model, el: document.body });
 """
-DRAWN = "() => { const [lab] = window.perceptObsLabs ?? []; return lab?.shown?.settings === lab?.settings && !lab.pending; }"
+DRAWN = """() => {
+    const [lab] = window.perceptObsLabs ?? [];
+    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending;
+}"""
 
 
 def stated_policy():

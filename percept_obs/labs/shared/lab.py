@@ -40,7 +40,7 @@ class BadSettings(traitlets.TraitError, ValueError):
 
 
 class _Checked(traitlets.TraitType[Settings, Settings]):
-    """Settings that the lab has checked, also those that equal the present ones but are of other kinds, as True is 1."""
+    """Settings that the lab has checked, also those that equal the present ones, as True equals 1."""
 
     def validate(self, lab: Any, value: Any) -> Settings:
         try:
