@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEMA, STANDARD, as_settings
 from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
 from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.sampling import as_far_as_seen
+from percept_obs.labs.shared.sampling import as_far_as_seen, within_reach
 from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
@@ -114,7 +115,13 @@ class ObserverLab(Lab):
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
         except BehindCamera as error:
             return {"sentences": [str(error)]}
-        told = [name for name, observer in observers.items() if recording.truth is None or has_words(observer)]
+        talked_of = {
+            name: len(observer_of(*chosen).equations.state)
+            for name, chosen in observers.items()
+            if recording.truth is None or has_words(chosen)
+        }
+        steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
+        told, beyond = within_reach(steps, talked_of)
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(form_of(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
@@ -122,7 +129,7 @@ class ObserverLab(Lab):
             found = runs({**settings, "observers": told}, self._recordings)
         for name, run in found.items():
             sentences += run_in_words(observers[name], run, window)
-        return {"sentences": [*sentences, *(str(warning.message) for warning in caught)]}
+        return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
 
 
 observer_lab = ObserverLab
@@ -138,7 +145,7 @@ def runs(settings: Settings, recordings: Mapping[str, Recording]) -> dict[str, R
         observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _way(settings, name))
         values = settings["gains"][name]
         observer = observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
-        found[name] = track(recording, observer, start, settings["hold"], believed or None)
+        found[name] = track(recording, observer, start, settings["hold"], believed or None, language="python")
     return found
 
 

@@ -13,6 +13,7 @@ from percept_obs.labs.points.settings import PICTURES, SCHEMA
 from percept_obs.labs.points.texts import form_of, state_of
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.sampling import within_reach
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
@@ -34,6 +35,9 @@ from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
+
+STEP_WORK = 10
+"""Times that a state of many points takes Python longer than one of a single point."""
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
@@ -102,7 +106,10 @@ class PointsLab(Lab):
 
     def analyse(self) -> Settings:
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
-        return in_words(self.run(), self.settings["window"])
+        settings = self.settings
+        steps = settings["duration"] / min(settings["period"], settings["step"])
+        _, beyond = within_reach(steps, {"these points": STEP_WORK * 3 * len(settings["points"])})
+        return {"sentences": beyond, "bound": None} if beyond else in_words(self.run(), settings["window"])
 
 
 points_lab = PointsLab
@@ -134,6 +141,6 @@ def run_of(settings: Settings) -> PointsRun:
     if settings["start"] == "error":
         begin = recording.truth[0] - settings["error"] * np.resize(ERROR, form.states)
     observer = luenberger(form, _WEIGHTS[settings["weight"]](settings))
-    run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"])
+    run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"], language="python")
     assert isinstance(run, PointsRun)
     return run

@@ -39,6 +39,16 @@ class BadSettings(traitlets.TraitError, ValueError):
     """Settings that make no sense; as a TraitError, so that traitlets takes back what came with them."""
 
 
+class _Checked(traitlets.TraitType[Settings, Settings]):
+    """Settings that the lab has checked, also those that equal the present ones, as True equals 1."""
+
+    def validate(self, lab: Any, value: Any) -> Settings:
+        try:
+            return dict(lab.check(value))
+        except ValueError as error:
+            raise BadSettings(str(error)) from None
+
+
 class Lab(anywidget.AnyWidget):
     """A widget whose page computes by itself, from texts that were printed for it and a model that Python adds.
 
@@ -63,7 +73,7 @@ class Lab(anywidget.AnyWidget):
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
-    settings: Any = traitlets.TraitType({}, help="Everything that defines what is shown.").tag(sync=True)
+    settings: Any = _Checked({}, help="Everything that defines what is shown.").tag(sync=True)
     summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
     error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
@@ -105,13 +115,6 @@ class Lab(anywidget.AnyWidget):
             raise
         if self.error and "summary" in sync_data:
             self.error = ""
-
-    @traitlets.validate("settings")
-    def _complete(self, proposal: Mapping[str, Any]) -> Settings:
-        try:
-            return self.check(proposal["value"])
-        except ValueError as error:
-            raise BadSettings(str(error)) from None
 
     @traitlets.observe("summary")
     def _deepen(self, change: Mapping[str, Any]) -> None:

@@ -1,4 +1,6 @@
-"""How long a simulated point can be seen."""
+"""How long a simulated point can be seen, and how long a run Python follows for its words."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -22,3 +24,27 @@ def as_far_as_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
     if count < 2:
         raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
     return record(scenario, times[count - 1], camera, seed)
+
+
+MOST_WORK = 300_000
+"""Steps times states that are followed in about a second, so that the kernel answers."""
+
+
+def within_reach(steps: float, states: Mapping[str, float]) -> tuple[list[str], list[str]]:
+    """Names of the observers that Python follows for its words, and what it says of the others.
+
+    Parameters
+    ----------
+    steps : float
+    states : mapping of names to numbers of states
+    """
+    names, work = [], 0.0
+    for name, count in states.items():
+        if work + steps * count <= MOST_WORK:
+            names.append(name)
+            work += steps * count
+    beyond = ", ".join(name.replace("_", " ") for name in states if name not in names)
+    if not beyond:
+        return names, []
+    remedy = "show fewer observers, lengthen the period or shorten the duration"
+    return names, [f"Python says nothing on {beyond}, for {steps:.2g} steps would take it too long; {remedy}."]

@@ -105,7 +105,7 @@ class Number(Kind):
         return number and self.low <= value <= self.high and bool(self.zero or value)
 
     def _read(self, name: str, value: Any) -> float:
-        return int(value) if self.whole else float(value)
+        return int(value) if self.whole else float(value) + 0.0  # no -0.0
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import as_far_as_seen
+from percept_obs.labs.shared.sampling import as_far_as_seen, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
@@ -77,7 +77,7 @@ class StructureLab(Lab):
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
         settings["unknown"].sort(key=QUANTITIES.index)
-        steps = settings["duration"] / min(settings["period"], settings["step"])
+        steps = _steps(settings)
         if steps > MOST_STEPS:
             raise ValueError(
                 f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps"
@@ -85,16 +85,23 @@ class StructureLab(Lab):
 
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
+        states = {name: len(observer_of(name).equations.state) for name in self.settings["observers"]}
+        told, beyond = within_reach(_steps(self.settings), states)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = self.run()
+                found = runs({**self.settings, "observers": told})
         except (BehindCamera, ImpossibleChoice) as error:
             return {"sentences": [str(error)]}
-        return {"sentences": [line for name, run in found.items() for line in late_errors(OBSERVERS[name][0], run)]}
+        lines = [line for name, run in found.items() for line in late_errors(OBSERVERS[name][0], run)]
+        return {"sentences": [*lines, *beyond]}
 
 
 structure_lab = StructureLab
+
+
+def _steps(settings: Settings) -> float:
+    return float(settings["duration"] / min(settings["period"], settings["step"]))
 
 
 def unknowns_of(settings: Settings) -> StructureAndMotion:
@@ -117,7 +124,7 @@ def runs(settings: Settings) -> dict[str, Run]:
     found = {}
     for name in settings["observers"]:
         observer = OBSERVERS[name][1](unknowns.form).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"])
+        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
     return found
 
 

@@ -36,7 +36,8 @@ export class Modules {
         (module) => this.groups.set(key, module),
         (error) => {
           this.waiting.delete(key);
-          throw new Error(`the functions of "${key}" could not be loaded: ${error.message}`);
+          const hint = "a content policy of the page must allow scripts from blob:";
+          throw new Error(`the functions of "${key}" could not be loaded (${hint}): ${error.message}`);
         },
       );
       this.waiting.set(key, loaded);

@@ -1,0 +1,34 @@
+"""Whatever a page sends, a lab's settings stay valid, no text is run or taken for a file, and errors are ours."""
+
+import json
+
+import pytest
+import traitlets
+from hostile_messages import CANARY, messages
+
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+
+LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
+
+
+@pytest.mark.parametrize("name", LABS)
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+def test_settings_stay_valid_under_hostile_messages(name, seed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lab = LABS[name]()
+    kept = {trait: getattr(lab, trait) for trait in ("kind", "texts", "model")}
+    taken = refused = 0
+    for message in messages(lab, 1000 if seed else 100, seed, with_summary=0.02 if seed else 0):
+        try:
+            lab.set_state(message)
+        except traitlets.TraitError as error:
+            refusal = error
+        else:
+            refusal = None
+        taken, refused = taken + (refusal is None), refused + (refusal is not None)
+        assert refusal is None or str(refusal) in lab.error
+        assert lab.check(lab.settings) == lab.settings
+        assert json.loads(json.dumps(lab.settings, allow_nan=False)) == lab.settings
+    assert min(taken, refused) > 10
+    assert {trait: getattr(lab, trait) for trait in kept} == kept
+    assert not any(CANARY in path.name for path in tmp_path.iterdir())
