@@ -123,7 +123,7 @@ def test_each_picture_says_in_words_what_it_shows(fresh):
         "Image coordinates": ("true y1: from 0.4",),
         "Inverse distance": ("true y3: from 0.4",),
         "Distance": ("true distance: from 2.5",),
-        "Error": ("identifier-based error",),
+        "Relative error": ("identifier-based error",),
         "Excitation": ("smallest eigenvalue", "excitation: from"),
     }
     assert len(labels) == len(expected)

@@ -213,7 +213,7 @@ def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
     fresh.locator(control("act riccati 0")).first.click()
     rested(fresh)
     shown = state(fresh)
-    assert "the error of the state stays within 0.05 after 2" in shown["words"]
+    assert "relative error of the points' positions stays within 10 % after 1" in shown["words"]
     assert shown["drawn"]["error"]["lines"][0]["name"] == "kept error"
     fresh.locator(control("way back")).first.click()
     rested(fresh)

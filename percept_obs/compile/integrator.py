@@ -39,7 +39,7 @@ EACH = len(INSTANTS) - 1
 LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
 
-PLANT_STEP = 0.005
+PLANT_STEP = 0.0025
 """Longest step, in seconds, with which the page integrates a point's motion; `recording.path` is exact."""
 
 STEP_ROUNDING = 1e-4

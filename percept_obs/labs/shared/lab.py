@@ -6,6 +6,7 @@ for its page.  Beside it a folder in ``front/src`` with a subclass of ``Live``, 
 
 from __future__ import annotations
 
+import warnings
 import weakref
 from collections.abc import Mapping
 from inspect import cleandoc
@@ -119,7 +120,9 @@ class Lab(anywidget.AnyWidget):
     @traitlets.observe("summary")
     def _deepen(self, change: Mapping[str, Any]) -> None:
         if change["new"]:
-            self.analysis = {**self.analyse(), "serial": change["new"].get("serial")}
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)  # a lab says in its own place what is to be said
+                self.analysis = {**self.analyse(), "serial": change["new"].get("serial")}
 
 
 _open: dict[str, tuple[str, list[weakref.ref[Lab]]]] = {}

@@ -68,7 +68,9 @@ export const PRESETS = presetsOf([
       {
         button: "Show the cure",
         changes: { gains: { identifier_based: { noise_variance: 1e-4 / 3 } } },
-        answer: "The mean is known once the variance of the noise is: taken out, the estimate stays and settles.",
+        answer:
+          "The mean is known once the variance of the noise is: taken out, the estimate stays about the truth, as near " +
+          "as one noisy output tells it.",
       },
     ],
   },
