@@ -38,8 +38,8 @@ def not_quadratic(form: CanonicalForm) -> ValueError | None:
         Gain(kappa, "hidden_weight", 1, 1e-2, 100, "1/m^2", HIDDEN, kappa > 0, WEIGHT),
     ),
     options=(Option("iterates", 6, "number of filters in the cascade, at least one"),),
-    # only the ratios to the measurement's weight matter; smaller ones are too stiff for steps of 10 ms
-    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.006), start_weight=(1,)),
+    # only the ratios to the measurement's weight matter; the smallest need steps of 2 ms
+    candidates=grid(process_weight=(0, 1e-3), measurement_weight=(0.02, 0.01, 0.005, 0.0025), start_weight=(1,)),
     objection_of=not_quadratic,
     stays_at_truth=False,
 )
