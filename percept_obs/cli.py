@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from importlib import resources, util
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from time import perf_counter
 
 from percept_obs.border import write_whole
 
@@ -64,11 +65,28 @@ def lab(options: argparse.Namespace) -> int:
 
 
 def check(options: argparse.Namespace) -> int:
-    """Print a verdict on each of the papers' equations."""
-    from percept_obs.papers import all_hold, report
+    """Print a verdict on each of the papers' equations, or on some, and how it is known."""
+    from percept_obs.papers import find, judge, page, report
 
-    held = all_hold()
-    print(report())
+    try:
+        ledgers = find(options.places, options.paper)
+    except ValueError as error:
+        return _complain(str(error), 2)
+    if options.html and options.html.is_dir():
+        return _complain(f"cannot write the page: {options.html} is a folder; name a file", 2)
+    began = perf_counter()
+    held = judge(ledgers)
+    if options.places:
+        print("\n\n".join(f"{ledger.paper}, {entry}" for ledger in ledgers for entry in ledger.entries))
+    else:
+        print(report(ledgers))
+    count = sum(len(ledger.entries) for ledger in ledgers)
+    print(f"\n{count} judged in {perf_counter() - began:.1f} s")
+    if options.html:
+        try:
+            write_whole(options.html, page(ledgers).encode())
+        except OSError as error:
+            return _complain(f"cannot write the page: {error}", 2)
     return 0 if held else 1
 
 
@@ -124,6 +142,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     lab_parser.set_defaults(run=lab)
 
     check_parser = commands.add_parser("check", help="judge the papers' equations", description=check.__doc__)
+    check_parser.add_argument(
+        "places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)'
+    )
+    check_parser.add_argument("--paper", default="", metavar="NAME", help="part of a name, such as Ma (default: all)")
+    check_parser.add_argument("--html", type=Path, metavar="FILE", help="also write a page with the formulas")
     check_parser.set_defaults(run=check)
 
     compare_parser = commands.add_parser("compare", help="run all observers", description=compare.__doc__)
@@ -155,3 +178,7 @@ def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:
 def _complain(message: str, code: int) -> int:
     print(f"percept-obs: {message}", file=sys.stderr)
     return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,5 +1,6 @@
 """`percept-obs lab` hands out the notebooks, overwrites nothing and opens the first; mistakes exit with 2."""
 
+import re
 import subprocess
 import sys
 from importlib import util
@@ -128,10 +129,43 @@ def test_a_missing_jupyterlab_is_named_and_how_to_get_it(shipped, launches, tmp_
 
 @pytest.mark.parametrize(("holds", "code"), [(True, 0), (False, 1)])
 def test_check_prints_the_report_and_fails_when_an_equation_does(monkeypatch, capsys, holds, code):
-    papers = SimpleNamespace(report=lambda: "the ledger", all_hold=lambda: holds)
+    papers = SimpleNamespace(
+        find=lambda places, paper: (), judge=lambda ledgers: holds, report=lambda ledgers: "the ledger", page=None
+    )
     monkeypatch.setitem(sys.modules, "percept_obs.papers", papers)
     assert cli.main(["check"]) == code
-    assert capsys.readouterr().out == "the ledger\n"
+    printed = capsys.readouterr().out
+    assert printed.startswith("the ledger\n")
+    assert re.search(r"0 judged in \d+\.\d s", printed)
+
+
+def test_check_prints_one_equation_with_its_parts_and_writes_a_page(tmp_path, capsys):
+    page = tmp_path / "page.html"
+    assert cli.main(["check", "38", "--paper", "Ma", "--html", str(page)]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("Ma, Chen and Moore 2005, (38)")
+    assert "1 judged in" in printed
+    assert "<caption>(38)" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["figure 99"], "there is no 'figure 99'"),
+        (["--paper", "Khalil"], "no paper is called 'Khalil'"),
+        (["38", "--html", "."], "cannot write the page"),
+    ],
+)
+def test_check_refuses_what_is_not_there_and_exits_with_2(capsys, arguments, message):
+    assert cli.main(["check", *arguments]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_the_module_runs_as_a_program():
+    run = [sys.executable, "-m", "percept_obs.cli"]
+    asked = subprocess.run([*run, "--help"], capture_output=True, text=True, check=False)
+    assert asked.returncode == 0
+    assert "check" in asked.stdout
 
 
 @pytest.mark.parametrize("arguments", [[], ["labs"], ["lab", "--copyonly"]])

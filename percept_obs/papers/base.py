@@ -1,135 +1,21 @@
-"""A paper's ledger: what is printed, what the package derives, and the verdict that follows from both."""
+"""What papers print and what the package derives, in the same letters, and checks of one by the other."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from enum import StrEnum
-from functools import cache, cached_property
+from functools import cache
+from itertools import islice
 from typing import Any, ClassVar
+from xml.dom.minidom import Element
 
 import sympy as sp
 from sympy.core.relational import Relational
 from sympy.matrices.exceptions import ShapeError
 
-Printed = tuple[sp.Basic, ...]
-Values = dict[sp.Basic, sp.Basic]
-
-
-class Verdict(StrEnum):
-    """What a computation says about a printed statement."""
-
-    HOLDS = "holds"
-    MISPRINT = "misprint"
-    FALSE = "false as stated"
-    NOT_CHECKABLE = "not checkable"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """The result of a check: a verdict, and the numbers that it rests on."""
-
-    verdict: Verdict
-    numbers: Mapping[str, float] = field(default_factory=dict)
-
-
-Check = Callable[[Printed], Finding]
-
-
-def judged(holds: bool, otherwise: Verdict = Verdict.MISPRINT, numbers: Mapping[str, float] | None = None) -> Finding:
-    """The finding of a check that holds or not."""
-    return Finding(Verdict.HOLDS if holds else otherwise, numbers or {})
-
-
-@dataclass(frozen=True, eq=False)
-class Entry:
-    """A printed statement and how it is judged.
-
-    Parameters
-    ----------
-    place : str
-        Number of the equation, such as "(4)", or a few words that name the statement.
-    page, section : str
-        Where it stands.
-    says : str
-        What it says, in a few words.
-    printed : tuple of sympy relations
-        The formulas as they are printed; empty where the statement has none.
-    check : function of the printed formulas
-        Computes the finding.
-    expected : Verdict
-        The verdict that is recorded.
-    note : str
-        How the print was read, what is wrong, or why nothing can be computed.
-    correction : mapping of expressions to expressions
-        What is to be put in the place of what, in a misprint.
-    """
-
-    place: str
-    page: str
-    section: str
-    says: str
-    printed: Printed
-    check: Check
-    expected: Verdict
-    note: str = ""
-    correction: Values = field(default_factory=dict)
-
-    @property
-    def number(self) -> int | None:
-        """Number of the equation, if it has one."""
-        digits = re.fullmatch(r"\((\d+)\)", self.place)
-        return int(digits[1]) if digits else None
-
-    @cached_property
-    def finding(self) -> Finding:
-        """What the check finds in the printed formulas."""
-        return self.check(self.printed)
-
-    @property
-    def corrected(self) -> Printed:
-        """The printed formulas with the correction put in."""
-        return tuple(formula.xreplace(self.correction) for formula in self.printed)
-
-    @cached_property
-    def agrees(self) -> bool:
-        """Whether the computed verdict is the recorded one, and a misprint's correction is none."""
-        if self.finding.verdict != self.expected:
-            return False
-        mended = (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
-        return self.expected != Verdict.MISPRINT or self.check(self.corrected).verdict in mended
-
-    def _repr_latex_(self) -> str:
-        lines = r" \\ ".join(sp.latex(formula) for formula in self.printed)
-        return rf"$\displaystyle \begin{{gathered}}{lines}\end{{gathered}}$"
-
-
-@dataclass(frozen=True, eq=False)
-class Ledger:
-    """All entries of one paper: the numbered equations by number, then what is stated beside them by page.
-
-    Parameters
-    ----------
-    paper : str
-        Authors and year.
-    entries : tuple of Entry
-    """
-
-    paper: str
-    entries: tuple[Entry, ...]
-
-    def __post_init__(self) -> None:
-        if len({entry.place for entry in self.entries}) != len(self.entries):
-            raise ValueError(f"two entries of {self.paper} have the same place")
-        ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page)))
-        object.__setattr__(self, "entries", tuple(ordered))
-
-    def __getitem__(self, place: str) -> Entry:
-        for entry in self.entries:
-            if entry.place == place:
-                return entry
-        raise KeyError(f"{self.paper} has no entry {place!r}; it has {', '.join(e.place for e in self.entries)}")
+from percept_obs.checking.deciding import POINTS, points, rational
+from percept_obs.checking.points import key
+from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
 
 
 def column(*entries: Any) -> sp.ImmutableMatrix:
@@ -174,6 +60,7 @@ class _Scalar(sp.Function):
     """A number made of matrices; ``doit`` works out its value once the matrices are explicit."""
 
     shown: ClassVar[str]
+    spoken: ClassVar[str]
     value: ClassVar[Callable[..., sp.Expr]]
 
     def _eval_is_commutative(self) -> bool:
@@ -188,6 +75,15 @@ class _Scalar(sp.Function):
             return self.value(*parts)
         return self.func(*parts)
 
+    def _mathml_presentation(self, printer: Any) -> Element:
+        row = printer.dom.createElement("mrow")
+        for k, words in enumerate(self.spoken.split()):
+            if k:
+                row.appendChild(printer._print(self.args[k - 1]))
+            word = row.appendChild(printer.dom.createElement("mo"))
+            word.appendChild(printer.dom.createTextNode(words))
+        return row
+
     def _latex(self, printer: Any, exp: str = "") -> str:
         text = self.shown % tuple(map(printer.doprint, self.args))
         return rf"{text}^{{{exp}}}" if exp else text
@@ -197,6 +93,7 @@ class Norm(_Scalar):
     """Euclidean norm of a vector."""
 
     shown = r"\left\lVert %s \right\rVert"
+    spoken = "‖ ‖"
 
     @staticmethod
     def value(*matrices: sp.MatrixBase) -> sp.Expr:
@@ -208,6 +105,7 @@ class SumNorm(_Scalar):
     """Sum of the absolute values of a vector's entries, each written e sgn(e)."""
 
     shown = r"\left\lVert %s \right\rVert_1"
+    spoken = "‖ ‖₁"
 
     @staticmethod
     def value(*matrices: sp.MatrixBase) -> sp.Expr:
@@ -219,6 +117,7 @@ class Inner(_Scalar):
     """Inner product a^T b of two vectors."""
 
     shown = r"\left\langle %s, %s \right\rangle"
+    spoken = "⟨ , ⟩"
 
     @staticmethod
     def value(*matrices: sp.MatrixBase) -> sp.Expr:
@@ -231,6 +130,7 @@ class SmallestEigenvalue(_Scalar):
     """Smallest eigenvalue of a symmetric matrix of at most two rows."""
 
     shown = r"\lambda_{\min}\left\{ %s \right\}"
+    spoken = "λₘᵢₙ{ }"
 
     @staticmethod
     def value(*matrices: sp.MatrixBase) -> sp.Expr:
@@ -253,11 +153,23 @@ def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
 
 
 def vanishes(*expressions: sp.Expr) -> bool:
-    """Whether expressions are identically zero, decided exactly.
+    """Whether expressions are identically zero.
 
-    One point where one of them is not zero refutes the identity; only the algebra, which takes longer, can prove it.
+    Rational ones are decided at points modulo a prime, see `percept_obs.checking`: a "no" is certain, a "yes" wrong
+    with a probability below 2^-150.  For others, one point where it is not zero refutes an identity, and the algebra,
+    which takes longer, proves it.
     """
-    return not any(map(_is_refuted, expressions)) and all(map(_is_proven, expressions))
+    quick = [e for e in expressions if rational(e) and _told_apart(e)]
+    at = list(islice(points(*quick), POINTS))
+    if any(point(e) for e in quick for point in at):
+        return False
+    rest = [e for e in expressions if len(at) < POINTS or e not in quick]
+    return not any(map(_is_refuted, rest)) and all(map(_is_proven, rest))
+
+
+def _told_apart(expression: sp.Expr) -> bool:
+    """Whether no two letters of an expression have names that mean the same."""
+    return len({key(symbol.name) for symbol in expression.free_symbols}) == len(expression.free_symbols)
 
 
 def _somewhere(expression: sp.Expr) -> sp.Expr:
@@ -317,14 +229,13 @@ def identities(*derivations: Callable[[], Values]) -> Check:
         return is_identity(equation, derive())
 
     def check(printed: Printed) -> Finding:
-        return judged(all(holds(equation, derive) for derive in derivations for equation in printed))
+        """Put what the package derives in the place of each letter: both sides must be the same for all values."""
+        values = derivations[0]()
+        lines = ((line.lhs, values[line.lhs]) for line in printed if line.lhs in values)
+        agree = all(holds(equation, derive) for derive in derivations for equation in printed)
+        return Finding(Verdict.HOLDS if agree else Verdict.MISPRINT, derived=tuple(lines))
 
     return check
-
-
-def not_checkable(printed: Printed) -> Finding:
-    """The check of what no computation can decide; the entry's note says why."""
-    return Finding(Verdict.NOT_CHECKABLE)
 
 
 def separates(relation: sp.Basic, quantity: sp.Basic, below: float, above: float, values: Values) -> bool:

@@ -7,21 +7,8 @@ from itertools import permutations
 
 import sympy as sp
 
-from percept_obs.papers.base import (
-    Check,
-    Entry,
-    Finding,
-    Printed,
-    Values,
-    Verdict,
-    column,
-    equal,
-    identities,
-    is_identity,
-    judged,
-    vanishes,
-    vectors,
-)
+from percept_obs.papers.base import column, equal, identities, is_identity, vanishes, vectors
+from percept_obs.papers.entries import Check, Entry, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
 from percept_obs.structure.choice import OUTPUTS, d_s
 from percept_obs.system.motion import rigid
@@ -123,6 +110,7 @@ def nonsingular(number: int, *needed: str) -> Check:
     """
 
     def check(printed: Printed) -> Finding:
+        """The corollary's determinant, for any order of the axes: a power of ybar3 and d_s times the named velocity."""
         outcomes = []
         for axes in ORDERS:
             choice = COROLLARIES[number - 1].choice(axes)
@@ -136,17 +124,18 @@ def nonsingular(number: int, *needed: str) -> Check:
 
 
 def cells(printed: Printed) -> Finding:
-    """Table 1: with a camera that stands still the cases of IV and V lose their determinant, those of VI keep it."""
+    """Table 1: what of v_p is free in each case, and which determinants vanish where the camera stands still."""
     still = dict.fromkeys(CAMERA, sp.S.Zero)
-    cells_ = {"IV": ("dynamic", "semigeneral"), "V": ("dynamic", "general"), "VI": ("general", "general")}
-    outcomes = []
+    free, lost = {}, {}
     for corollary in COROLLARIES:
-        section = corollary.section.split(".")[0]
-        outcomes.append((corollary.camera, corollary.object) == cells_[section])
-        lost = vanishes(corollary.choice().determinant.xreplace(still))
-        # The second step of IV takes d_s from the first one.
-        outcomes.append(lost == (section != "VI" and d_s.name in corollary.unknown))
-    return judged(all(outcomes), Verdict.FALSE, {"cases": len(COROLLARIES)})
+        free[corollary.section] = 3 - len(corollary.zero)
+        lost[corollary.section] = vanishes(corollary.choice().determinant.xreplace(still))
+    # semigeneral: still first, then general; dynamic: the camera has to move, but where d_s is known already
+    semigeneral = free["IV.A"] == 0 and free["IV.B"] == 3
+    general = all(free[section] > 0 for section in free if not section.startswith("IV"))
+    dynamic = {section for section, vanishing in lost.items() if vanishing} == {"IV.A", "V.A", "V.B"}
+    numbers = {f"components of v_p, {section}": count for section, count in free.items()}
+    return judged(semigeneral and general and dynamic, Verdict.FALSE, numbers)
 
 
 def one_more_dimension(printed: Printed) -> Finding:
@@ -170,208 +159,96 @@ def solvable(number: int, page: str, note: str, *needed: str) -> Entry:
     """What a corollary says of its determinant: that it vanishes where the named velocity does, or nowhere."""
     says = f"solvable if {needed[0]} is not 0" if needed else "always solvable"
     section, check = COROLLARIES[number - 1].section, nonsingular(number, *needed)
-    return Entry(f"corollary {number}", page, section, says, (), check, Verdict.HOLDS, note)
+    return at(f"corollary {number}", page, section, says)((), check, note)
 
 
 INVERSE_G = Omega_g.inv() * ghat
 AXES = "for any order of the axes"
 
 ENTRIES = (
-    Entry(
-        "Table 1",
-        "5",
-        "III",
-        "which section is for which motions",
-        (),
-        cells,
-        Verdict.HOLDS,
-        "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A",
+    at("Table 1", "5", "III", "which section is for which motions")(
+        (), cells, "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A"
     ),
-    Entry(
-        "(22)",
-        "6",
-        "IV.A",
-        "static object",
-        (equal(Omega, Omega2), equal(g, Omega1 * v_c * d_s)),
-        holds_in(1),
-        Verdict.HOLDS,
-    ),
-    Entry(
-        "(23)",
-        "6",
-        "IV.A",
-        "d_s from one known component of v_c",
+    at("(22)", "6", "IV.A", "static object")((equal(Omega, Omega2), equal(g, Omega1 * v_c * d_s)), holds_in(1)),
+    at("(23)", "6", "IV.A", "d_s from one known component of v_c")(
         (
             equal(column(dhat_s), (e_i.T * v_c).inv() * e_i.T * Omega1.inv() * ghat),
             equal(column(dhat_s), e_i.T * Omega1.inv() * ghat / v_ci),
         ),
         scale_from_what_is_known,
-        Verdict.HOLDS,
         AXES,
     ),
-    Entry("(24)", "6", "IV.A", "inverse depth", (equal(yhat3, dhat_s * ybar3),), holds_in(1), Verdict.HOLDS),
-    Entry(
-        "(25)",
-        "7",
-        "IV.A",
-        "the camera's velocity",
-        (equal(vhat_c, Omega1.inv() * ghat / dhat_s),),
-        holds_in(1),
-        Verdict.HOLDS,
-    ),
+    at("(24)", "6", "IV.A", "inverse depth")((equal(yhat3, dhat_s * ybar3),), holds_in(1)),
+    at("(25)", "7", "IV.A", "the camera's velocity")((equal(vhat_c, Omega1.inv() * ghat / dhat_s),), holds_in(1)),
     solvable(1, "6", f"determinant +-ybar3^4 v_ci, {AXES}", "v_ci"),
-    Entry(
-        "(26)",
-        "7",
-        "IV.B",
-        "object in general motion",
-        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * v_p * d_s)),
-        holds_in(2),
-        Verdict.HOLDS,
+    at("(26)", "7", "IV.B", "object in general motion")(
+        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * v_p * d_s)), holds_in(2)
     ),
-    Entry(
-        "(27)",
-        "7",
-        "IV.B",
-        "the object's velocity",
-        (equal(vhat_p, Omega3.inv() * ghat / dhat_s),),
-        holds_in(2),
-        Verdict.HOLDS,
-    ),
+    at("(27)", "7", "IV.B", "the object's velocity")((equal(vhat_p, Omega3.inv() * ghat / dhat_s),), holds_in(2)),
     solvable(2, "7", "determinant -ybar3^4; it takes d_s > 0 and the camera's velocity of now"),
-    Entry(
-        "(28)",
-        "7",
-        "V.A",
-        "object on a plane, camera known",
+    at("(28)", "7", "V.A", "object on a plane, camera known")(
         (
             equal(Omega, Omega2),
             equal(g, Omega_g * column(d_s, v_pi * d_s, v_pj * d_s)),
             equal(Omega_g, side_by_side(Omega1 * v_c, Omega3i, Omega3j)),
         ),
         holds_in(3),
-        Verdict.HOLDS,
         AXES,
     ),
-    Entry(
-        "(29)",
-        "7",
-        "V.A",
-        "d_s and the object's velocity",
-        (equal(column(dhat_s, vhat_pi * dhat_s, vhat_pj * dhat_s), INVERSE_G),),
-        holds_in(3),
-        Verdict.HOLDS,
+    at("(29)", "7", "V.A", "d_s and the object's velocity")(
+        (equal(column(dhat_s, vhat_pi * dhat_s, vhat_pj * dhat_s), INVERSE_G),), holds_in(3)
     ),
     solvable(3, "7", f"determinant +-ybar3^4 v_ck, {AXES}", "v_ck"),
-    Entry(
-        "(30)",
-        "8",
-        "V.B",
-        "object on a line, camera partly known",
+    at("(30)", "8", "V.B", "object on a line, camera partly known")(
         (
             equal(Omega, Omega2),
             equal(g, Omega_g * column(d_s, v_ck * d_s, v_pi * d_s)),
             equal(Omega_g, side_by_side(Omega1i * v_ci + Omega1j * v_cj, Omega1k, Omega3i)),
         ),
         holds_in(4),
-        Verdict.HOLDS,
         AXES,
     ),
-    Entry(
-        "(31)",
-        "8",
-        "V.B",
-        "d_s and both unknown velocities",
-        (equal(column(dhat_s, vhat_ck * dhat_s, vhat_pi * dhat_s), INVERSE_G),),
-        holds_in(4),
-        Verdict.HOLDS,
+    at("(31)", "8", "V.B", "d_s and both unknown velocities")(
+        (equal(column(dhat_s, vhat_ck * dhat_s, vhat_pi * dhat_s), INVERSE_G),), holds_in(4)
     ),
     solvable(4, "8", f"determinant +-ybar3^4 v_cj, {AXES}; v_ci drops out of it", "v_cj"),
-    Entry(
-        "(32)",
-        "9",
-        "VI.A",
-        "range and camera known",
-        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * d_s * v_p)),
-        holds_in(5),
-        Verdict.HOLDS,
+    at("(32)", "9", "VI.A", "range and camera known")(
+        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * d_s * v_p)), holds_in(5)
     ),
-    Entry(
-        "(33)",
-        "9",
-        "VI.A",
-        "the object's velocity",
-        (equal(vhat_p, Omega3.inv() * ghat / d_s),),
-        holds_in(5),
-        Verdict.HOLDS,
-    ),
+    at("(33)", "9", "VI.A", "the object's velocity")((equal(vhat_p, Omega3.inv() * ghat / d_s),), holds_in(5)),
     solvable(5, "9", "determinant -d_s^3 ybar3^4"),
-    Entry(
-        "(34)",
-        "10",
-        "VI.B",
-        "range known, object on a plane",
+    at("(34)", "10", "VI.B", "range known, object on a plane")(
         (
             equal(Omega, Omega1i * v_ci * d_s + Omega1j * v_cj * d_s + Omega2),
             equal(g, Omega_g * column(v_ck, v_pi, v_pj)),
             equal(Omega_g, side_by_side(Omega1k * d_s, Omega3i * d_s, Omega3j * d_s)),
         ),
         holds_in(6),
-        Verdict.HOLDS,
         AXES,
     ),
-    Entry(
-        "(35)",
-        "10",
-        "VI.B",
-        "the unknown velocities",
-        (equal(column(vhat_ck, vhat_pi, vhat_pj), INVERSE_G),),
-        holds_in(6),
-        Verdict.HOLDS,
+    at("(35)", "10", "VI.B", "the unknown velocities")(
+        (equal(column(vhat_ck, vhat_pi, vhat_pj), INVERSE_G),), holds_in(6)
     ),
     solvable(6, "10", f"determinant +-d_s^3 ybar3^4, {AXES}"),
-    Entry(
-        "Assumption 11",
-        "10",
-        "VI.C",
-        "which of v_c are unknown",
+    at("Assumption 11", "10", "VI.C", "which of v_c are unknown")(
         (equal(column(first_unknown, second_unknown), column(v_ci, v_ck)),),
         holds_in(7),
-        Verdict.MISPRINT,
         "v_cj in place of v_ci, which is known and along the object's line (as scanned)",
-        {v_ci: v_cj},
+        Verdict.MISPRINT,
+        correction={v_ci: v_cj},
     ),
-    Entry(
-        "(36)",
-        "11",
-        "VI.C",
-        "range known, object on a line",
+    at("(36)", "11", "VI.C", "range known, object on a line")(
         (
             equal(Omega, Omega1i * v_ci * d_s + Omega2),
             equal(g, Omega_g * column(v_cj, v_ck, v_pi)),
             equal(Omega_g, side_by_side(Omega1j * d_s, Omega1k * d_s, Omega3i * d_s)),
         ),
         holds_in(7),
-        Verdict.HOLDS,
         AXES,
     ),
-    Entry(
-        "(37)",
-        "11",
-        "VI.C",
-        "the unknown velocities",
-        (equal(column(vhat_cj, vhat_ck, vhat_pi), INVERSE_G),),
-        holds_in(7),
-        Verdict.HOLDS,
+    at("(37)", "11", "VI.C", "the unknown velocities")(
+        (equal(column(vhat_cj, vhat_ck, vhat_pi), INVERSE_G),), holds_in(7)
     ),
     solvable(7, "11", f"determinant +-d_s^3 ybar3^4, {AXES}"),
-    Entry(
-        "Remark 2",
-        "11",
-        "VI.C",
-        "a known range frees one more component of v_p",
-        (),
-        one_more_dimension,
-        Verdict.HOLDS,
-    ),
+    at("Remark 2", "11", "VI.C", "a known range frees one more component of v_p")((), one_more_dimension),
 )

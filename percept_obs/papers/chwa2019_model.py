@@ -7,20 +7,8 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.papers.base import (
-    Entry,
-    Finding,
-    Printed,
-    Values,
-    Verdict,
-    column,
-    dot,
-    equal,
-    identities,
-    judged,
-    less,
-    vectors,
-)
+from percept_obs.papers.base import column, dot, equal, identities, less, vectors
+from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, scaled_dynamics
 from percept_obs.structure.choice import OUTPUTS, d_s
 from percept_obs.system.motion import rigid
@@ -189,151 +177,76 @@ OMEGA2 = sp.ImmutableMatrix([[-y1 * y2, 1 + y1**2, -y2], [-(1 + y2**2), y1 * y2,
 OMEGA2_MENDED = sp.ImmutableMatrix([*OMEGA2[:5], y1, *OMEGA2[6:]]).reshape(3, 3)
 
 ENTRIES = (
-    Entry("(1)", "3", "II", "pixels of a point", (equal(p, A_c * m),), identities(in_pixels), Verdict.HOLDS),
-    Entry(
-        "m",
-        "3",
-        "II",
-        "normalised coordinates",
-        (equal(m, column(X / Z, Y / Z, 1)),),
-        identities(in_pixels),
-        Verdict.HOLDS,
+    at("(1)", "3", "II", "pixels of a point")((equal(p, A_c * m),), identities(in_pixels)),
+    at("m", "3", "II", "normalised coordinates")(
+        (equal(m, column(X / Z, Y / Z, 1)),), identities(in_pixels), known=Known.DEFINITION
     ),
-    Entry(
-        "(2)",
-        "3",
-        "II",
-        "the point in the camera's frame",
+    at("(2)", "3", "II", "the point in the camera's frame")(
         (equal(mbar, x_f + R * x_O),),
         identities(from_the_pose),
-        Verdict.HOLDS,
         "R is the transpose of the camera's attitude, x_f is not where the camera is",
     ),
-    Entry(
-        "(3)",
-        "3",
-        "II",
-        "relative motion",
+    at("(3)", "3", "II", "relative motion")(
         (equal(dot(mbar), w_cross * mbar + v_r),),
         identities(in_motion, from_the_pose),
-        Verdict.HOLDS,
         "also from (2), with R' = [w] R",
     ),
-    Entry(
-        "(4)",
-        "3",
-        "II",
-        "matrix of the cross product",
-        (equal(w_cross, W_MATRIX),),
-        identities(in_motion),
-        Verdict.HOLDS,
+    at("(4)", "3", "II", "matrix of the cross product")(
+        (equal(w_cross, W_MATRIX),), identities(in_motion), known=Known.DEFINITION
     ),
-    Entry(
-        "v_r",
-        "3",
-        "II",
-        "relative velocity",
-        (equal(v_r, v_p - v_c),),
-        identities(in_motion, from_the_pose),
-        Verdict.HOLDS,
+    at("v_r", "3", "II", "relative velocity")(
+        (equal(v_r, v_p - v_c),), identities(in_motion, from_the_pose), known=Known.DEFINITION
     ),
-    Entry(
-        "w",
-        "3",
-        "II",
-        "w is the camera's angular velocity",
+    at("w", "3", "II", "w is the camera's angular velocity")(
         (equal(w, w_camera),),
         identities(from_the_pose),
-        Verdict.MISPRINT,
         "with (3) it is the negative of it, as seen from a camera that turns",
-        {w_camera: -w_camera},
+        Verdict.MISPRINT,
+        correction={w_camera: -w_camera},
     ),
-    Entry(
-        "y",
-        "3",
-        "II",
-        "coordinates",
-        (equal(y, column(X / Z, Y / Z, 1 / Z)),),
-        identities(coordinates),
-        Verdict.HOLDS,
+    at("y", "3", "II", "coordinates")(
+        (equal(y, column(X / Z, Y / Z, 1 / Z)),), identities(coordinates), known=Known.DEFINITION
     ),
-    Entry(
-        "(5)",
-        "3",
-        "II",
-        "rate of the coordinates",
+    at("(5)", "3", "II", "rate of the coordinates")(
         (equal(dot(y), MOTION * column(v_c1, v_c2, v_c3, w1, w2, w3, v_p1, v_p2, v_p3)),),
         identities(rates),
-        Verdict.HOLDS,
         "columns 6 to 9 merged by the scan",
     ),
-    Entry(
-        "(6)",
-        "4",
-        "II",
-        "scaled inverse depth",
+    at("(6)", "4", "II", "scaled inverse depth")(
         (equal(ybar3, y3 / d_s),),
         identities(from_a_patch),
-        Verdict.HOLDS,
         "it takes several image points: here those of a planar patch, which give its homography",
     ),
-    Entry(
-        "(7)",
-        "4",
-        "II",
-        "rate of the scaled coordinates",
+    at("(7)", "4", "II", "rate of the scaled coordinates")(
         (equal(dot(ybar), Omega + g), equal(Omega + g, Omega1 * v_c * d_s + Omega2 + Omega3 * v_p * d_s)),
         identities(*map(split_as, range(1, 8))),
-        Verdict.HOLDS,
         "split as in each of the seven corollaries",
     ),
-    Entry(
-        "Omega1",
-        "4",
-        "II",
-        "what multiplies the camera's velocity",
+    at("Omega1", "4", "II", "what multiplies the camera's velocity")(
         (equal(Omega1, sp.ImmutableMatrix([[-ybar3, 0, y1 * ybar3], [0, -ybar3, y2 * ybar3], [0, 0, ybar3**2]])),),
         identities(omegas),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "Omega2",
-        "4",
-        "II",
-        "what the camera's turning adds",
+    at("Omega2", "4", "II", "what the camera's turning adds")(
         (equal(Omega2, OMEGA2 * w),),
         identities(omegas),
-        Verdict.MISPRINT,
         "second row: y1 in place of the last -y2, as in (5) (as scanned)",
-        {OMEGA2: OMEGA2_MENDED},
+        Verdict.MISPRINT,
+        correction={OMEGA2: OMEGA2_MENDED},
     ),
-    Entry(
-        "Omega3",
-        "4",
-        "II",
-        "what multiplies the object's velocity",
+    at("Omega3", "4", "II", "what multiplies the object's velocity")(
         (equal(Omega3, sp.ImmutableMatrix([[ybar3, 0, -y1 * ybar3], [0, ybar3, -y2 * ybar3], [0, 0, -(ybar3**2)]])),),
         identities(omegas),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "Omega1 to Omega3",
-        "4",
-        "II",
-        "all three are nonsingular",
+    at("Omega1 to Omega3", "4", "II", "all three are nonsingular")(
         (),
         all_have_full_rank,
-        Verdict.FALSE,
         "Omega2 is a vector, and its matrix sends the line of sight (y1, y2, 1) to 0",
+        Verdict.FALSE,
     ),
-    Entry(
-        "bound on g",
-        "4",
-        "III",
-        "g is bounded, since the velocities are",
+    at("bound on g", "4", "III", "g is bounded, since the velocities are")(
         (less(g_norm, gamma),),
         bounded_by_velocities,
-        Verdict.FALSE,
         "it grows as ybar3^2: a point that comes near breaks any gamma",
+        Verdict.FALSE,
     ),
 )

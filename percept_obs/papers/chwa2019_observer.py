@@ -14,21 +14,8 @@ import sympy as sp
 from percept_obs.compile import vectorised
 from percept_obs.observers import Observer
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
-from percept_obs.papers.base import (
-    Check,
-    Entry,
-    Finding,
-    Printed,
-    Values,
-    Verdict,
-    at_most,
-    column,
-    dot,
-    equal,
-    identities,
-    judged,
-    vanishes,
-)
+from percept_obs.papers.base import at_most, column, dot, equal, identities, vanishes
+from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.system.forms import CanonicalForm
 
 t = sp.Symbol("t", real=True)
@@ -104,6 +91,7 @@ def follow(derive: Callable[[], Values]) -> Check:
     """A check that holds when every printed equation is an identity in the derived values."""
 
     def check(printed: Printed) -> Finding:
+        """Put the package's equations in the place of each letter: both sides must be the same for all values."""
         return identities(derive)(in_tanh(printed))
 
     return check
@@ -122,6 +110,7 @@ def drops(*gaps: sp.Expr) -> Check:
     """A check that each printed relation, an equality or a bound, drops just this from its left side, which is >= 0."""
 
     def check(printed: Printed) -> Finding:
+        """What each step drops from its left side, with the package's error dynamics put in."""
         values = error_dynamics()
         outcomes = [len(printed) == len(gaps)]
         for line, gap in zip(in_tanh(printed), gaps, strict=False):
@@ -202,20 +191,6 @@ def decreases_outside(printed: Printed) -> Finding:
     return judged(at_the_bound and kinds and vanishes(rest_of_20))
 
 
-def decreases_by_norm(printed: Printed) -> Finding:
-    """(21) for three entries, one of them beyond the bound and two inside: the rate of V against its bound."""
-    _, decrease = printed
-    share = sp.Rational(1, 2)
-    at = GAINS | {t: 0, s: 0, g: share * GAINS[gamma]}
-    edge = sp.atanh(share)
-    entries = (edge, edge / 2, edge / 2)
-    rate = sum(error_dynamics()[Vdot].subs(at | {s_e: entry}) for entry in entries)
-    bound = sum(decrease.rhs.subs(at | {s_e: entry}) for entry in entries)
-    numbers = {"|s_e| over its bound": float(sp.sqrt(sum(entry**2 for entry in entries)) / edge)}
-    numbers |= {"rate of V": float(rate), "(21)": float(bound)}
-    return judged(bool(rate <= bound), Verdict.FALSE, numbers)
-
-
 GAINS = {gain.symbol: sp.Rational(str(gain.value)) for gain in observer().gains}
 CASE_G = 0.05 * 10.4 * 0.23
 """The largest entry of g in the experiment's first case, in 1/s."""
@@ -233,37 +208,23 @@ OF_S = gamma * SLOPE * (1 - sp.tanh(SLOPE * s_e) ** 2) * (gamma * sp.Abs(s) - s 
 ONE_ENTRY = "for one entry; alpha is the bound of |g| over gamma"
 
 ENTRIES = (
-    Entry("(8)", "4", "III", "estimate of ybar", (equal(dot(yhat), Omega + ghat),), follow(equations), Verdict.HOLDS),
-    Entry("e_s", "4", "III", "estimation error", (equal(e_s, ybar - yhat),), follow(equations), Verdict.HOLDS),
-    Entry("(9)", "4", "III", "integral sliding surface", (equal(s_e, e_s + e_sI),), follow(equations), Verdict.HOLDS),
-    Entry("(10)", "4", "III", "its integral", (equal(dot(e_sI), PUSH),), follow(equations), Verdict.HOLDS),
-    Entry(
-        "e_sI(0)",
-        "4",
-        "III",
-        "start of the integral",
-        (equal(e_sI0, -e_s0),),
-        starts_at_zero,
-        Verdict.HOLDS,
-        "so that s_e(0) = 0",
+    at("(8)", "4", "III", "estimate of ybar")(
+        (equal(dot(yhat), Omega + ghat),), follow(equations), known=Known.IMPLEMENTED
     ),
-    Entry(
-        "s_e = 0 for ever",
-        "4",
-        "III",
-        "s_e starts at zero and stays there",
-        (),
-        rate_at_zero,
-        Verdict.FALSE,
-        "s = 0 can be kept, s_e not: it leaves zero at the rate g",
+    at("e_s", "4", "III", "estimation error")((equal(e_s, ybar - yhat),), follow(equations), known=Known.DEFINITION),
+    at("(9)", "4", "III", "integral sliding surface")(
+        (equal(s_e, e_s + e_sI),), follow(equations), known=Known.IMPLEMENTED
     ),
-    Entry("(11)", "4", "III", "estimate of g", (equal(ghat, k1 * s_e - v + PUSH),), follow(equations), Verdict.HOLDS),
-    Entry("(12)", "4", "III", "pseudo-input", (equal(dot(v), u),), follow(equations), Verdict.HOLDS),
-    Entry(
-        "(13)",
-        "4",
-        "III",
-        "its rate",
+    at("(10)", "4", "III", "its integral")((equal(dot(e_sI), PUSH),), follow(equations), known=Known.IMPLEMENTED),
+    at("e_sI(0)", "4", "III", "start of the integral")((equal(e_sI0, -e_s0),), starts_at_zero, "so that s_e(0) = 0"),
+    at("s_e = 0 for ever", "4", "III", "s_e starts at zero and stays there")(
+        (), rate_at_zero, "s = 0 can be kept, s_e not: it leaves zero at the rate g", Verdict.FALSE
+    ),
+    at("(11)", "4", "III", "estimate of g")(
+        (equal(ghat, k1 * s_e - v + PUSH),), follow(equations), known=Known.IMPLEMENTED
+    ),
+    at("(12)", "4", "III", "pseudo-input")((equal(dot(v), u),), follow(equations), known=Known.IMPLEMENTED),
+    at("(13)", "4", "III", "its rate")(
         (
             equal(
                 u,
@@ -274,118 +235,48 @@ ENTRIES = (
             ),
         ),
         follow(equations),
-        Verdict.HOLDS,
+        known=Known.IMPLEMENTED,
     ),
-    Entry("(14)", "4", "III", "second sliding surface", (equal(s, v + PULL),), follow(equations), Verdict.HOLDS),
-    Entry(
-        "v(0)",
-        "4",
-        "III",
-        "start of the pseudo-input",
-        (equal(v0, -gamma * sp.tanh(a * s_e0)),),
-        slides_at_once,
-        Verdict.HOLDS,
-        "so that s(0) = 0",
+    at("(14)", "4", "III", "second sliding surface")((equal(s, v + PULL),), follow(equations), known=Known.IMPLEMENTED),
+    at("v(0)", "4", "III", "start of the pseudo-input")(
+        (equal(v0, -gamma * sp.tanh(a * s_e0)),), slides_at_once, "so that s(0) = 0"
     ),
-    Entry(
-        "s = 0 for ever",
-        "5",
-        "III",
-        "s remains at zero",
-        (),
-        attracts,
-        Verdict.HOLDS,
-        "with the listed gains, where |g| <= gamma",
+    at("s = 0 for ever", "5", "III", "s remains at zero")((), attracts, "with the listed gains, where |g| <= gamma"),
+    at("(15)", "6", "III", "rate of s_e")(
+        (equal(dot(s_e), g - ghat + PUSH), equal(dot(s_e), g - k1 * s_e + s - PULL)), follow(error_dynamics)
     ),
-    Entry(
-        "(15)",
-        "6",
-        "III",
-        "rate of s_e",
-        (equal(dot(s_e), g - ghat + PUSH), equal(dot(s_e), g - k1 * s_e + s - PULL)),
-        follow(error_dynamics),
-        Verdict.HOLDS,
+    at("(16)", "6", "III", "rate of V1 = s_e^2 / 2")(
+        (at_most(V1dot, -k1 * s_e**2 + s_e * s + LEFT_OVER),), drops(OF_SE), ONE_ENTRY
     ),
-    Entry(
-        "(16)",
-        "6",
-        "III",
-        "rate of V1 = s_e^2 / 2",
-        (at_most(V1dot, -k1 * s_e**2 + s_e * s + LEFT_OVER),),
-        drops(OF_SE),
-        Verdict.HOLDS,
-        ONE_ENTRY,
-    ),
-    Entry(
-        "(17)",
-        "6",
-        "III",
-        "rate of s",
+    at("(17)", "6", "III", "rate of s")(
         (equal(dot(s), u + gamma * SECH2 * (SLOPE * (g - ghat + PULL) + b * s_e)),),
         follow(error_dynamics),
-        Verdict.MISPRINT,
         "e_s in place of s_e in the hyperbolic tangent, as in (15); (18) follows from that only",
-        {g - ghat + PULL: g - ghat + PUSH},
+        Verdict.MISPRINT,
+        correction={g - ghat + PULL: g - ghat + PUSH},
     ),
-    Entry(
-        "(18)",
-        "6",
-        "III",
-        "rate of s with (13) put in",
-        (
-            equal(
-                dot(s),
-                gamma * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.sign(s) - k2 * sp.sign(s) - s_e,
-            ),
-        ),
+    at("(18)", "6", "III", "rate of s with (13) put in")(
+        (equal(dot(s), gamma * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.sign(s) - k2 * sp.sign(s) - s_e),),
         follow(error_dynamics),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "(19)",
-        "6",
-        "III",
-        "rate of V2 = s^2 / 2",
+    at("(19)", "6", "III", "rate of V2 = s^2 / 2")(
         (
             equal(
-                V2dot,
-                gamma * s * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.Abs(s) - k2 * sp.Abs(s) - s * s_e,
+                V2dot, gamma * s * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.Abs(s) - k2 * sp.Abs(s) - s * s_e
             ),
             at_most(V2dot, -k2 * sp.Abs(s) - s * s_e),
         ),
         drops(sp.S.Zero, OF_S),
-        Verdict.HOLDS,
         ONE_ENTRY,
     ),
-    Entry("(20)", "6", "III", "rate of V = V1 + V2", (ENERGY,), drops(OF_SE + OF_S), Verdict.HOLDS, ONE_ENTRY),
-    Entry(
-        "(21)",
-        "6",
-        "III",
-        "V decreases where s_e is beyond a bound",
-        OUTSIDE,
-        decreases_outside,
-        Verdict.HOLDS,
-        "for one entry, where |s_e| is at least the bound",
+    at("(20)", "6", "III", "rate of V = V1 + V2")((ENERGY,), drops(OF_SE + OF_S), ONE_ENTRY),
+    at("(21)", "6", "III", "V decreases where s_e is beyond a bound")(
+        OUTSIDE, decreases_outside, "for one entry, where |s_e| is at least the bound"
     ),
-    Entry(
-        "(21) for a vector",
-        "6",
-        "III",
-        "the same with the norm of s_e",
-        OUTSIDE,
-        decreases_by_norm,
-        Verdict.FALSE,
-        "every single entry has to be beyond the bound; g = gamma / 2 in all entries, s = 0",
-    ),
-    Entry(
-        "end of the proof",
-        "6",
-        "III",
-        "|s_e| is beyond its bound as time goes on",
+    at("end of the proof", "6", "III", "|s_e| is beyond its bound as time goes on")(
         (LAYER, sp.GreaterThan(sp.Abs(s_e), esbar, evaluate=False)),
         stays_outside,
-        Verdict.FALSE,
         "it rests inside, so (21) does not hold there; s_e falls as 1/(a + b t) with the bound, no faster",
+        Verdict.FALSE,
     ),
 )

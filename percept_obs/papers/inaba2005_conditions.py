@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import sympy as sp
 
 from percept_obs.observability.gramian import gramian as windowed
 from percept_obs.observability.gramian import linear_gramian as windowed_linear
-from percept_obs.papers.base import (
-    Check,
-    Entry,
-    Finding,
-    Norm,
-    Printed,
-    Values,
-    Verdict,
-    at_most,
-    column,
-    equal,
-    filled_in,
-    identities,
-    judged,
-    vanishes,
-)
-from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block
-from percept_obs.points.scenarios import along_the_line_of_sight
+from percept_obs.papers.base import Norm, at_most, column, equal, explicit, filled_in, identities, vanishes
+from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict, at, judged
+from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, rigid_body
+from percept_obs.points.manoeuvre import Manoeuvre
+from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 from percept_obs.recording import record
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import pinhole
@@ -43,6 +32,7 @@ Phi_ = sp.Function("Phi", real=True)
 n, p = sp.symbols("n p", integer=True, positive=True)
 B, C, Phi = sp.MatrixSymbol("B", 2 * p, 3 * p), sp.MatrixSymbol("C", 3 * p, n), sp.MatrixSymbol("Phi", n, n)
 S = sp.MatrixSymbol("S", 3 * p, 3 * p)
+x = sp.MatrixSymbol("x", n, 1)
 y1, y2 = sp.MatrixSymbol("y1", 2, 1), sp.MatrixSymbol("y2", 2, 1)
 IMAGES = {y1: column(y_11, y_21), y2: column(y_12, y_22)}
 
@@ -72,6 +62,7 @@ def gathers(what: str, bound: sp.Symbol) -> Check:
     """
 
     def check(printed: Printed) -> Finding:
+        """The integrand is the square of what an error of the start does later to what is seen."""
         (line,) = printed
         if not (isinstance(line, sp.GreaterThan) and isinstance(line.lhs, sp.Integral)):
             return judged(False)
@@ -110,7 +101,8 @@ def not_needed(printed: Printed) -> Finding:
     seen = (observer.form.B * observer.form.stacked).xreplace(values).xreplace(images) * point
     rate = observer.error_dynamics().xreplace(values).xreplace(images)
     numbers = {"what (14) gathers of it": float(seen.norm()), "rate of the error's logarithm in 1/s": float(rate[0])}
-    return judged(not (seen.is_zero_matrix and rate == -point), Verdict.FALSE, numbers)
+    decays = seen.is_zero_matrix and rate == -point
+    return Finding(Verdict.NOT_CHECKABLE if decays else Verdict.FALSE, numbers)
 
 
 @cache
@@ -149,6 +141,50 @@ def largest_at(size: sp.Expr) -> sp.Expr:
     return sp.factor(eigenvalues()[lambda3].subs({y_11: size, y_21: 0}))
 
 
+def bounded_as_a_matrix(printed: Printed) -> Finding:
+    """(1 + y_sup^2) I - S has no negative eigenvalue where |y| = y_sup, and one that is zero: no smaller bound does."""
+    upper, lower = printed
+    if not (isinstance(upper, sp.LessThan) and isinstance(lower, sp.LessThan)):
+        return judged(False)
+    block = BLOCK.S.xreplace(dict(zip(BLOCK.y, (ysup, sp.S.Zero), strict=True)))
+    gaps = []
+    for line in printed:
+        left, right = (side.xreplace({p: sp.S.One}).xreplace({sp.MatrixSymbol("S", 3, 3): block}) for side in line.args)
+        gap = explicit(right) - explicit(left)
+        gaps.append(set(gap.eigenvals()))
+    expected = ({sp.S.Zero, ysup**2, 1 + ysup**2}, {sp.S.Zero, sp.S.One, 1 + ysup**2})
+    return judged(tuple(gaps) == expected)
+
+
+def what_is_seen_of_the_state() -> Values:
+    """B C x of a state whose images are those in B."""
+    form = one_point().form
+    images = dict(zip(form.y, form.H(form.state), strict=True))
+    return {B: form.B.xreplace(images), C: form.stacked, x: column(*form.state), p: sp.S.One}
+
+
+def nothing_of_another(printed: Printed) -> Finding:
+    """Images that two states share: what B C makes of either is 0, so (14), of the difference, leaves none."""
+    seen = explicit(B * C * x, what_is_seen_of_the_state())
+    least = windowed(record(moving_body(1), 16.0), 8.0).least
+    return judged(vanishes(*seen) and least > 0.1, Verdict.FALSE, {"least of (14) over 8 s, one point": least})
+
+
+def without_input(printed: Printed) -> Finding:
+    """With v = 0 the state is Phi x(t0), of which B C makes 0: (14) fails for any number of points."""
+    seen = explicit(B * C * x, what_is_seen_of_the_state())
+    numbers = {}
+    for count in (1, 4):
+        body, (turns, _, spin) = moving_body(count), Manoeuvre().velocities
+        scenario = replace(body, form=rigid_body(count, turns, None, spin))
+        recording = record(scenario, 8.0)
+        numbers[f"least of (14), v = 0, p = {count}"] = windowed(recording, 8.0).least
+        sizes = np.linalg.norm(scenario.coordinates(recording.time), axis=-1)
+        numbers[f"largest |x(t)| / |x(0)|, p = {count}"] = float(sizes.max() / sizes[0])
+    nothing = vanishes(*seen) and max(abs(v) for name, v in numbers.items() if "least" in name) < 1e-9
+    return judged(nothing, Verdict.FALSE, numbers)
+
+
 def bounded_by_its_edge(printed: Printed) -> Finding:
     """The bound is met by an image at the largest distance from the centre, and no smaller one would do."""
     (line,) = printed
@@ -178,51 +214,27 @@ def gramian(bound: sp.Symbol, *factors: sp.MatrixExpr) -> sp.GreaterThan:
 SUP = "y_sup for the largest |y(k)|; exponents lost by the scan"
 
 ENTRIES = (
-    Entry(
-        "Assumption 3.1 (i)",
-        "3",
-        "3",
-        "Lyapunov stable: Phi is bounded for all t, s",
+    at("Assumption 3.1 (i)", "3", "3", "Lyapunov stable: Phi is bounded for all t, s")(
         (at_most(sp.Abs(Phi_(t, s)), b),),
         stable_both_ways,
-        Verdict.FALSE,
         "stability bounds it for t >= s only; Theorem 3.4 needs the print, see below",
+        Verdict.FALSE,
     ),
-    Entry(
-        "(14)",
-        "4",
-        "3",
-        "what a window's images tell of the state",
+    at("(14)", "4", "3", "what a window's images tell of the state")(
         (gramian(epsilon, Phi.T, C.T, B.T, B, C, Phi),),
         gathers("images", epsilon),
-        Verdict.HOLDS,
         "one point, two states, all letters; least eigenvalues of two examples in Theorem 3.4 (ii)",
     ),
-    Entry(
-        "Remark 3.2",
-        "4",
-        "3",
-        "the conditions are necessary and/or reasonable",
+    at("Remark 3.2", "4", "3", "the conditions are necessary and/or reasonable")(
         (),
         not_needed,
-        Verdict.FALSE,
-        "reasonable, not necessary: what decays by itself need not be seen",
+        "reasonable is a matter of taste; necessary they are not, for what decays by itself need not be seen",
+        Verdict.NOT_CHECKABLE,
     ),
-    Entry(
-        "Proposition 3.3",
-        "4",
-        "3",
-        "(14) makes (C, A) uniformly observable",
-        (gramian(epsilontilde, Phi.T, C.T, C, Phi),),
-        gathers("points", epsilontilde),
-        Verdict.HOLDS,
-        "with the constant below",
+    at("Proposition 3.3", "4", "3", "(14) makes (C, A) uniformly observable")(
+        (gramian(epsilontilde, Phi.T, C.T, C, Phi),), gathers("points", epsilontilde), "with the constant below"
     ),
-    Entry(
-        "S(y)",
-        "4",
-        "3",
-        "information of an instant",
+    at("S(y)", "4", "3", "information of an instant")(
         (
             equal(S, B.T * B),
             equal(
@@ -234,14 +246,9 @@ ENTRIES = (
             ),
         ),
         identities(information),
-        Verdict.HOLDS,
         "written out for p = 2; signs lost by the scan",
     ),
-    Entry(
-        "det of S",
-        "4",
-        "3",
-        "characteristic polynomial",
+    at("det of S", "4", "3", "characteristic polynomial")(
         (
             equal(
                 sp.Determinant(lam * sp.Identity(3 * p) - S),
@@ -249,47 +256,31 @@ ENTRIES = (
             ),
         ),
         characteristic,
-        Verdict.HOLDS,
         "for p = 2",
     ),
-    Entry(
-        "eigenvalues of S",
-        "4",
-        "3",
-        "eigenvalues of a point's block",
+    at("eigenvalues of S", "4", "3", "eigenvalues of a point's block")(
         (equal(lambda1, 0), equal(lambda2, 1), equal(lambda3, 1 + Norm(y1) ** 2)),
         identities(eigenvalues),
-        Verdict.HOLDS,
         "0 belongs to the line of sight; exponents lost by the scan",
     ),
-    Entry(
-        "bound on S",
-        "4",
-        "3",
-        "largest eigenvalue",
-        (at_most(lambdamax, 1 + ysup**2),),
-        bounded_by_its_edge,
-        Verdict.HOLDS,
+    at("bound on S", "4", "3", "largest eigenvalue")((at_most(lambdamax, 1 + ysup**2),), bounded_by_its_edge, SUP),
+    at("S below its bound", "4", "3", "S is between 0 and its largest eigenvalue times I")(
+        (at_most(S, (1 + ysup**2) * sp.Identity(3 * p)), at_most(sp.ZeroMatrix(3 * p, 3 * p), S)),
+        bounded_as_a_matrix,
         SUP,
     ),
-    Entry(
-        "constant of 3.3",
-        "4",
-        "3",
-        "what of epsilon is left",
-        (equal(epsilontilde, epsilon / (1 + ysup**2)),),
-        identities(what_is_left),
-        Verdict.HOLDS,
-        SUP,
+    at("constant of 3.3", "4", "3", "what of epsilon is left")(
+        (equal(epsilontilde, epsilon / (1 + ysup**2)),), identities(what_is_left), SUP
     ),
-    Entry(
-        "converse of 3.3",
-        "4",
-        "3",
-        "(C, A) observable does not give (14)",
+    at("converse of 3.3", "4", "3", "(C, A) observable does not give (14)")(
+        (), not_enough, "A = 0, C = 1, v along the line of sight: the state's length is never seen"
+    ),
+    at("Remark 3.2 (i), v = 0", "4", "3", "without input the body stays in a bounded space")(
+        (), without_input, "of rigid bodies; but v = 0 violates (14), whatever p is: the state's length is never seen"
+    ),
+    at("(14) along x(t)", "4", "3", "(14) makes the state observable along x(t)")(
         (),
-        not_enough,
-        Verdict.HOLDS,
-        "A = 0, C = 1, v along the line of sight: the state's length is never seen",
+        nothing_of_another,
+        "two states with the same images differ by Phi rho(t0), of which (14) sees something, and B C nothing",
     ),
 )

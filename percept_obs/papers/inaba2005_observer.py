@@ -8,23 +8,8 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.papers.base import (
-    Entry,
-    Finding,
-    Printed,
-    Values,
-    Verdict,
-    column,
-    dot,
-    equal,
-    explicit,
-    filled_in,
-    identities,
-    is_identity,
-    judged,
-    vanishes,
-    vectors,
-)
+from percept_obs.papers.base import column, dot, equal, explicit, filled_in, identities, is_identity, vanishes, vectors
+from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import POINT, pinhole
@@ -150,7 +135,12 @@ def at_the_truth() -> Values:
     """Rates where the estimate is the truth: that of the estimate, and phi as that of the truth."""
     made, values = observer(1, 2), seen(1, 2)
     agreed = dict(zip(made.estimate, made.form.state, strict=True))
-    return {dot(xhat): values[dot(xhat)].xreplace(agreed), phi: values[dot(x)]}
+    return {dot(xhat): values[dot(xhat)].xreplace(agreed), phi: values[dot(x)], r: values[r].xreplace(agreed)}
+
+
+def no_correction(printed: Printed) -> Finding:
+    """The package's correction where the estimate is the truth."""
+    return judged(vanishes(*at_the_truth()[r]))
 
 
 def one_point() -> Values:
@@ -216,83 +206,48 @@ BOTH: tuple[Callable[[], Values], ...] = (one_point, two_points)
 REAL = "C* is C^T, for all is real"
 
 ENTRIES = (
-    Entry(
-        "(1)",
-        "2",
-        "2",
-        "linear motion of the state, many points seen",
+    at("(1)", "2", "2", "linear motion of the state, many points seen")(
         (equal(dot(x), A * x + v), equal(y, H(C * x))),
         identities(one_point_seen, two_points_seen),
-        Verdict.HOLDS,
         "initial values left out here and below: they name the start",
     ),
-    Entry(
-        "(2)",
-        "2",
-        "2",
-        "images of all points",
+    at("(2)", "2", "2", "images of all points")(
         (
             equal(H(xi), column(xi_11 / xi_31, xi_21 / xi_31, xi_12 / xi_32, xi_22 / xi_32)),
             sp.Ne(xi_31, 0),
             sp.Ne(xi_32, 0),
         ),
         images_and_where,
-        Verdict.HOLDS,
         "written out for p = 2, the second index for the point; a camera asks for more: xi_3 > 0",
     ),
-    Entry(
-        "(3)",
-        "2",
-        "2",
-        "images point by point",
-        (equal(y1, h(C1 * x)), equal(y2, h(C2 * x)), equal(y, H(C * x))),
-        identities(two_points_seen),
-        Verdict.HOLDS,
+    at("(3)", "2", "2", "images point by point")(
+        (equal(y1, h(C1 * x)), equal(y2, h(C2 * x)), equal(y, H(C * x))), identities(two_points_seen)
     ),
-    Entry(
-        "(4)",
-        "2",
-        "3",
-        "an observer keeps an estimate that is true",
+    at("(4)", "2", "3", "an observer keeps an estimate that is true")(
         (equal(dot(xhat), phi),),
         identities(at_the_truth),
-        Verdict.HOLDS,
         "where xhat = x the package's observer moves with the truth",
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "form of phi",
-        "2",
-        "3",
-        "the known rate and a correction",
-        (equal(phi, A * xhat + v + r),),
-        identities(one_point),
-        Verdict.HOLDS,
+    at("form of phi", "2", "3", "the known rate and a correction")(
+        (equal(phi, A * xhat + v + r),), identities(one_point), known=Known.IMPLEMENTED
     ),
-    Entry(
-        "correction r",
-        "2",
-        "3",
-        "the correction is a gain times the innovation",
+    at("correction r", "2", "3", "the correction is a gain times the innovation")(
         (equal(r, K * (y - h(C * xhat))),),
         identities(*BOTH),
-        Verdict.MISPRINT,
         "H in place of h, which takes the three coordinates of one point (as scanned)",
-        {h(C * xhat): H(C * xhat)},
+        Verdict.MISPRINT,
+        correction={h(C * xhat): H(C * xhat)},
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "(5)",
-        "3",
-        "3",
-        "observer of the Luenberger type",
-        (equal(dot(xhat), A * xhat + v + K * INNOVATION),),
-        identities(*BOTH),
-        Verdict.HOLDS,
+    at("r at the truth", "2", "3", "the correction vanishes for images of the estimate")((), no_correction),
+    at("stacked C", "2", "2", "C holds the points' matrices one below the other")(
+        (equal(C, sp.BlockMatrix([[C1], [C2]])),), identities(two_points_seen), "for p = 2"
     ),
-    Entry(
-        "(6)",
-        "3",
-        "3",
-        "the innovation is linear in the error",
+    at("(5)", "3", "3", "observer of the Luenberger type")(
+        (equal(dot(xhat), A * xhat + v + K * INNOVATION),), identities(*BOTH), known=Known.IMPLEMENTED
+    ),
+    at("(6)", "3", "3", "the innovation is linear in the error")(
         (
             equal(INNOVATION, H(xi) - H(xihat)),
             equal(INNOVATION, FRACTIONS),
@@ -300,91 +255,41 @@ ENTRIES = (
             equal(INNOVATION, E * B * C * rho),
         ),
         identities(two_points_seen),
-        Verdict.HOLDS,
         "written out for p = 2; letters in the matrices lost by the scan",
     ),
-    Entry(
-        "(7)",
-        "3",
-        "3",
-        "what E and B are",
+    at("(7)", "3", "3", "what E and B are")(
         (
             equal(E, sp.diag(1 / xihat_31, 1 / xihat_31, 1 / xihat_32, 1 / xihat_32).as_immutable()),
             equal(
                 B,
                 sp.ImmutableMatrix(
-                    [
-                        [1, 0, -y_11, 0, 0, 0],
-                        [0, 1, -y_21, 0, 0, 0],
-                        [0, 0, 0, 1, 0, -y_12],
-                        [0, 0, 0, 0, 1, -y_22],
-                    ]
+                    [[1, 0, -y_11, 0, 0, 0], [0, 1, -y_21, 0, 0, 0], [0, 0, 0, 1, 0, -y_12], [0, 0, 0, 0, 1, -y_22]]
                 ),
             ),
         ),
         identities(two_points_seen),
-        Verdict.HOLDS,
         "written out for p = 2, with xihat_3 for C_3 xhat",
     ),
-    Entry("(8)", "3", "3", "the error", (equal(rho, x - xhat),), error_is_the_package_s, Verdict.HOLDS),
-    Entry(
-        "(9)",
-        "3",
-        "3",
-        "the correction is linear in the error",
-        (equal(K * INNOVATION, K * E * B * C * rho),),
-        identities(two_points_seen),
-        Verdict.HOLDS,
+    at("(8)", "3", "3", "the error")((equal(rho, x - xhat),), error_is_the_package_s, known=Known.DEFINITION),
+    at("(9)", "3", "3", "the correction is linear in the error")(
+        (equal(K * INNOVATION, K * E * B * C * rho),), identities(two_points_seen)
     ),
-    Entry("(10)", "3", "3", "the gain", (GAIN,), identities(*BOTH), Verdict.HOLDS, REAL),
-    Entry(
-        "no denominators",
-        "3",
-        "3",
-        "the gain takes the denominators out",
-        (equal(K * E, P.inv() * C.T * B.T),),
-        identities(*BOTH),
-        Verdict.HOLDS,
+    at("(10)", "3", "3", "the gain")((GAIN,), identities(*BOTH), REAL, known=Known.IMPLEMENTED),
+    at("no denominators", "3", "3", "the gain takes the denominators out")(
+        (equal(K * E, P.inv() * C.T * B.T),), identities(*BOTH)
     ),
-    Entry(
-        "(11)",
-        "3",
-        "3",
-        "the observer",
-        (equal(dot(xhat), A * xhat + v + K * INNOVATION),),
-        identities(*BOTH),
-        Verdict.HOLDS,
-        "K as in (10)",
+    at("(11)", "3", "3", "the observer")(
+        (equal(dot(xhat), A * xhat + v + K * INNOVATION),), identities(*BOTH), "K as in (10)", known=Known.IMPLEMENTED
     ),
-    Entry(
-        "(12)",
-        "3",
-        "3",
-        "error dynamics, linear",
-        (ERROR_DYNAMICS,),
-        identities(*BOTH),
-        Verdict.HOLDS,
-        "whatever the start: no linearisation",
+    at("(12)", "3", "3", "error dynamics, linear")(
+        (ERROR_DYNAMICS,), identities(*BOTH), "whatever the start: no linearisation"
     ),
-    Entry(
-        "(16)",
-        "4",
-        "3",
-        "the observer, its gain written out",
+    at("(16)", "4", "3", "the observer, its gain written out")(
         (equal(dot(xhat), A * xhat + v + P.inv() * C.T * B.T * E.inv() * INNOVATION),),
         identities(*BOTH),
-        Verdict.HOLDS,
         REAL,
+        known=Known.IMPLEMENTED,
     ),
-    Entry("(17)", "4", "3", "its gain", (GAIN,), identities(*BOTH), Verdict.HOLDS, REAL),
-    Entry(
-        "Theorem 3.4 (i)",
-        "5",
-        "3",
-        "error dynamics again",
-        (ERROR_DYNAMICS,),
-        identities(*BOTH),
-        Verdict.HOLDS,
-        REAL,
-    ),
+    at("(17)", "4", "3", "its gain")((GAIN,), identities(*BOTH), REAL, known=Known.IMPLEMENTED),
+    at("Theorem 3.4 (i)", "5", "3", "error dynamics again")((ERROR_DYNAMICS,), identities(*BOTH), REAL),
 )

@@ -14,20 +14,13 @@ from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import identifier_based
 from percept_obs.observers.parts import M, gamma
 from percept_obs.papers.base import (
-    Check,
-    Entry,
-    Finding,
     Norm,
-    Printed,
     SmallestEigenvalue,
-    Values,
-    Verdict,
     column,
     equal,
     exactly,
     explicit,
     identities,
-    judged,
     less,
     separates,
     strict_at_zero,
@@ -35,6 +28,7 @@ from percept_obs.papers.base import (
     vectors,
     weakened,
 )
+from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.recording import Recording, Scenario, record
 from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
 from percept_obs.system.forms import CanonicalForm
@@ -109,12 +103,16 @@ def lipschitz(printed: Printed) -> Finding:
     """(13): g is a polynomial, so its slope is bounded in a ball; the constant for (35), y1 alone."""
     if strict_at_zero(printed, {Norm(g - gz): sp.S.Zero, Norm(x2 - z2): sp.S.Zero}):
         return judged(False, numbers={"left at x2 = z2": 0.0, "right": 0.0})
-    gains = identifier_based(FIRST).gain_values
+    return Finding(Verdict.HOLDS, {"alpha0 of (35)": lipschitz_constant(FIRST)})
+
+
+def lipschitz_constant(form: CanonicalForm) -> float:
+    """A bound on the slope of g in x2 for the motion of (35), where no coordinate is beyond gamma M."""
+    gains = identifier_based(form).gain_values
     ball = gains[M] * gains[gamma]
-    slope = FIRST.g.jacobian(FIRST.x2).xreplace(exactly(EXAMPLES[0].motion.values))
+    slope = form.g.jacobian(form.x2).xreplace(exactly(EXAMPLES[0].motion.values))
     polynomials = [sp.Poly(entry, *SYSTEM.coordinates) for entry in slope]
-    largest = [sum(abs(float(c)) * ball ** sum(powers) for powers, c in p.terms()) for p in polynomials]
-    return Finding(Verdict.HOLDS, {"alpha0 of (35)": math.hypot(*largest)})
+    return math.hypot(*(sum(abs(float(c)) * ball ** sum(powers) for powers, c in p.terms()) for p in polynomials))
 
 
 def w_is_bounded(printed: Printed) -> Finding:
@@ -198,6 +196,7 @@ def an_instant_suffices(form: CanonicalForm) -> Check:
     """Check whether the condition is the package's measure, and whether the form can fulfil it anywhere."""
 
     def check(printed: Printed) -> Finding:
+        """The condition is the package's measure; and whether the rank of w w^T lets it be fulfilled anywhere."""
         line, positive = printed
         observability = instantaneous(form)
         gap = explicit(line.lhs, {w: form.w}) - line.rhs - (observability.determinant - epsilon)
@@ -239,128 +238,70 @@ SUM_BOTH = (b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2
 LIPSCHITZ = (less(Norm(g - gz), alpha0 * Norm(x2 - z2)),)
 
 ENTRIES = (
-    Entry(
-        "Assumption 1, x",
-        "65",
-        "3.1",
-        "the state stays within M",
-        (less(Norm(x), M),),
-        state_is_bounded,
-        Verdict.HOLDS,
-        "80 s of both examples, M = 10",
+    at("Assumption 1, x", "65", "3.1", "the state stays within M")(
+        (less(Norm(x), M),), state_is_bounded, "80 s of both examples, M = 10", known=Known.RUNS
     ),
-    Entry(
-        "(13)",
-        "66",
-        "3.1",
-        "g is Lipschitz in x2",
+    at("(13)", "66", "3.1", "g is Lipschitz in x2")(
         LIPSCHITZ,
         lipschitz,
-        Verdict.MISPRINT,
         "at most, not less: at x2 = z2 it reads 0 < 0 (as scanned)",
-        weakened(LIPSCHITZ),
+        Verdict.MISPRINT,
+        correction=weakened(LIPSCHITZ),
     ),
-    Entry(
-        "Assumption 1, w",
-        "66",
-        "3.1",
-        "w and its rate are bounded",
-        (),
-        w_is_bounded,
-        Verdict.HOLDS,
-        "80 s of (35), y1 alone",
+    at("Assumption 1, w", "66", "3.1", "w and its rate are bounded")(
+        (), w_is_bounded, "80 s of (35), y1 alone", known=Known.RUNS
     ),
-    Entry(
-        "(14)",
-        "66",
-        "3.1",
-        "persistency of excitation",
+    at("(14)", "66", "3.1", "persistency of excitation")(
         (sp.GreaterThan(sp.Integral(w.T * w, (tau, t, t + rho)), beta, evaluate=False),),
         excitation,
-        Verdict.MISPRINT,
         "w w^T is meant: with y1 alone w^T w is a number, positive where a direction is never seen",
-        {w.T * w: w * w.T},
+        Verdict.MISPRINT,
+        correction={w.T * w: w * w.T},
     ),
-    Entry(
-        "(14) at each instant",
-        "66",
-        "3.1",
-        "equivalent of (14), y1 and y2",
+    at("(14) at each instant", "66", "3.1", "equivalent of (14), y1 and y2")(
         (more(SUM_BOTH, epsilon**2),),
         not_at_every_instant,
-        Verdict.FALSE,
         "sufficient, not equivalent: a path through the FOE excites every window",
+        Verdict.FALSE,
     ),
-    Entry(
-        "centre",
-        "66",
-        "3.1",
-        "centre of the circle: the FOE",
-        (equal(centre1, b1 / b3), equal(centre2, b2 / b3)),
-        identities(circle(centre1, centre2)),
-        Verdict.HOLDS,
+    at("centre", "66", "3.1", "centre of the circle: the FOE")(
+        (equal(centre1, b1 / b3), equal(centre2, b2 / b3)), identities(circle(centre1, centre2))
     ),
-    Entry(
-        "radius",
-        "66",
-        "3.1",
-        "radius of the circle",
+    at("radius", "66", "3.1", "radius of the circle")(
         (equal(radius, epsilon / b3),),
         identities(circle(radius)),
-        Verdict.MISPRINT,
         "|b3| in place of b3, which may be negative",
-        {epsilon / b3: epsilon / sp.Abs(b3)},
+        Verdict.MISPRINT,
+        correction={epsilon / b3: epsilon / sp.Abs(b3)},
     ),
-    Entry(
-        "range at the FOE",
-        "66",
-        "3.1",
-        "range at the FOE is lost",
+    at("range at the FOE", "66", "3.1", "range at the FOE is lost")(
         (),
         range_at_the_foe,
-        Verdict.FALSE,
         "only for a point that stays there; second derivatives tell the range of one that passes",
+        Verdict.FALSE,
     ),
-    Entry(
-        "(17)",
-        "66",
-        "3.1",
-        "observability, y1 and y2",
-        (more(SmallestEigenvalue(w * w.T), epsilon), more(epsilon, 0)),
-        an_instant_suffices(BOTH),
-        Verdict.HOLDS,
+    at("(17)", "66", "3.1", "observability, y1 and y2")(
+        (more(SmallestEigenvalue(w * w.T), epsilon), more(epsilon, 0)), an_instant_suffices(BOTH)
     ),
-    Entry(
-        "(18)",
-        "66",
-        "3.1",
-        "observability, y1 alone",
+    at("(18)", "66", "3.1", "observability, y1 alone")(
         (more(SmallestEigenvalue(w * w.T), epsilon), more(epsilon, 0)),
         an_instant_suffices(FIRST),
-        Verdict.FALSE,
         "w w^T has rank 1, so that its smallest eigenvalue is 0: never fulfilled",
+        Verdict.FALSE,
     ),
-    Entry(
-        "(19)",
-        "67",
-        "3.1",
-        "the same, written out",
+    at("(19)", "67", "3.1", "the same, written out")(
         (
             more(SUM_BOTH, 0),
             more(SmallestEigenvalue(sp.ImmutableMatrix([[abar**2, abar * bbar], [abar * bbar, bbar**2]])), 0),
         ),
         smallest_of_rank_one,
-        Verdict.FALSE,
         "the second line is never fulfilled, see (18)",
+        Verdict.FALSE,
     ),
-    Entry(
-        "(20)",
-        "67",
-        "3.1",
-        "the same, simplified",
+    at("(20)", "67", "3.1", "the same, simplified")(
         (more(SUM_BOTH, 0), more((b1 - b3 * y1) ** 2 + (a12 - a32 * y1) ** 2, 0)),
         larger_of_rank_one,
-        Verdict.FALSE,
         "the second sum is the larger eigenvalue; for a12 = b1 = 1, else 0, it is 2 and e2 - e3 stays",
+        Verdict.FALSE,
     ),
 )

@@ -11,23 +11,8 @@ from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.parts import M, gamma, hats, sigma2
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta
-from percept_obs.papers.base import (
-    Entry,
-    Finding,
-    Norm,
-    Printed,
-    Values,
-    Verdict,
-    column,
-    dot,
-    equal,
-    explicit,
-    identities,
-    is_identity,
-    judged,
-    vanishes,
-    vectors,
-)
+from percept_obs.papers.base import Norm, column, dot, equal, explicit, identities, is_identity, vanishes, vectors
+from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
@@ -108,6 +93,11 @@ def in_coordinates(name: str, form: CanonicalForm) -> Values:
         **{line.lhs: line.rhs for line in ERRORS},
         alphatilde: RATES[y2].xreplace(unknown),
     }
+
+
+def with_the_sign_of(form: CanonicalForm) -> Values:
+    """The mended (11), coordinate by coordinate: the package's observer, whose A and P have the opposite signs."""
+    return {s: value.xreplace({A: -A, P: -P}) for s, value in in_coordinates("IBO", form).items()}
 
 
 def range_terms() -> Values:
@@ -198,155 +188,96 @@ ALPHATILDE = equal(
     alphatilde,
     a23 + a21 * y1 + (a22 - a33) * yhat2 - a31 * y1 * yhat2 - a32 * yhat2**2 + (b2 - b3 * yhat2) * yhat3,
 )
+OBSERVED = (equal(dot(x1), w.T * x2 + phi), equal(dot(x2), g))
+IBO_IN_VECTORS = (
+    equal(dot(xhat1), G * A_ * (x1 - xhat1) + w.T * xhat2 + phi),
+    equal(dot(xhat2), -(G**2) * w * P_ * (x1 - xhat1) + ghat),
+)
+IBO_MENDED: Values = {x1 - xhat1: xhat1 - x1}
 RESET = reset(yhat1, yhat2, yhat3)
 S1, S2 = lambda1 * e1 / (sp.Abs(e1) + delta1), lambda2 * e2 / (sp.Abs(e2) + delta2)
 
 ENTRIES = (
-    Entry(
-        "f1, f2",
-        "65",
-        "3",
-        "what the RIO estimates first",
+    at("f1, f2", "65", "3", "what the RIO estimates first")(
         (equal(f1, (b1 - b3 * y1) * y3), equal(f2, (b1 - b3 * y2) * y3)),
         identities(range_terms),
-        Verdict.MISPRINT,
         "b2 is meant in f2, in place of b1",
-        {b1 - b3 * y2: b2 - b3 * y2},
+        Verdict.MISPRINT,
+        correction={b1 - b3 * y2: b2 - b3 * y2},
     ),
-    Entry(
-        "RIO, two outputs",
-        "65",
-        "3",
-        "y3 from f1 and f2",
-        (equal(yhat3**2, (fhat1**2 + fhat2**2) / ((b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2)),),
-        identities(range_terms),
-        Verdict.HOLDS,
+    at("RIO, two outputs", "65", "3", "y3 from f1 and f2")(
+        (equal(yhat3**2, (fhat1**2 + fhat2**2) / ((b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2)),), identities(range_terms)
     ),
-    Entry(
-        "RIO, one output",
-        "65",
-        "3",
-        "y3 from f1 alone",
-        (equal(yhat3**2, fhat1**2 / (b1 - b3 * y1) ** 2),),
-        identities(range_terms),
-        Verdict.HOLDS,
+    at("RIO, one output", "65", "3", "y3 from f1 alone")(
+        (equal(yhat3**2, fhat1**2 / (b1 - b3 * y1) ** 2),), identities(range_terms)
     ),
-    Entry(
-        "(10)",
-        "65",
-        "3.1",
-        "canonical form: measured x1, hidden x2",
-        (equal(dot(x1), w.T * x2 + phi), equal(dot(x2), g), equal(y, x1)),
+    at("(10)", "65", "3.1", "canonical form: measured x1, hidden x2")(
+        (*OBSERVED, equal(y, x1)),
         identities(*(partial(in_vectors, form) for form in (BOTH, FIRST, SECOND))),
-        Verdict.HOLDS,
         "y1 and y2, y1 alone, y2 alone",
     ),
-    Entry(
-        "(11)",
-        "65",
-        "3.1",
-        "IBO and its reset",
-        (
-            equal(dot(xhat1), G * A_ * (x1 - xhat1) + w.T * xhat2 + phi),
-            equal(dot(xhat2), -(G**2) * w * P_ * (x1 - xhat1) + ghat),
-            equal(xhat_plus, M * xhat / Norm(xhat)),
-        ),
+    at("(11)", "65", "3.1", "IBO and its reset")(
+        (*IBO_IN_VECTORS, equal(xhat_plus, M * xhat / Norm(xhat))),
         feeds_back,
-        Verdict.MISPRINT,
         "unstable for Hurwitz A, P > 0: feed back x1hat - x1, or take A = 1, P = -1/2 as section 4 does",
-        {x1 - xhat1: xhat1 - x1},
+        Verdict.MISPRINT,
+        correction=IBO_MENDED,
     ),
-    Entry(
-        "(12)",
-        "65",
-        "3.1",
-        "when the estimate is reset",
+    at("(12)", "65", "3.1", "when the estimate is reset")(
         (sp.GreaterThan(Norm(xhat), gamma * M, evaluate=False),),
         reset_condition,
-        Verdict.HOLDS,
         "looked at between steps",
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "gamma > 1",
-        "65",
-        "3.1",
-        "gamma is more than 1",
+    at("gamma > 1", "65", "3.1", "gamma is more than 1")(
         (sp.StrictGreaterThan(gamma, 1, evaluate=False),),
         reset_leads_out,
-        Verdict.HOLDS,
         "for just these a reset leads out of its own condition",
     ),
-    Entry(
-        "e1, e2, e3",
-        "66",
-        "3.1",
-        "errors of the estimates",
-        ERRORS,
-        error_is_the_package_s,
-        Verdict.HOLDS,
-    ),
-    Entry(
-        "(15)",
-        "66",
-        "3.1",
-        "IBO, y1 and y2",
+    at("e1, e2, e3", "66", "3.1", "errors of the estimates")(ERRORS, error_is_the_package_s, known=Known.DEFINITION),
+    at("(15)", "66", "3.1", "IBO, y1 and y2")(
         (
-            equal(
-                column(dot(yhat1), dot(yhat2)),
-                G * A * column(e1, e2) + W_BOTH * yhat3 + PHI_BOTH,
-            ),
+            equal(column(dot(yhat1), dot(yhat2)), G * A * column(e1, e2) + W_BOTH * yhat3 + PHI_BOTH),
             equal(dot(yhat3), (-(G**2) * W_BOTH.T * P * column(e1, e2))[0] + G_BOTH),
             RESET,
         ),
-        identities(partial(in_coordinates, "IBO", BOTH)),
-        Verdict.HOLDS,
-        "hats on the left lost by the scan; A, P as in section 4, multiples of the identity",
+        identities(partial(with_the_sign_of, BOTH)),
+        "yhat - y in place of e, as in (11); hats on the left lost by the scan; A, P are multiples of the identity",
+        Verdict.MISPRINT,
+        correction={e1: -e1, e2: -e2},
     ),
-    Entry(
-        "(16)",
-        "66",
-        "3.1",
-        "IBO, y1 alone",
+    at("(16)", "66", "3.1", "IBO, y1 alone")(
         (
             equal(dot(yhat1), G * A * e1 + (W_FIRST.T * column(yhat2, yhat3))[0] + PHI_FIRST),
             equal(column(dot(yhat2), dot(yhat3)), -(G**2) * W_FIRST * P * e1 + G_FIRST),
             RESET,
             ALPHATILDE,
         ),
-        identities(partial(in_coordinates, "IBO", FIRST)),
-        Verdict.HOLDS,
-        "hats lost by the scan, on the left and over y2, y3",
+        identities(partial(with_the_sign_of, FIRST)),
+        "yhat1 - y1 in place of e1, as in (11); hats lost by the scan, on the left and over y2, y3",
+        Verdict.MISPRINT,
+        correction={e1: -e1},
     ),
-    Entry(
-        "(21)",
-        "67",
-        "3.2",
-        "SMO, y1 and y2",
+    at("(21)", "67", "3.2", "SMO, y1 and y2")(
         (
             equal(column(dot(yhat1), dot(yhat2)), column(S1, S2) + W_BOTH * yhat3 + PHI_BOTH),
             equal(dot(yhat3), (alpha * W_BOTH.T * column(S1, S2))[0] + G_BOTH),
             RESET,
         ),
         identities(partial(in_coordinates, "SMO", BOTH)),
-        Verdict.HOLDS,
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "(22)",
-        "67",
-        "3.2",
-        "growth of the SMO's gains",
+    at("(22)", "67", "3.2", "growth of the SMO's gains")(
         tuple(
-            equal(dot(gain), sp.Piecewise((2 * rate * sp.Abs(e), sp.Abs(e) > 2 * width), (0, True)))
-            for gain, rate, e, width in ((lambda1, alpha1, e1, delta1), (lambda2, alpha2, e2, delta2))
+            (
+                equal(dot(gain), sp.Piecewise((2 * rate * sp.Abs(e), sp.Abs(e) > 2 * width), (0, True)))
+                for gain, rate, e, width in ((lambda1, alpha1, e1, delta1), (lambda2, alpha2, e2, delta2))
+            )
         ),
         identities(partial(in_coordinates, "SMO", BOTH)),
-        Verdict.HOLDS,
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "(23)",
-        "67",
-        "3.2",
-        "SMO, y1 alone",
+    at("(23)", "67", "3.2", "SMO, y1 alone")(
         (
             equal(dot(yhat1), S1 + (W_FIRST.T * column(yhat2, yhat3))[0] + PHI_FIRST),
             equal(column(dot(yhat2), dot(yhat3)), alpha * W_FIRST * S1 + G_FIRST),
@@ -354,16 +285,10 @@ ENTRIES = (
             ALPHATILDE,
         ),
         identities(partial(in_coordinates, "SMO", FIRST)),
-        Verdict.HOLDS,
         "fraction bars in place of brackets by the scan",
+        known=Known.IMPLEMENTED,
     ),
-    Entry(
-        "Remark 1",
-        "69",
-        "3.3",
-        "e/(|e| + delta) tends to sgn e",
-        (equal(sp.Limit(e1 / (sp.Abs(e1) + delta1), delta1, 0), sp.sign(e1)),),
-        switching_term,
-        Verdict.HOLDS,
+    at("Remark 1", "69", "3.3", "e/(|e| + delta) tends to sgn e")(
+        (equal(sp.Limit(e1 / (sp.Abs(e1) + delta1), delta1, 0), sp.sign(e1)),), switching_term
     ),
 )

@@ -7,19 +7,8 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.papers.base import (
-    Entry,
-    Finding,
-    Printed,
-    Values,
-    Verdict,
-    column,
-    dot,
-    equal,
-    identities,
-    judged,
-    vanishes,
-)
+from percept_obs.papers.base import column, dot, equal, identities, vanishes
+from percept_obs.papers.entries import Finding, Printed, Values, Verdict, at, judged
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import chained, pinhole, plane
@@ -33,6 +22,7 @@ y1, y2, y3 = SYSTEM.coordinates
 n1, n2, n3 = plane().parameters
 Xp, Yp, Zp, ell = sp.symbols("X_p Y_p Z_p l_p", real=True)
 yg1, yg2, yg3, yg4 = sp.symbols("y_g1:5", real=True)
+constant = sp.Symbol("c", real=True)
 a_new, b_new = sp.MatrixSymbol("a", 3, 3), sp.MatrixSymbol("b", 3, 1)
 
 
@@ -74,6 +64,11 @@ def on_the_usual_plane() -> Values:
     return {letter: sp.cancel(value.xreplace(normal)) for letter, value in on_the_plane().items()}
 
 
+def in_a_plane() -> Values:
+    """Second output of a point in the plane Y = c Z, which holds the camera's centre."""
+    return {y2: SYSTEM.surface.image[1].xreplace({Y: constant * Z})}
+
+
 def turned_axes(printed: Printed) -> Finding:
     """(34): with the new coefficients the pinhole's rate is that of the chained projection."""
     given = {line.lhs: line.rhs for line in printed}
@@ -96,11 +91,7 @@ def third_output(printed: Printed) -> Finding:
 
 
 ENTRIES = (
-    Entry(
-        "(1)",
-        "63",
-        "1",
-        "affine motion of the point",
+    at("(1)", "63", "1", "affine motion of the point")(
         (
             equal(
                 column(dot(X), dot(Y), dot(Z)),
@@ -109,68 +100,26 @@ ENTRIES = (
             ),
         ),
         identities(velocity),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "(2)",
-        "63",
-        "1",
-        "homogeneous outputs",
-        (equal(y1, X / Z), equal(y2, Y / Z)),
-        identities(seen_by(SYSTEM)),
-        Verdict.HOLDS,
+    at("(2)", "63", "1", "homogeneous outputs")((equal(y1, X / Z), equal(y2, Y / Z)), identities(seen_by(SYSTEM))),
+    at("(3)", "64", "1", "coordinates y")(
+        (equal(column(y1, y2, y3), column(X / Z, Y / Z, 1 / Z)),), identities(seen_by(SYSTEM))
     ),
-    Entry(
-        "(3)",
-        "64",
-        "1",
-        "coordinates y",
-        (equal(column(y1, y2, y3), column(X / Z, Y / Z, 1 / Z)),),
-        identities(seen_by(SYSTEM)),
-        Verdict.HOLDS,
-    ),
-    Entry(
-        "(4)",
-        "64",
-        "1",
-        "perspective dynamics, pinhole",
+    at("(4)", "64", "1", "perspective dynamics, pinhole")(
         (
-            equal(
-                dot(y1),
-                a13 + (a11 - a33) * y1 + a12 * y2 - a31 * y1**2 - a32 * y1 * y2 + (b1 - b3 * y1) * y3,
-            ),
-            equal(
-                dot(y2),
-                a23 + a21 * y1 + (a22 - a33) * y2 - a31 * y1 * y2 - a32 * y2**2 + (b2 - b3 * y2) * y3,
-            ),
+            equal(dot(y1), a13 + (a11 - a33) * y1 + a12 * y2 - a31 * y1**2 - a32 * y1 * y2 + (b1 - b3 * y1) * y3),
+            equal(dot(y2), a23 + a21 * y1 + (a22 - a33) * y2 - a31 * y1 * y2 - a32 * y2**2 + (b2 - b3 * y2) * y3),
             equal(dot(y3), -(a31 * y1 + a32 * y2 + a33) * y3 - b3 * y3**2),
         ),
         identities(rates_of(SYSTEM)),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "(5)",
-        "64",
-        "2",
-        "general plane through (0, 0, 1)",
-        (equal(n1 * Xp + n2 * Yp + n3 * (Zp - 1), 0),),
-        identities(on_the_plane),
-        Verdict.HOLDS,
+    at("(5)", "64", "2", "general plane through (0, 0, 1)")(
+        (equal(n1 * Xp + n2 * Yp + n3 * (Zp - 1), 0),), identities(on_the_plane)
     ),
-    Entry(
-        "(6)",
-        "64",
-        "2",
-        "a point and its projection are in line",
-        (equal(Xp, Zp * X / Z), equal(Yp, Zp * Y / Z)),
-        identities(on_the_plane),
-        Verdict.HOLDS,
+    at("(6)", "64", "2", "a point and its projection are in line")(
+        (equal(Xp, Zp * X / Z), equal(Yp, Zp * Y / Z)), identities(on_the_plane)
     ),
-    Entry(
-        "(7)",
-        "64",
-        "2",
-        "projection on the plane",
+    at("(7)", "64", "2", "projection on the plane")(
         (
             equal(Xp, n3 * X / ell),
             equal(Yp, n3 * Y / ell),
@@ -178,70 +127,40 @@ ENTRIES = (
             equal(ell, n1 * X + n2 * Y + n3 * Z),
         ),
         identities(on_the_plane),
-        Verdict.HOLDS,
         "letter of the denominator lost by the scan",
     ),
-    Entry(
-        "(8)",
-        "64",
-        "2",
-        "outputs on the general plane",
+    at("(8)", "64", "2", "outputs on the general plane")(
         (equal(yg1, X / ell), equal(yg2, Y / ell), equal(yg3, Z / ell), equal(yg4, 1 / ell)),
         identities(on_the_plane),
-        Verdict.HOLDS,
         "letter of the denominator lost by the scan",
     ),
-    Entry(
-        "(9)",
-        "64",
-        "2",
-        "the same with n = (0, 0, 1)",
-        (equal(yg1, X / Z), equal(yg2, Y / Z), equal(yg3, 1), equal(yg4, 1 / Z)),
-        identities(on_the_usual_plane),
-        Verdict.HOLDS,
+    at("(9)", "64", "2", "the same with n = (0, 0, 1)")(
+        (equal(yg1, X / Z), equal(yg2, Y / Z), equal(yg3, 1), equal(yg4, 1 / Z)), identities(on_the_usual_plane)
     ),
-    Entry(
-        "(32)",
-        "69",
-        "3.4",
-        "coordinates of the chained projection",
-        (equal(column(y1, y2, y3), column(X / Y, Z / Y, 1 / Y)),),
-        identities(seen_by(CHAINED)),
-        Verdict.HOLDS,
+    at("(32)", "69", "3.4", "coordinates of the chained projection")(
+        (equal(column(y1, y2, y3), column(X / Y, Z / Y, 1 / Y)),), identities(seen_by(CHAINED))
     ),
-    Entry(
-        "(33)",
-        "69",
-        "3.4",
-        "perspective dynamics, chained",
+    at("(33)", "69", "3.4", "perspective dynamics, chained")(
         (
             equal(dot(y1), a11 * y1 + a12 + a13 * y2 - (a21 * y1 + a22 + a23 * y2) * y1 + (b1 - b2 * y1) * y3),
             equal(dot(y2), a31 * y1 + a32 + a33 * y2 - (a21 * y1 + a22 + a23 * y2) * y2 + (b3 - b2 * y2) * y3),
             equal(dot(y3), -(a21 * y1 + a22 + a23 * y2) * y3 - b2 * y3**2),
         ),
         identities(rates_of(CHAINED)),
-        Verdict.HOLDS,
     ),
-    Entry(
-        "(34)",
-        "69",
-        "3.4",
-        "coefficients that turn (4) into (33)",
+    at("(34)", "69", "3.4", "coefficients that turn (4) into (33)")(
         (
             equal(a_new, sp.ImmutableMatrix([[a11, a13, a12], [a31, a33, a32], [a21, a23, a22]])),
             equal(b_new, column(b1, b3, b2)),
         ),
         turned_axes,
-        Verdict.HOLDS,
     ),
-    Entry(
-        "Remark 2",
-        "71",
-        "4",
-        "a tilted plane's third output helps",
-        (),
-        third_output,
-        Verdict.FALSE,
-        "n1 yg1 + n2 yg2 + n3 yg3 = 1: the third output follows from the other two",
+    at("constant y2", "64", "2", "a plane through the centre is seen as a line")(
+        (equal(y2, constant),),
+        identities(in_a_plane),
+        "of the plane Y = c Z; y2' = 0 in (4) then gives y3 at once, but where b2 = b3 y2",
+    ),
+    at("Remark 2", "71", "4", "a tilted plane's third output helps")(
+        (), third_output, "n1 yg1 + n2 yg2 + n3 yg3 = 1: the third output follows from the other two", Verdict.FALSE
     ),
 )
