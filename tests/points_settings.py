@@ -39,7 +39,7 @@ CASES = {
     "a narrow view": {"view": 0.6},
     "no input": {"input": 0.0, "turning": 0.2, "spin": 1.0},
     "no motion": {"input": 0.0, "turning": 0.0},
-    "along the line of sight": {**ONE, "input": 0.0, "turning": 0.0, "velocity": [0.0, 0.12, 0.25]},
+    "along the line of sight": {**ONE, "input": 0.0, "turning": 0.0, "velocity": [0.0, 0.12, 0.25], "depth": 1.4},
     "another input": {"velocity": [0.2, -0.1, 0.3], "turning": 0.5, "spin": 1.5, "input": -0.4},
     "large gain": {"size": 0.05, "step": 0.01, "duration": 10.0},
     "diverges": {"size": 0.001},
