@@ -82,4 +82,14 @@ MISTAKES = {
         "hide-the-first": ["a", "b", "d"],
         "noisy-point": [1 / 3, 1, 10],
     },
+    "08_check_a_derivation": {
+        "tilted": [
+            "y1' = (b1 + y1 (n1 b1 + n2 b2 + n3 b3)) y3",
+            "y1' = b1 y3",  # the derivative of 1/eta is forgotten
+            "y1' = (b1 - n3 b3 y1) y3",  # as if the plane were upright
+            "y1' = (b1 - y1 (n1 b1 + n2 b2 + n3 b3)) y3^2",
+        ],
+        "which-step": ["a", "b", "d"],
+        "derived-gain": [3, 5, 30],
+    },
 }

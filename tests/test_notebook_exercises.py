@@ -4,14 +4,14 @@ import ast
 from contextlib import nullcontext
 
 import pytest
-from jupyter_harness import execute
+from jupyter_harness import NOTEBOOKS, execute
 from mistakes import MISTAKES
 from notebook_exercises import answer_name, names_read, source, tagged, trials
 from test_notebooks import read
 
 from percept_obs.exercises import students_copy
 
-NAMES = sorted(MISTAKES)
+NAMES = sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb"))
 
 
 @pytest.fixture(params=NAMES)

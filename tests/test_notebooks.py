@@ -76,7 +76,7 @@ def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     if "load_utias" in "".join(code(notebook)):
         monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
-    widgets = execute(notebook, tmp_path, trials(notebook, MISTAKES.get(name.removesuffix(".ipynb"), {})))
+    widgets = execute(notebook, tmp_path, trials(notebook, MISTAKES[name.removesuffix(".ipynb")]))
     assert silent_pictures(notebook, widgets) == []
 
 
