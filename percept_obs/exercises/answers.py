@@ -149,7 +149,5 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     if missing := sorted(most.keys() - numbers.keys()):
         raise ValueError(f"the experiment gives no {', '.join(missing)}; it gives {', '.join(numbers)}")
     right = all(numbers[name] <= limit for name, limit in most.items())
-    told = ", ".join(
-        f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()
-    )
+    told = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
     return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(told)}.")
