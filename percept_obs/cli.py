@@ -1,6 +1,7 @@
 """The command line: `lab` opens the notebooks, `check` judges the equations, `compare` runs all observers."""
 
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 from time import perf_counter
 
 from percept_obs.border import write_whole
+from percept_obs.exercises import COPIES
 
 FIRST_NOTEBOOK = "00_start.ipynb"
 
@@ -21,8 +23,8 @@ def notebooks() -> Traversable:
     return installed if installed.is_dir() else Path(__file__).parents[1] / "notebooks"
 
 
-def copy_notebooks(directory: Path) -> None:
-    """Copy the notebooks into a directory, which may be new, and leave whatever is there as it is."""
+def copy_notebooks(directory: Path, readers: str = "students") -> None:
+    """Copy the notebooks for their readers into a directory, which may be new, and leave whatever is there as it is."""
     names = sorted(entry.name for entry in notebooks().iterdir() if entry.name.endswith(".ipynb"))
     directory.mkdir(parents=True, exist_ok=True)
     for name in names:
@@ -30,7 +32,8 @@ def copy_notebooks(directory: Path) -> None:
         if target.exists():
             print(f"kept    {target}")
         else:
-            write_whole(target, (notebooks() / name).read_bytes())
+            copy = COPIES[readers](json.loads((notebooks() / name).read_bytes()))
+            write_whole(target, f"{json.dumps(copy, indent=1, ensure_ascii=False)}\n".encode())
             print(f"copied  {target}")
 
 
@@ -40,7 +43,7 @@ def lab(options: argparse.Namespace) -> int:
     try:
         if directory.exists() and not directory.is_dir():
             return _complain(f"{directory} is a file; name a folder, or a new one", 2)
-        copy_notebooks(directory)
+        copy_notebooks(directory, options.readers)
     except OSError as error:
         return _complain(f"cannot copy the notebooks: {error}", 2)
     if options.copy_only:
@@ -136,6 +139,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         default=Path("percept_obs_notebooks"),
         metavar="DIR",
         help="where your copies live (default: ./%(default)s); nothing there is overwritten",
+    )
+    lab_parser.add_argument(
+        "--for",
+        dest="readers",
+        choices=tuple(COPIES),
+        default="students",
+        help="students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
     )
     lab_parser.add_argument("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     lab_parser.add_argument("--no-browser", action="store_true", help="start JupyterLab without a browser")

@@ -15,11 +15,12 @@ import time
 import traceback
 import urllib.request
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from html.parser import HTMLParser
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # it takes two seconds, which every process that collects tests and every kernel would pay
@@ -145,10 +146,12 @@ SETTLE = "import asyncio\nawait asyncio.sleep(0.3)  # what a callback put off ha
 JUDGE = "jupyter_harness.judge()"
 
 
-def execute(notebook: nbformat.NotebookNode, folder: Path) -> dict[str, dict]:
+def execute(
+    notebook: nbformat.NotebookNode, folder: Path, beside: Mapping[int, Sequence[str]] = MappingProxyType({})
+) -> dict[str, dict]:
     """Run a notebook in a fresh kernel in a folder, move its controls, and return the states of its widgets.
 
-    The outputs are put into the notebook.
+    The outputs are put into the notebook.  Programs `beside` it run after the cell of their number.
 
     Raises
     ------
@@ -162,6 +165,8 @@ def execute(notebook: nbformat.NotebookNode, folder: Path) -> dict[str, dict]:
         _execute_beside(client, PRELUDE)
         for k, cell in enumerate(notebook.cells):
             client.execute_cell(cell, k)
+            for program in beside.get(k, ()):
+                _execute_beside(client, program)
         for program in (MOVE, SETTLE, JUDGE):
             _execute_beside(client, program)
     return client.widget_state

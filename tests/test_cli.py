@@ -1,5 +1,6 @@
 """`percept-obs lab` hands out the notebooks, overwrites nothing and opens the first; mistakes exit with 2."""
 
+import json
 import re
 import subprocess
 import sys
@@ -11,12 +12,18 @@ import pytest
 from percept_obs import cli
 
 
+def shipped_as(name):
+    """A notebook of one cell, as a file."""
+    cell = {"cell_type": "markdown", "metadata": {}, "source": [f"as shipped: {name}"]}
+    return json.dumps({"cells": [cell]}, indent=1) + "\n"
+
+
 @pytest.fixture
 def shipped(tmp_path, monkeypatch):
     folder = tmp_path / "shipped"
     folder.mkdir()
     for name in ("00_start.ipynb", "01_next.ipynb", "not_a_notebook.txt"):
-        (folder / name).write_text(f"as shipped: {name}")
+        (folder / name).write_text(shipped_as(name))
     monkeypatch.setattr(cli, "notebooks", lambda: folder)
     return folder
 
@@ -55,14 +62,30 @@ def test_notebooks_are_copied_into_a_new_folder(shipped, launches, tmp_path, cap
     mine = tmp_path / "new" / "mine"
     assert cli.main(["lab", "--copy-only", str(mine)]) == 0
     assert {file.name: file.read_text() for file in mine.iterdir()} == {
-        "00_start.ipynb": "as shipped: 00_start.ipynb",
-        "01_next.ipynb": "as shipped: 01_next.ipynb",
+        "00_start.ipynb": shipped_as("00_start.ipynb"),
+        "01_next.ipynb": shipped_as("01_next.ipynb"),
     }
     assert capsys.readouterr().out.splitlines() == [
         f"copied  {mine / '00_start.ipynb'}",
         f"copied  {mine / '01_next.ipynb'}",
     ]
     assert launches == []
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ([], "gain = ...  # your answer"),
+        (["--for", "students"], "gain = ...  # your answer"),
+        (["--for", "teachers"], "gain = 5"),
+    ],
+)
+def test_only_teachers_get_the_solutions(options, text, shipped, tmp_path):
+    cell = {"cell_type": "code", "metadata": {"tags": ["solution"]}, "source": ["gain = 5"]}
+    (shipped / "00_start.ipynb").write_text(json.dumps({"cells": [cell]}))
+    assert cli.main(["lab", "--copy-only", *options, str(tmp_path / "mine")]) == 0
+    (copied,) = json.loads((tmp_path / "mine" / "00_start.ipynb").read_text())["cells"]
+    assert "".join(copied["source"]) == text
 
 
 def test_a_second_call_keeps_what_the_user_wrote_and_brings_back_what_is_gone(shipped, tmp_path, capsys):
@@ -73,7 +96,7 @@ def test_a_second_call_keeps_what_the_user_wrote_and_brings_back_what_is_gone(sh
 
     assert cli.main(["lab", "--copy-only", str(tmp_path)]) == 0
     assert (tmp_path / "00_start.ipynb").read_text() == "mine"
-    assert (tmp_path / "01_next.ipynb").read_text() == "as shipped: 01_next.ipynb"
+    assert (tmp_path / "01_next.ipynb").read_text() == shipped_as("01_next.ipynb")
     assert capsys.readouterr().out.splitlines() == [
         f"kept    {tmp_path / '00_start.ipynb'}",
         f"copied  {tmp_path / '01_next.ipynb'}",

@@ -17,7 +17,7 @@ PACKAGE = Path(percept_obs.__file__).parent
 FLOORS = (
     ("cli",),
     ("labs",),
-    ("figures", "papers"),
+    ("figures", "papers", "exercises"),
     ("checking",),
     ("studies",),
     ("observability",),

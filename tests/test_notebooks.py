@@ -19,6 +19,8 @@ from jupyter_harness import (
     silent_pictures,
 )
 from lab_browser import assert_equals_python, centre, control, rested, state, write_notebook
+from mistakes import MISTAKES
+from notebook_exercises import trials
 from utias_folder import utias_folder
 
 from percept_obs.labs.observer.lab import observer_lab
@@ -74,7 +76,7 @@ def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     if "load_utias" in "".join(code(notebook)):
         monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
-    widgets = execute(notebook, tmp_path)
+    widgets = execute(notebook, tmp_path, trials(notebook, MISTAKES[name.removesuffix(".ipynb")]))
     assert silent_pictures(notebook, widgets) == []
 
 

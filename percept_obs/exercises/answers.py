@@ -1,0 +1,153 @@
+"""Answers to exercises: a formula is derived, a result is predicted, gains reach a goal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import EllipsisType
+from typing import Any
+
+from percept_obs.checking import Review, check
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What is said of an answer; it shows itself in a notebook.
+
+    Parameters
+    ----------
+    right : bool or None
+        None if there is no answer yet.
+    words : str
+        One sentence or more.
+    """
+
+    right: bool | None
+    words: str
+
+    def __str__(self) -> str:
+        return self.words
+
+    def _repr_markdown_(self) -> str:
+        return {True: "✓ ", False: "✗ ", None: ""}[self.right] + self.words
+
+
+UNANSWERED = "Not answered yet. Put your answer in the place of the dots, and run both cells."
+
+
+def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
+    """Check a formula that was asked for; as `percept_obs.check`, but dots are no answer, and no line may be missing.
+
+    Parameters
+    ----------
+    mine : as for `check`, or ...
+    target : as for `check`
+    *asked : str
+        The names of the lines that are asked for, such as "y1'"; all lines without them.
+
+    Returns
+    -------
+    Attempt or Review
+        A review gives hints: ``derive(mine, target).hint(1)`` says which line, 2 which term, 3 which slip.
+
+    Raises
+    ------
+    CannotRead
+        If the text is no formula of the target's letters; it says where, and what is allowed.
+    ValueError
+        If formulas and target do not fit.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> print(derive(..., system, "y3'"))
+    Not answered yet. Put your answer in the place of the dots, and run both cells.
+    >>> derive("y3' = -y3 (a31 y1 + a32 y2 + a33 + b3 y3)", system, "y3'").right
+    True
+    """
+    if isinstance(mine, EllipsisType):
+        return Attempt(None, UNANSWERED)
+    review = check(mine, target)
+    given = {line.row for line in review.lines}
+    lines = review.target.lines
+    wanted = {row for row, line in enumerate(lines) if not asked or line.name in asked}
+    if not wanted <= given:
+        missing = ", ".join(lines[row].name or f"line {row + 1}" for row in sorted(wanted - given))
+        return Attempt(False, f"This is asked for as well: {missing}.")
+    return review
+
+
+def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
+    """Compare a prediction with what the experiment finds.
+
+    Parameters
+    ----------
+    mine : str or ...
+        The letter of an option.
+    found : str
+        What the experiment finds, in words; said only after a choice.
+    **options : bool
+        Whether each option is what the experiment finds; exactly one is.
+
+    Returns
+    -------
+    Attempt
+
+    Raises
+    ------
+    ValueError
+        If the choice is none of the options, or not exactly one option is found.
+
+    Examples
+    --------
+    >>> seconds = 2.5
+    >>> print(choose("a", f"It takes {seconds} s.", a=seconds < 2, b=seconds >= 2))
+    You said a, the experiment says b. It takes 2.5 s.
+    """
+    right = [letter for letter, holds in options.items() if holds]
+    if len(right) != 1:
+        raise ValueError(f"exactly one option can be right, here {right or 'none'}; change the options")
+    if isinstance(mine, EllipsisType):
+        return Attempt(None, f"Choose first: {', '.join(options)}. Then see.")
+    choice = str(mine).strip().lower()
+    if choice not in options:
+        raise ValueError(f"{mine!r} is no option; choose one of {', '.join(map(repr, options))}")
+    if choice == right[0]:
+        return Attempt(True, f"Yes, {choice}. {found}")
+    return Attempt(False, f"You said {choice}, the experiment says {right[0]}. {found}")
+
+
+def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float) -> Attempt:
+    """Try an answer such as a set of gains, and compare what comes out with what is allowed.
+
+    Parameters
+    ----------
+    mine : anything that `judge` takes, or ...
+    judge : function
+        Runs the experiment and gives its numbers by name.
+    **most : float
+        The largest value that is allowed, for each of these names.
+
+    Returns
+    -------
+    Attempt
+
+    Raises
+    ------
+    ValueError
+        If `judge` does not give a number that is asked for, or refuses the answer.
+
+    Examples
+    --------
+    >>> print(reach(2.0, lambda gain: {"seconds": 6 / gain}, seconds=2))
+    Not reached yet: seconds 3 (2 is allowed).
+    """
+    if isinstance(mine, EllipsisType):
+        return Attempt(None, UNANSWERED)
+    numbers = judge(mine)
+    if missing := sorted(most.keys() - numbers.keys()):
+        raise ValueError(f"the experiment gives no {', '.join(missing)}; it gives {', '.join(numbers)}")
+    right = all(numbers[name] <= limit for name, limit in most.items())
+    told = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
+    return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(told)}.")

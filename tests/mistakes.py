@@ -1,0 +1,95 @@
+"""Typical mistakes in the notebooks' exercises: by notebook and solution, at least three each."""
+
+MISTAKES = {
+    "00_start": {
+        "quotient": [
+            "y1' = b1 y3 + b3 y1 y3",  # the sign of the second term
+            "y1' = b1 y3",  # the derivative of 1/Z is forgotten
+            "y1' = b1 y3 - b3 y1 y3^2",
+            "y1' = b1 y3 - b3 y2 y3",
+            "y2' = b2 y3 - b3 y2 y3",  # right, and not asked for
+        ],
+        "second": ["a", "b", "d"],
+        "gain": [1, 3, 15, 30],
+    },
+    "01_perspective_dynamics": {
+        "turning": [
+            "y1' = w2 - w3 y2",  # the derivative of 1/Z is forgotten
+            "y1' = w2 - w3 y2 + y1 (w1 y2 - w2 y1)",
+            "y1' = w3 - w2 y2 - y1 (w1 y2 - w2 y1)",
+            "y1' = w2 - w3 y2 - w1 y2 + w2 y1",
+        ],
+        "excited": ["a", "b", "c"],
+        "gain-for-one": [2, 3, 8, 10, 20],
+    },
+    "02_two_observers": {
+        "slow": [
+            "e3' = -G P (b1^2 + b2^2) e3 / A",
+            "e3' = G^2 P (b1^2 + b2^2) e3 / A",  # one G is not divided out
+            "e3' = G P (b1 + b2)^2 e3 / A",
+            "e3' = G P (b1^2 + b2^2) e3",
+        ],
+        "double": ["a", "b", "d"],
+        "gains": [
+            {"gain": 10, "lyapunov": -0.5},
+            {"gain": 20, "lyapunov": -0.5},
+            {"gain": 8, "lyapunov": -0.5},
+            {"gain": 10, "lyapunov": -2},
+        ],
+    },
+    "03_real_camera": {
+        "translating": [
+            ["y1' = (v1 - v3 y1) y3", "y2' = (v2 - v3 y2) y3"],  # as if the landmark moved with v
+            ["y1' = -v1 y3", "y2' = -v2 y3"],
+            ["y1' = (v3 y1 - v1) y3", "y2' = (v3 y1 - v2) y3"],
+            ["y1' = (v3 y1 - v1) y3"],  # one line is missing
+        ],
+        "far-start": ["a", "c", "d"],
+        "sooner": [
+            {"gain": 5, "push": 100},
+            {"gain": 1, "push": 50},
+            {"gain": 10, "push": 50},
+            {"gain": 1, "push": 400},
+        ],
+    },
+    "04_all_observers": {
+        "spring": [
+            "s^2 + H s - Lambda b1^2",
+            "s^2 - H s + Lambda b1^2",
+            "s^2 + H s + Lambda b1",
+            "s^2 + Lambda b1^2",
+        ],
+        "same-numbers": ["b", "c", "d"],
+        "from-the-sample": [
+            {"measured_gain": 5, "hidden_gain": 10},  # the gains it comes with
+            {"measured_gain": 5, "hidden_gain": 100},
+            {"measured_gain": 20, "hidden_gain": 50},
+            {"measured_gain": 10, "hidden_gain": 100},
+        ],
+    },
+    "05_structure_and_motion": {
+        "which-velocity": ["v_c1 ybar3", "v_c3 ybar3", "v_c2", "v_c2 y1 ybar3"],
+        "twice-as-fast": ["a", "c", "d"],
+        "switching": [5, 15, 30, 60],
+    },
+    "06_many_points": {
+        "second-point": [
+            "r_x + d2_x - y1_2 r_z",  # the point is at r + d2 in depth as well
+            "r_x + d2_x + y1_2 (r_z + d2_z)",
+            "r_x + d2_x - y1_1 (r_z + d2_z)",
+            "d2_x - y1_2 d2_z",
+        ],
+        "hide-the-first": ["a", "b", "d"],
+        "noisy-point": [1 / 3, 1, 10],
+    },
+    "08_check_a_derivation": {
+        "tilted": [
+            "y1' = (b1 + y1 (n1 b1 + n2 b2 + n3 b3)) y3",
+            "y1' = b1 y3",  # the derivative of 1/eta is forgotten
+            "y1' = (b1 - n3 b3 y1) y3",  # as if the plane were upright
+            "y1' = (b1 - y1 (n1 b1 + n2 b2 + n3 b3)) y3^2",
+        ],
+        "which-step": ["a", "b", "d"],
+        "derived-gain": [3, 5, 30],
+    },
+}

@@ -1,0 +1,91 @@
+"""Each notebook says what it teaches and has exercises of four kinds, whose students' copies run as the trials do."""
+
+import ast
+from contextlib import nullcontext
+
+import pytest
+from jupyter_harness import NOTEBOOKS, execute
+from mistakes import MISTAKES
+from notebook_exercises import answer_name, names_read, source, tagged, trials
+from test_notebooks import read
+
+from percept_obs.exercises import students_copy
+
+NAMES = sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb"))
+
+
+@pytest.fixture(params=NAMES)
+def notebook(request):
+    return read(f"{request.param}.ipynb")
+
+
+def test_goals_time_and_needs_stand_at_the_top(notebook):
+    assert notebook["cells"][1]["id"] == "goals"
+    for begin in ("**You will learn**", "**Time:** about", "**You need**"):
+        assert begin in source(notebook, 1)
+
+
+def test_there_are_exercises_of_four_kinds(notebook):
+    checks = [source(notebook, k) for k in tagged(notebook, "exercise", "code")]
+    for kind in ("derive(", "choose(", "reach("):
+        assert any(kind in check for check in checks), kind
+    assert tagged(notebook, "solution", "markdown")
+    assert tagged(notebook, "hint", "markdown")
+
+
+def test_hints_are_folded_and_only_hints_are_in_an_exercise(notebook):
+    for k in tagged(notebook, "hint", "markdown"):
+        assert source(notebook, k).startswith("<details><summary>Hint</summary>\n\n")
+        assert source(notebook, k).rstrip().endswith("</details>")
+    for k in tagged(notebook, "exercise", "markdown"):
+        assert "<details>" not in source(notebook, k)
+
+
+def test_a_check_follows_each_solution_and_nothing_else_reads_an_answer(notebook):
+    checks = tagged(notebook, "exercise", "code")
+    solutions = tagged(notebook, "solution", "code")
+    assert checks == [k + 1 for k in solutions]
+    programs = [k for k, cell in enumerate(notebook["cells"]) if cell["cell_type"] == "code"]
+    for k in solutions:
+        assert isinstance(ast.parse(source(notebook, k + 1)).body[-1], ast.Expr), "it ends with what it shows"
+        given = {n.id for n in ast.walk(ast.parse(source(notebook, k))) if isinstance(n, ast.Name)}
+        given -= names_read(source(notebook, k)) - {answer_name(source(notebook, k))}
+        assert answer_name(source(notebook, k)) in names_read(source(notebook, k + 1))
+        for other in set(programs) - set(checks) - set(solutions):
+            assert not given & names_read(source(notebook, other))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_solution_has_three_mistakes(name):
+    notebook = read(f"{name}.ipynb")
+    solutions = {notebook["cells"][k]["id"] for k in tagged(notebook, "solution", "code")}
+    assert set(MISTAKES[name]) == solutions
+    assert all(len(mistakes) >= 3 for mistakes in MISTAKES[name].values())
+
+
+def test_students_copies_hold_no_solution(notebook):
+    copy = students_copy(notebook)
+    text = "\n".join(source(copy, k) for k in range(len(copy["cells"])))
+    for k in tagged(notebook, "solution", "code") + tagged(notebook, "solution", "markdown"):
+        assert source(notebook, k) not in text
+    assert "<summary>Answer" not in text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("check", "told"),
+    [
+        ("reach(mine, lambda m: {'off': abs(m - 5)}, off=1)", None),
+        ("reach(mine, lambda m: {'off': abs(m - 5)}, off=9)", ": mine = 3$"),  # a mistake passes
+        ("reach(mine, lambda m: {'off': abs(m - 5)}, off=-1)", ": mine$"),  # the solution does not
+        ("reach(mine + 0, lambda m: {'off': abs(m - 5)}, off=1)", "TypeError"),  # the stub raises
+    ],
+)
+def test_a_trial_can_fail(check, told, tmp_path):
+    from nbclient.exceptions import CellExecutionError
+    from nbformat.v4 import new_code_cell, new_notebook
+
+    solution = new_code_cell("mine = 5", id="gain", metadata={"tags": ["solution"]})
+    notebook = new_notebook(cells=[solution, new_code_cell(f"from percept_obs.exercises import reach\n{check}")])
+    with pytest.raises(CellExecutionError, match=f"(?m){told}") if told else nullcontext():
+        execute(notebook, tmp_path, trials(notebook, {"gain": [3, 7, 12]}))
