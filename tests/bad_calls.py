@@ -27,7 +27,7 @@ from percept_obs.points.ray import ray_turning
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
-from percept_obs.system.motion import Signal
+from percept_obs.system.signal import Signal
 
 PACKAGE = str(Path(po.__file__).parent)
 SECONDS, BYTES = 5, 2 << 30

@@ -5,7 +5,8 @@ import pytest
 import sympy as sp
 
 from percept_obs import affine, rigid
-from percept_obs.system.motion import TIME, Motion, Signal
+from percept_obs.system.motion import TIME, Motion
+from percept_obs.system.signal import Signal
 
 A = np.arange(9.0).reshape(3, 3)
 b = np.array([1.0, 2, 3])

@@ -42,7 +42,7 @@ from percept_obs.structure.scenarios import chwa2019_simulation
 from percept_obs.studies.comparison import best_setting, compare, relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import choose_and_report, own_length, side_by_side
-from percept_obs.system.motion import Signal
+from percept_obs.system.signal import Signal
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.verdict import SETTLED_PART, TOLERANCE, outcome
 

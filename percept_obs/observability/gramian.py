@@ -19,7 +19,7 @@ from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
-from percept_obs.system.motion import slack_of
+from percept_obs.system.signal import slack_of
 
 Piece = tuple[Array, Array]
 

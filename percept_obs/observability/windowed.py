@@ -10,7 +10,7 @@ from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.motion import from_the_start, slack_of
+from percept_obs.system.signal import from_the_start, slack_of
 
 
 @dataclass(frozen=True, eq=False)

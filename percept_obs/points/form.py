@@ -17,7 +17,8 @@ from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
 from percept_obs.recording import Recording
 from percept_obs.system.derivation import Derivation, equals
-from percept_obs.system.motion import Motion, readonly
+from percept_obs.system.motion import Motion
+from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
 DRAWS = 4

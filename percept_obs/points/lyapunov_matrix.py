@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
-from percept_obs.system.motion import Signal
+from percept_obs.system.signal import Signal
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""

@@ -12,7 +12,8 @@ import numpy as np
 
 from percept_obs.border import checked, warn
 from percept_obs.compile import Array, Flags
-from percept_obs.system.motion import Motion, readonly
+from percept_obs.system.motion import Motion
+from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
 

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import CanonicalForm, partition
-from percept_obs.system.motion import Motion, Signal, rigid
+from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.signal import Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
 

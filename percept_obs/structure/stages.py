@@ -15,7 +15,8 @@ from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.system.motion import Motion, Signal, rigid, slack_of
+from percept_obs.system.motion import Motion, rigid
+from percept_obs.system.signal import Signal, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 

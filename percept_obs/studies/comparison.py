@@ -17,7 +17,7 @@ from percept_obs.border import checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
-from percept_obs.system.motion import from_the_start, slack_of
+from percept_obs.system.signal import from_the_start, slack_of
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE

@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from percept_obs.border import checked
-from percept_obs.system.motion import from_the_start
+from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.motion import slack_of
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
 
 LARGEST_CONDITION = 1e6

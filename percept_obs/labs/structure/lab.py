@@ -26,7 +26,8 @@ from percept_obs.structure import (
     StructureAndMotion,
     StructureScenario,
 )
-from percept_obs.system.motion import Motion, Signal, rigid
+from percept_obs.system.motion import Motion, rigid
+from percept_obs.system.signal import Signal
 from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track

@@ -1,0 +1,113 @@
+"""Signals: numbers known over time, and when two times are the same one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.border import checked, numbers
+from percept_obs.compile import Array, Flags
+
+
+def slack_of(times: Array) -> float:
+    """By how many seconds two times may differ and still be the same one: a thousandth of the usual interval."""
+    return 1e-3 * float(np.median(np.diff(times)))
+
+
+def from_the_start(elapsed: Array, after: float) -> Flags:
+    """Which samples lie `after` seconds or more behind the first one, shape (K,)."""
+    return np.asarray(elapsed >= after - slack_of(elapsed))
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """Numbers known over time: constant, sampled, or given by a function.
+
+    Parameters
+    ----------
+    samples : array of shape (K, n) or function of a time
+        Rows of values; one row stands for a constant.  A function takes a time in seconds and returns n values.
+    times : array of shape (K,), optional
+        When the rows were sampled, in seconds; between them the signal is linear.
+
+    Raises
+    ------
+    ValueError
+        If values are not finite, times do not increase strictly, or their numbers differ.
+    """
+
+    samples: Array | Callable[[float], ArrayLike]
+    times: Array | None = None
+
+    def __post_init__(self) -> None:
+        if callable(self.samples):
+            return
+        samples = frozen(np.atleast_2d(np.asarray(self.samples, dtype=float)), "the signal's samples")
+        object.__setattr__(self, "samples", samples)
+        if not len(samples):
+            raise ValueError("the signal has no samples; give a row of values for each of its times")
+        if self.times is None:
+            if len(samples) != 1:
+                raise ValueError(f"{len(samples)} rows of samples need as many times; only one row is a constant")
+            return
+        times = frozen(np.asarray(self.times, dtype=float), "the signal's times")
+        if times.shape != (len(samples),) or not (np.diff(times) > 0).all():
+            raise ValueError(
+                f"the signal has {len(samples)} rows of samples and times of shape {times.shape}; "
+                "give one time a row, strictly increasing"
+            )
+        object.__setattr__(self, "times", times)
+
+    @property
+    def constant(self) -> bool:
+        """Whether the signal is the same at all times."""
+        return not callable(self.samples) and len(self.samples) == 1
+
+    def at(self, times: ArrayLike) -> Array:
+        """Values at the given times.
+
+        Parameters
+        ----------
+        times : array of shape (T,)
+            Times in seconds.
+
+        Returns
+        -------
+        array of shape (T, n), or (1, n) for a constant signal
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the sampled ones, or a function returns values that are not finite.
+        """
+        times = np.atleast_1d(np.asarray(times, dtype=float))
+        if callable(self.samples):
+            rows = np.array([numbers(self.samples(float(t)), "what the function of time gives").ravel() for t in times])
+            return frozen(rows, "the signal's function values")
+        if self.times is None or len(self.samples) == 1:
+            return self.samples
+        slack = slack_of(self.times)
+        if times.size and (times.min() < self.times[0] - slack or times.max() > self.times[-1] + slack):
+            raise ValueError(
+                f"the signal is known from {self.times[0]:.6g} to {self.times[-1]:.6g} s, but is asked for from "
+                f"{times.min():.6g} to {times.max():.6g} s; sample it longer or ask for less"
+            )
+        return np.stack([np.interp(times, self.times, column) for column in self.samples.T], axis=-1)
+
+
+def frozen(array: Array, what: str) -> Array:
+    """A copy of finite numbers that cannot be changed, or a ValueError that says what they are."""
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what} are not finite; remove or repair the NaN or infinite ones")
+    return readonly(array)
+
+
+def readonly(values: ArrayLike) -> Array:
+    """A copy of numbers that cannot be changed."""
+    array = np.array(values, dtype=float)
+    array.setflags(write=False)
+    return array
