@@ -182,7 +182,7 @@ def test_another_p_is_chosen(fresh):
         shown = state(fresh)
         assert shown["settings"]["weight"] == kind
         assert shown["estimate"] not in estimates
-        assert_equals_python(shown)
+        assert_equals_python(shown, 1e-7)  # the page moves the points by steps, and a small P is stiff
         estimates.append(shown["estimate"])
 
 
