@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 HUGE = 10**308
 """Whole numbers and fractions from here on are no floats any more."""
@@ -85,13 +85,14 @@ _SCALARS: Mapping[Any, Kind] = {
 def _named(kind: Any) -> Kind | None:
     if get_origin(kind) is Annotated:
         return next((extra for extra in kind.__metadata__ if isinstance(extra, Kind)), None)
-    return _SCALARS[ArrayLike] if get_origin(kind) is np.ndarray else _SCALARS.get(kind)
+    arrays = (np.ndarray, get_origin(NDArray[np.float64]))  # the second is an alias of the first from Python 3.12 on
+    return _SCALARS[ArrayLike] if get_origin(kind) in arrays else _SCALARS.get(kind)
 
 
 def _alternatives(inside: tuple[Any, ...]) -> tuple[Any, ...]:
     """The kinds of a union; those that make up numpy's ArrayLike stand for real numbers, not for complex or text."""
     arrays = set(get_args(ArrayLike))
-    if not arrays <= set(inside):
+    if not arrays or not arrays <= set(inside):
         return inside
     return (ArrayLike, *(each for each in inside if each not in arrays))
 
