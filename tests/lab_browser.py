@@ -95,7 +95,7 @@ def assert_equals_python(shown, tolerance=1e-9):
         assert f"{run.observer.name}: {run.verdict()}" in shown["verdicts"]
         drawn = {line["name"]: _array(line["values"]) for line in shown["drawn"]["error"]}
         error = np.where(np.isfinite(run.relative_error), run.relative_error, np.nan)
-        np.testing.assert_allclose(drawn[f"{run.observer.name} error"], error, rtol=1e-6, atol=100 * tolerance)
+        np.testing.assert_allclose(drawn[f"{run.observer.name} error"], error, rtol=1e-6, atol=tolerance)
 
 
 def centre(page, selector):

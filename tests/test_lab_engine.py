@@ -171,12 +171,12 @@ def test_all_observers_at_once_leave_no_number_out(lab, node):
 
 def assert_same_recording(answer, recording):
     np.testing.assert_allclose(answer["time"], recording.elapsed, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(as_array(answer["truth"], 3), recording.truth, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(as_array(answer["outputs"], 2), recording.outputs, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(as_array(answer["truth"], 3), recording.truth, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(as_array(answer["outputs"], 2), recording.outputs, rtol=1e-11, atol=1e-12)
 
 
 def assert_same_run(told, run, tolerance):
-    np.testing.assert_allclose(as_array(told["estimate"], 3), run.estimate, rtol=tolerance, atol=tolerance)
+    np.testing.assert_allclose(as_array(told["estimate"], 3), run.estimate, rtol=1e-10, atol=tolerance)
     if run.observer.covariance is not None:
         variances = np.diagonal(run.covariance, axis1=1, axis2=2)
-        np.testing.assert_allclose(as_array(told["deviation"], 3) ** 2, variances, rtol=tolerance, atol=tolerance)
+        np.testing.assert_allclose(as_array(told["deviation"], 3) ** 2, variances, rtol=1e-10, atol=tolerance)

@@ -40,7 +40,7 @@ LONGEST_STEP = 0.01
 """Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
 
 PLANT_STEP = 0.0025
-"""Longest step, in seconds, with which the page integrates a point's motion; `recording.path` is exact."""
+"""Longest step, in seconds, with which the page integrates a motion that varies; a constant one it sums exactly."""
 
 STEP_ROUNDING = 1e-4
 """Share of the longest step by which one may be longer: a clock that counts from 1970 knows times to 2e-7 s."""

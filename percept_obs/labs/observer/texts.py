@@ -9,14 +9,13 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from percept_obs.compile import function_source, source
+from percept_obs.compile import function_source
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import formula, markup
 from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
-from percept_obs.recording.simulation import point_in_motion
 from percept_obs.system import surfaces
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
@@ -73,7 +72,7 @@ def with_every_gain(name: str) -> Observer:
 def model_for_the_page() -> Texts:
     """What does not depend on the form: the point's loop, the surfaces, the observers."""
     return {
-        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
+        "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
         "surfaces": {name: _surface_for_the_page(name) for name in SURFACES},
         "observers": {name: _observer_for_the_page(name) for name in BY_NAME},
     }

@@ -87,6 +87,7 @@ def model_for_the_page() -> Texts:
     """What depends on no choice: the point's loop, the pinhole, the observers, and why choices are refused."""
     surface = pinhole()
     return {
+        "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
         "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
         "project": function_source(POINT, (*surface.image, surface.distance)),
         "swinging": function_source(SWING, (swinging(*SWING),)),

@@ -1,6 +1,7 @@
 // @ts-check
 // What cameras of single points share: when they sample, what noise adds, how far the point stays in front.
 
+import { constantPath } from "./path.js";
 import { draws } from "./random.js";
 import { column, plantGrid, sampleTimes } from "./tables.js";
 
@@ -74,18 +75,19 @@ export class PointCamera {
   /** Fill in coordinates at the ends of steps; how many of them are in front of the camera from the first on. */
   look(settings, functions, lines, found) {
     const { start, known, shape } = /** @type {any} */ (this).path(settings, functions, lines);
-    const points = move(start, functions.plant, known, lines, (part, length) => this.memory.room(part, length));
+    const points = move(start, functions, known, lines, (part, length) => this.memory.room(part, length));
     return project(points, functions.project, shape, found);
   }
 }
 
 /** Positions at a clock's times, from time 0 on, of a point that moves by a motion's known rows. */
-function move(start, run, { rows, varying }, { index, steps }, room) {
+function move(start, functions, { rows, varying }, { grid, index, steps }, room) {
+  const points = room("points", 3 * index.length - 3);
+  if (!varying) return constantPath(start, functions.rates(rows, new Float64Array(12)), grid, index, points);
   const states = room("plant states", 3 * steps.length + 3);
   const resets = room("plant resets", steps.length + 1);
-  const diverged = run(start, steps, NOTHING, rows, NOTHING, NOTHING, varying, states, resets);
+  const diverged = functions.plant(start, steps, NOTHING, rows, NOTHING, NOTHING, varying, states, resets);
   if (diverged >= 0) states.fill(NaN, 3 * diverged);
-  const points = room("points", 3 * index.length - 3);
   for (let k = 1; k < index.length; k++) {
     for (let c = 0; c < 3; c++) points[3 * k - 3 + c] = states[3 * index[k] + c];
   }

@@ -26,7 +26,7 @@ export class Kernels extends PrintedKernels {
         return this.loop([key, name, way].filter(Boolean).join(" "), name, observers[name][way]);
       });
     return [
-      { key: "plant", texts: { plant: this.model.plant } },
+      { key: "point", texts: { rates: this.model.rates } },
       { key: settings.surface, texts: { project, ray, foe } },
       { key, texts: { w, ...(circle && { circle }) } },
       ...loops,

@@ -46,8 +46,8 @@ export class StructureKernels extends PrintedKernels {
   }
 
   needed(settings) {
-    const { plant, project, swinging, unknowns, forms } = this.model;
-    const point = { key: "point", texts: { plant, project, swinging } };
+    const { rates, plant, project, swinging, unknowns, forms } = this.model;
+    const point = { key: "point", texts: { rates, plant, project, swinging } };
     if (this.refusal(settings)) return [point];
     const count = settings.unknown.length;
     const key = keyOf(settings);
