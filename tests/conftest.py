@@ -4,6 +4,7 @@ import math
 import os
 import shutil
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 import hypothesis
@@ -37,9 +38,11 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(items):
-    """Files that open a browser first: they take longest, and one at the end would keep a worker waiting."""
-    first = {item.path for item in items if item.get_closest_marker("browser")}
-    items.sort(key=lambda item: item.path not in first)
+    """Files that take long first, for one at the end would keep a worker waiting: with a browser, many slow tests."""
+    tests = Counter(item.path for item in items)
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    browser = {item.path for item in items if item.get_closest_marker("browser")}
+    items.sort(key=lambda item: (item.path not in browser, -slow[item.path], -tests[item.path]))
 
 
 @pytest.fixture(scope="session")
