@@ -1,7 +1,10 @@
 """What tests share: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
 
-import math
 import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by numpy; threads only wait for each other in small matrices
+
+import math
 import shutil
 import tempfile
 from collections import Counter
