@@ -1,9 +1,13 @@
 """What tests share: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
 
-import math
 import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by numpy; threads only wait for each other in small matrices
+
+import math
 import shutil
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 import hypothesis
@@ -37,9 +41,11 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(items):
-    """Files that open a browser first: they take longest, and one at the end would keep a worker waiting."""
-    first = {item.path for item in items if item.get_closest_marker("browser")}
-    items.sort(key=lambda item: item.path not in first)
+    """Files that take long first, for one at the end would keep a worker waiting: with a browser, many slow tests."""
+    tests = Counter(item.path for item in items)
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    browser = {item.path for item in items if item.get_closest_marker("browser")}
+    items.sort(key=lambda item: (item.path not in browser, -slow[item.path], -tests[item.path]))
 
 
 @pytest.fixture(scope="session")

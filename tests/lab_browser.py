@@ -2,11 +2,13 @@
 
 import json
 import time
+from pathlib import Path
 
 import numpy as np
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
 from lab_settings import FRONT
+from sample_sizes import sampled
 
 from percept_obs.labs.observer.lab import observer_lab
 
@@ -45,6 +47,26 @@ STATE = """(which) => {
         silent: !lab.view.root.querySelector(".silence").hidden,
     };
 }"""
+
+FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
+EVENTS = sampled(500, 10_000)
+"""Random events in each lab: several for each control."""
+
+USABLE = """() => [...[...window.perceptObsLabs][0].view.root.querySelectorAll("[data-control]")]
+    .filter((control) => !control.disabled && control.checkVisibility()).map((control) => control.dataset.control)"""
+
+
+def usable(page):
+    """Names of the controls of the first lab that can be used now."""
+    return set(page.evaluate(USABLE))
+
+
+def used_at_random(page, seed, count=EVENTS, most=20_000):
+    """Names of the controls that so many random events used; nothing goes wrong, and the lab comes to rest."""
+    found = page.evaluate(FUZZ, [seed, count, most])
+    assert found["wrong"] == []
+    rested(page, 60)
+    return set(found["used"])
 
 
 def write_notebook(folder, name, *cells):

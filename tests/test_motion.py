@@ -113,6 +113,17 @@ def test_a_function_that_returns_nan_is_refused():
         affine(lambda t: A * np.nan, b).known(1.0)
 
 
+@pytest.mark.parametrize(
+    ("late", "message"),
+    [([1.0, np.nan, 3], "not finite"), ([1.0, 2], r"shape \(2,\)"), (["1", "2", "3"], "real numbers")],
+)
+def test_a_function_that_goes_wrong_at_one_of_many_times_is_refused(late, message):
+    motion = affine(A, lambda t: late if t > 2 else [1.0, 2, t])
+    assert motion.known([0.0, 2.0])[:, -1].tolist() == [0, 2]
+    with pytest.raises(ValueError, match=message):
+        motion.known([0.0, 1.0, 3.0])
+
+
 def test_rows_without_times_are_refused():
     with pytest.raises(ValueError, match="as many times"):
         Signal(np.zeros((2, 3)))

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from functools import cache
 
 import numpy as np
 import pytest
@@ -28,12 +29,18 @@ def answers(lab, node):
     return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
 
 
+@pytest.fixture(scope="module")
+def runs(answers):
+    """Python's run of each case."""
+    return cache(lambda case: run_of(answers[case][0]))
+
+
 @pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
-def test_page_and_python_agree_to_1e_9(answers, case):
+def test_page_and_python_agree_to_1e_9(answers, runs, case):
     settings, answer = answers[case]
-    run = run_of(settings)
+    run = runs(case)
     assert_same_run(answer, run)
     assert_same_gramian(answer, settings, run.recording)
 
@@ -41,13 +48,13 @@ def test_page_and_python_agree_to_1e_9(answers, case):
 @pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
-def test_the_copied_code_makes_the_same_run(answers, case):
-    settings, answer = answers[case]
+def test_the_copied_code_makes_the_same_run(answers, runs, case):
+    _, answer = answers[case]
     namespace = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of directions that are never seen, as the user is to see it
         exec(answer["code"], namespace)
-    expected, copied = run_of(settings), namespace["run"]
+    expected, copied = runs(case), namespace["run"]
     assert copied.diverged_at == expected.diverged_at
     if expected.diverged_at is None:
         np.testing.assert_allclose(copied.state, expected.state, rtol=0, atol=1e-9)

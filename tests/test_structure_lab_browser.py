@@ -1,7 +1,5 @@
 """The lab of structure and motion does in JupyterLab what it promises: ticking, dragging, telling, and surviving."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
@@ -20,6 +18,8 @@ from lab_browser import (
     rested,
     serious_violations,
     state,
+    usable,
+    used_at_random,
     write_notebook,
 )
 from structure_settings import assert_same_structure_runs, structure_runs_of
@@ -29,7 +29,6 @@ from percept_obs.structure import ImpossibleChoice
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
 START = control("ybar")
 SECOND = "structure_lab(unknown=['v_p1', 'v_p2', 'v_p3'])"
 TOLD = ".unknowns .told"
@@ -242,9 +241,7 @@ def test_dark_and_light_have_their_own_colours(fresh):
 
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
     opening = state(fresh)
-    found = fresh.evaluate(FUZZ, [11, 1000])
-    assert found["wrong"] == []
-    rested(fresh, 60)
+    assert usable(fresh) - used_at_random(fresh, seed=11) == set()
     shown = state(fresh)
     assert_python_has(folder, shown["settings"])
     assert shown["problems"] == []

@@ -3,7 +3,7 @@
 from percept_obs.border.checking import WrongKind, checked, numbers, refuse_kind
 from percept_obs.border.expressions import derived, expression, expressions, matrix
 from percept_obs.border.files import write_whole
-from percept_obs.border.kinds import Coefficients, Entries, Kind
+from percept_obs.border.kinds import Coefficients, Entries, Kind, are_numbers
 from percept_obs.border.limits import MOST_TERMS, TooMuchWork, limit
 from percept_obs.border.warning import warn
 
@@ -14,6 +14,7 @@ __all__ = [
     "Kind",
     "TooMuchWork",
     "WrongKind",
+    "are_numbers",
     "checked",
     "derived",
     "expression",

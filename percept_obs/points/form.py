@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -320,7 +320,12 @@ class PointsForm:
             return np.zeros((len(known), 0))
         if not self.motion.parameters:
             return np.array([[float(e) for e in expressions]])
-        return np.stack(vectorised(self.motion.parameters, expressions)(*known.T), axis=-1)
+        return np.stack(self._function(*known.T), axis=-1)
+
+    @cached_property
+    def _function(self) -> Callable[..., list[Array]]:
+        """The layout's expressions of the motion's parameters; a path asks for thousands of their values."""
+        return vectorised(self.motion.parameters, self.layout.expressions)
 
     def _dense(self, values: Array) -> Array:
         together = np.zeros((len(values), self.states, self.states + 1))

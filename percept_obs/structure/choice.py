@@ -16,7 +16,7 @@ from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.signal import Signal
+from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
 
@@ -220,11 +220,11 @@ class StructureAndMotion(OnePoint):
                 )
             return rows[..., known]
 
-        samples, times = motion.signal.samples, motion.signal.times
+        known_over_time, samples = motion.signal.at, motion.signal.samples
         if callable(samples):
-            signal = Signal(lambda time: taken(np.asarray(samples(time), dtype=float)))
+            signal = Signal(OverTime(lambda times: taken(known_over_time(times))))
         else:
-            signal = Signal(taken(samples), times)
+            signal = Signal(taken(samples), motion.signal.times)
         return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
 
     def _in_theta(self, hidden: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:

@@ -16,7 +16,7 @@ from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import Motion, rigid
-from percept_obs.system.signal import Signal, slack_of
+from percept_obs.system.signal import OverTime, Signal, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
@@ -122,8 +122,9 @@ def semigeneral(
 def _with_velocities(motion: Motion, found: dict[str, float]) -> Motion:
     """The motion with the camera's velocities that were found."""
 
-    def known(time: float) -> list[float]:
-        given = zip(motion.parameters, motion.known(time)[0].tolist(), strict=True)
-        return [found.get(symbol.name, value) for symbol, value in given]
+    def known(times: Array) -> Array:
+        given = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters)))
+        columns = (found.get(symbol.name, column) for symbol, column in zip(motion.parameters, given.T, strict=True))
+        return np.stack([np.broadcast_to(column, len(times)) for column in columns], axis=-1)
 
-    return replace(motion, signal=Signal(known))
+    return replace(motion, signal=Signal(OverTime(known)))

@@ -10,9 +10,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import MOST_TERMS, Coefficients, checked, limit, matrix, numbers, warn
+from percept_obs.border import MOST_TERMS, Coefficients, are_numbers, checked, limit, matrix, numbers, warn
 from percept_obs.compile import Array, vectorised
-from percept_obs.system.signal import Signal
+from percept_obs.system.signal import OverTime, Signal
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
@@ -207,10 +207,11 @@ def bound(
         entries = [e for value, block in given for e in _entries(value, block)]
         A, b = (matrix.xreplace(dict(zip(symbols, entries, strict=True))) for matrix in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
-        return Motion(name, A, b, free, Signal(lambda t: [t]) if free == (TIME,) else None)
+        return Motion(name, A, b, free, Signal(OverTime(lambda times: times[:, None])) if free == (TIME,) else None)
     if any(callable(value) for value in values):
         functions = [_function(value, block) for value, block in given]
-        return Motion(name, A, b, symbols, Signal(lambda t: np.concatenate([at(t) for at in functions])))
+        function = OverTime(lambda times: np.hstack([rows(times) for rows in functions]))
+        return Motion(name, A, b, symbols, Signal(function))
     if times is None:
         motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(value, block, 1) for value, block in given])))
     else:
@@ -249,17 +250,20 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
         )
 
 
-def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[float], Array]:
-    """One coefficient as a row, as a function of time; a run asks for ten thousands, so sympy is asked once."""
+def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[Array], Array]:
+    """One coefficient as rows, as a function of times; what it gives is looked at once for all of them."""
     if not callable(value):
-        row = _rows(value, block, 1)[0]
-        return lambda time: row
+        row = _rows(value, block, 1)
+        return lambda times: np.repeat(row, len(times), axis=0)
     shape = _shape(block)
 
-    def at(time: float) -> Array:
-        found = value(time)
-        array = numbers(found, "a coefficient of the motion")
-        return array.ravel() if array.shape == shape and np.isfinite(array).all() else _rows(found, block, 1)[0]
+    def at(times: Array) -> Array:
+        found = [value(time) for time in times.tolist()]
+        if all(type(each) in (list, tuple, np.ndarray) for each in found) and are_numbers(found):
+            array = np.asarray(found, dtype=float)
+            if array.shape == (len(times), *shape) and np.isfinite(array).all():
+                return array.reshape(len(times), -1)
+        return np.concatenate([_rows(each, block, 1) for each in found])
 
     return at
 

@@ -86,8 +86,7 @@ class Signal:
         """
         times = np.atleast_1d(np.asarray(times, dtype=float))
         if callable(self.samples):
-            rows = np.array([numbers(self.samples(float(t)), "what the function of time gives").ravel() for t in times])
-            return frozen(rows, "the signal's function values")
+            return frozen(_rows(self.samples, times), "the signal's function values")
         if self.times is None or len(self.samples) == 1:
             return self.samples
         slack = slack_of(self.times)
@@ -97,6 +96,30 @@ class Signal:
                 f"{times.min():.6g} to {times.max():.6g} s; sample it longer or ask for less"
             )
         return np.stack([np.interp(times, self.times, column) for column in self.samples.T], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class OverTime:
+    """A function of time that knows its values at many times at once, for a run asks for ten thousands.
+
+    Parameters
+    ----------
+    rows : function
+        Takes times of shape (T,) and returns values of shape (T, n).
+    """
+
+    rows: Callable[[Array], Array]
+
+    def __call__(self, time: float) -> Array:
+        """Values at one time, shape (n,)."""
+        return self.rows(np.array([time]))[0]
+
+
+def _rows(samples: Callable[[float], ArrayLike], times: Array) -> Array:
+    """Values of a function of time, shape (T, n)."""
+    if isinstance(samples, OverTime):
+        return samples.rows(times)
+    return np.array([numbers(samples(t), "what the function of time gives").ravel() for t in times.tolist()])
 
 
 def frozen(array: Array, what: str) -> Array:

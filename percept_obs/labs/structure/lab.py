@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import as_far_as_seen, within_reach
@@ -27,7 +28,7 @@ from percept_obs.structure import (
     StructureScenario,
 )
 from percept_obs.system.motion import Motion, rigid
-from percept_obs.system.signal import Signal
+from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
@@ -133,12 +134,13 @@ def motion_of(settings: Settings) -> Motion:
     """The true motion, constant unless a velocity swings."""
     around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
 
-    def known(time: float) -> list[float]:
-        return [*settings["w"], *swinging(around, swings, settings["rate"], _phases, time, np.sin)]
+    def known(times: Array) -> Array:
+        swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
+        return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
 
     if settings["rate"] and swings.any():
-        return replace(rigid(), signal=Signal(known))
-    still = known(0.0)
+        return replace(rigid(), signal=Signal(OverTime(known)))
+    (still,) = known(np.zeros(1))
     return rigid(still[:3], still[3:6], still[6:])
 
 
