@@ -9,7 +9,6 @@ import pytest
 from examples import BOTH, NOISY, ONE, OTHER, ZERO
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from sample_sizes import sampled
 from trust_study import figures
 
 from percept_obs import (
@@ -284,13 +283,12 @@ def test_a_good_estimate_is_trusted_for_points_and_structure_too():
 
 
 @pytest.mark.slow
-def test_trust_is_right_in_many_runs_without_a_truth():
-    seeds = sampled(range(100, 200), range(200))
-    missed, alarms, wrong, right, *_ = figures(seeds)
+def test_trust_is_right_in_two_hundred_runs_without_a_truth():
+    missed, alarms, wrong, right, *_ = figures(range(200))
     assert missed <= 0.03
     assert alarms <= 0.05
-    assert wrong > len(seeds) / 4
-    assert right > len(seeds) / 4
+    assert wrong > 50
+    assert right > 50
 
 
 def follow(recording, observer):
