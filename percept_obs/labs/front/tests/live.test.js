@@ -66,7 +66,7 @@ class SmallLab extends Live {
     this.formulas = { show: () => {} };
     const told = (name) => [name, (value) => (this.told[name] = value)];
     this.told = {};
-    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence"];
+    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence", "read", "time", "playing", "close"];
     this.follow({ root: { classList: { toggle() {} } }, ...Object.fromEntries(names.map(told)) });
   }
 

@@ -4,6 +4,7 @@ import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
+import { Scene } from "../common/page/scene.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, translationTowards } from "./model/engine.js";
@@ -12,6 +13,7 @@ import { PRESETS, settingsOf } from "./model/presets.js";
 import { reasons } from "./model/text.js";
 import { Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
+import { sceneOf } from "./page/scene.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
@@ -28,7 +30,7 @@ export class ObserverLab extends Live {
       placeOf: (shown) => shown.foe,
       onMove: (foe) => this.moveFoe(foe),
     });
-    this.planes = [plane];
+    this.planes = [plane, new Scene(this, { image: plane, ...sceneOf(this) })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
       numbersOf: ({ A, b, normal }) => lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }),

@@ -66,6 +66,20 @@ export function imagePlaneInWords({ problem, time, truth, width, names, runs, fo
   return `${parts.join("; ")}.`;
 }
 
+/** The text equivalent of the scene of a point: how far it is, and how far the estimates put it. */
+export function sceneInWords(shown, distancesOf) {
+  if (shown.problem) return shown.problem;
+  const { truth, runs, time } = shown;
+  const last = time.length - 1;
+  const far = (value) => (Number.isNaN(value) ? "infinitely far away or behind the camera" : `at ${readable(value)} m`);
+  const parts = runs.map(({ title, estimate }) => {
+    const distances = distancesOf(estimate);
+    return `the ${title} estimate begins ${far(distances[0])} and ends ${far(distances[last])}`;
+  });
+  if (truth?.length) parts.unshift(`the point goes from ${readable(distancesOf(truth)[0])} m to ${readable(distancesOf(truth)[last])} m of the camera`);
+  return `${parts.join("; ")}.`;
+}
+
 /** When the point was lost, if it was. */
 export function leavingInWords({ leavesAt }) {
   if (leavesAt === null) return [];

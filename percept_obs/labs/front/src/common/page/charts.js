@@ -1,6 +1,7 @@
 // Time charts: lines of width 1, least and greatest value of each pixel column, so that 8,000 points cost as 800.
 
 import { Picture } from "./canvas.js";
+import { element } from "./controls.js";
 import { stroke } from "./image_frame.js";
 import { tickLabel } from "../model/scales.js";
 
@@ -14,12 +15,14 @@ const MARK = 5;
 export class TimeChart extends Picture {
   constructor(label) {
     super("chart", label);
+    this.now = element("div", { class: "now", hidden: true });
+    this.figure.append(this.now);
     /** @type {Place | null} */
     this.place = null;
   }
 
-  /** @param {import("../../types.js").ChartParts & Record<string, any>} parts with a span of time and the cursor */
-  draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
+  /** @param {import("../../types.js").ChartParts & Record<string, any>} parts with a span of time */
+  draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, theme, last }) {
     const { width, height } = this.fit();
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
@@ -36,10 +39,15 @@ export class TimeChart extends Picture {
     for (const line of lines) strokeLine(pen, place, line);
     for (const { time, colour } of marks) vertical(pen, place, time, colour, MARK);
     drawBars(pen, place, bars);
-    pen.globalAlpha = 0.45;
-    if (cursor !== null) vertical(pen, place, cursor, theme.ink);
-    pen.globalAlpha = 1;
     pen.restore();
+  }
+
+  /** Mark a time, without drawing anything again. */
+  point(time) {
+    const { now, place } = this;
+    const x = time === null || !place || time < place.span.low || time > place.span.high ? null : place.x(time);
+    now.hidden = x === null;
+    if (x !== null) now.style.transform = `translateX(${Math.round(x)}px)`;
   }
 
   axes(pen, place, theme, title, last) {

@@ -1,5 +1,6 @@
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
+import { endMark, startMark } from "./marks.js";
 import { linearScale, tickLabel } from "../model/scales.js";
 
 const EDGE = 34;
@@ -78,22 +79,11 @@ export function stroke(pen, from, to) {
   pen.stroke();
 }
 
-/** A circle, full or open, where there is a place for it. */
-export function dot(pen, x, y, radius, colour, full = true) {
-  if (Number.isNaN(x + y)) return;
-  pen.setLineDash([]);
-  pen.fillStyle = pen.strokeStyle = colour;
-  pen.beginPath();
-  pen.arc(x, y, radius, 0, 2 * Math.PI);
-  if (full) pen.fill();
-  else pen.stroke();
-}
-
-/** The start of a path is an open circle, the end a full square. */
+/** The marks of a path's ends. */
 export function drawEnds(pen, rows, width, { x, y }, theme) {
   const end = rows.length - width;
-  dot(pen, x(rows[0]), y(rows[1]), 4, theme.ink, false);
-  pen.fillRect(x(rows[end]) - 3.5, y(rows[end + 1]) - 3.5, 7, 7);
+  startMark(pen, x(rows[0]), y(rows[1]), theme);
+  endMark(pen, x(rows[end]), y(rows[end + 1]), theme);
 }
 
 /** One path of rows of numbers, whose coordinates y1, y2 stand at `first`, with gaps where they are none. */

@@ -1,13 +1,14 @@
 // The image plane: the point's path, the estimates, and a handle.
 
 import { spread } from "../model/scales.js";
-import { sampleAt } from "../model/tables.js";
+import { between, valueBetween } from "../model/playback.js";
 import { imagePlaneInWords } from "../model/words.js";
 import { Picture } from "./canvas.js";
 import { hull } from "./chart_parts.js";
 import { Handle } from "./handle.js";
-import { clipTo, dot, drawAxes, drawEnds, drawPath, placed, squareAround } from "./image_frame.js";
+import { clipTo, drawAxes, drawEnds, drawPath, placed, squareAround } from "./image_frame.js";
 import { DASHES, KEPT, SOLID } from "./lines.js";
+import { ghostMark, pointMark } from "./marks.js";
 
 /** A picture of a square of the image, with handles to drag. */
 export class FramedImage extends Picture {
@@ -100,8 +101,10 @@ function drawCircle(pen, [y1, y2, radius], { x, y, scale }, theme) {
   pen.stroke();
 }
 
+/** The point and its estimates at a time, between samples too. */
 function drawAt(pen, shown, cursor, { x, y }, theme) {
-  const at = shown.width * sampleAt(shown.time, cursor);
-  for (const { estimate, order } of shown.runs) dot(pen, x(estimate[at]), y(estimate[at + 1]), 3.5, theme.lines[order]);
-  if (shown.truth) dot(pen, x(shown.truth[at]), y(shown.truth[at + 1]), 3.5, theme.ink);
+  const at = between(shown.time, cursor);
+  const place = (rows) => [x(valueBetween(rows, shown.width, 0, at)), y(valueBetween(rows, shown.width, 1, at))];
+  if (shown.truth) pointMark(pen, ...place(shown.truth), theme.ink, theme);
+  for (const { estimate, order } of shown.runs) ghostMark(pen, ...place(estimate), theme.lines[order]);
 }

@@ -2,7 +2,10 @@
 
 import { button, element } from "./controls.js";
 import { swatch } from "./lines.js";
+import { Player } from "./player.js";
 
+/** What makes something else of the space bar. */
+const OWN_SPACE = "input, select, button, summary, a, .player";
 const CHIP = { class: "chip", "aria-expanded": "false" };
 
 export function build(lab, place, presets) {
@@ -24,8 +27,7 @@ export function build(lab, place, presets) {
   const back = button("Back", () => lab.goBack(), { "data-control": "back", hidden: true });
   const undo = button("Undo", () => lab.undo(), { "data-control": "undo", title: "Ctrl+Z" });
   const redo = button("Redo", () => lab.redo(), { "data-control": "redo", title: "Ctrl+Shift+Z" });
-  const cursor = element("input", { type: "range", min: 0, max: 1, step: 0.001, value: 0, "data-control": "cursor" });
-  cursor.setAttribute("aria-label", "Time at which values are read");
+  const player = new Player(lab);
 
   /** Show the preset that is open, with its answer once it was asked for. */
   function preset() {
@@ -91,7 +93,7 @@ export function build(lab, place, presets) {
       "div",
       { class: "stage" },
       element("div", { class: "left" }, ...planes.map((plane) => plane.figure)),
-      element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
+      element("div", { class: "right" }, legend, chartBox, player.body, reading),
       element("div", { class: "words" }, verdicts, why),
     ),
     ...[silence, live, panel.body],
@@ -108,13 +110,15 @@ export function build(lab, place, presets) {
   });
   // JupyterLab would take arrows, letters and Enter for commands of its own.
   for (const type of ["keydown", "keyup", "keypress"]) root.addEventListener(type, (event) => event.stopPropagation());
-  cursor.addEventListener("input", () => {
-    const { time } = lab.shown;
-    if (time.length) lab.point(time[0] + Number(cursor.value) * (time.at(-1) - time[0]));
+  root.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.defaultPrevented || event.target.closest(OWN_SPACE)) return;
+    event.preventDefault();
+    player.toggle();
   });
   for (const chart of Object.values(charts)) {
-    chart.canvas.addEventListener("pointermove", (event) => lab.point(chart.timeAt(event.clientX)));
-    chart.canvas.addEventListener("pointerleave", () => lab.point(null));
+    chart.canvas.addEventListener("pointermove", (event) => player.playing || lab.peek(chart.timeAt(event.clientX)));
+    chart.canvas.addEventListener("pointerleave", () => lab.peek(null));
+    chart.canvas.addEventListener("click", (event) => player.put(chart.timeAt(event.clientX)));
   }
 
   let spoken = "";
@@ -131,7 +135,6 @@ export function build(lab, place, presets) {
       beside(verdicts, found.verdicts.map(verdictOf), (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
       beside(legend, found.legend, (text) => [text]);
       fill(why, found.reasons);
-      put(reading, found.reading);
       spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
       const { settings } = lab;
       put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
@@ -139,6 +142,10 @@ export function build(lab, place, presets) {
       code.hidden ||= code.textContent !== lab.copy();
     },
     rested: () => put(live, spoken),
+    read: (text) => put(reading, text),
+    time: (cursor) => player.show(cursor),
+    playing: () => player.playing,
+    close: () => player.close(),
     notice: (text) => show(notice, text),
     problem: (text) => show(problem, text),
     pythonError: (text) => show(pythonError, text && `Python says: ${text}`),

@@ -1,5 +1,6 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
+import { within } from "../model/playback.js";
 import { Results } from "../model/results.js";
 import { linearScale } from "../model/scales.js";
 import { schemaOf } from "../model/schema.js";
@@ -54,12 +55,18 @@ export class Live {
     this.link = null;
     /** @type {ReturnType<typeof themeOf> | null} */
     this.theme = null;
+    /** @type {{low: number, high: number} | null} the times in sight */
+    this.span = null;
+    /** @type {number | null} the time under the pointer */
+    this.peeked = null;
     this.width = 800;
     this.serial = 0;
     this.pictures = 0;
     this.spoken = 0;
+    this.read = 0;
     this.frame = 0;
-    this.pending = this.closed = false;
+    this.pending = this.closed = this.down = false;
+    this.stale = true;
     /** @type {any} the timer that runs while the hand may go on */
     this.resting = null;
     this.leave = () => {};
@@ -115,6 +122,7 @@ export class Live {
     cancelAnimationFrame(this.frame);
     clearTimeout(this.resting);
     this.link?.close();
+    this.view.close();
     this.leave();
   }
 
@@ -180,11 +188,24 @@ export class Live {
     this.change({ kept: this.settings.kept ? null : { ...structuredClone(this.settings), kept: null } }, true);
   }
 
+  /** Show a time: nothing is computed again. */
   point(cursor) {
-    if (cursor === this.state.cursor || this.shown?.problem) return;
+    if (cursor === null || cursor === this.state.cursor || this.shown?.problem) return;
     this.state.cursor = cursor;
-    this.spoken = 0;
-    this.schedule();
+    this.peeked = null;
+    this.redraw();
+  }
+
+  /** Show the time under a pointer until it leaves. */
+  peek(time) {
+    if (time === this.peeked) return;
+    this.peeked = time;
+    this.redraw();
+  }
+
+  /** Whether a hand holds something, so that what is around it stands still. */
+  get held() {
+    return this.down || this.resting !== null;
   }
 
   // What is there to show it with.
@@ -230,6 +251,12 @@ export class Live {
   }
 
   schedule() {
+    this.stale = true;
+    this.redraw();
+  }
+
+  /** Draw what was computed, at another time or from elsewhere; the time charts only if they have changed. */
+  redraw() {
     if (this.pending || this.closed) return;
     this.pending = true;
     this.frame = requestAnimationFrame(() => this.pending && this.paint());
@@ -245,11 +272,12 @@ export class Live {
       return;
     }
     // Nobody reads sixty texts a second, and the page would lay itself out for each of them.
-    const speaking = performance.now() - this.spoken > BETWEEN_WORDS;
+    const speaking = this.stale && performance.now() - this.spoken > BETWEEN_WORDS;
     try {
       Object.assign(this, this.results.of(settings, speaking));
       this.theme ??= themeOf(this.view.root);
       this.draw();
+      this.stale = false;
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {
@@ -275,22 +303,38 @@ export class Live {
 
   draw() {
     const { shown, ghost, theme } = this;
-    const { chartOf } = this.parts;
-    if (shown.problem || shown.refusal) this.state.cursor = null;
-    const { cursor } = this.state;
+    const cursor = this.present();
     for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
+    if (this.stale) this.drawCharts();
+    for (const name of Object.keys(this.drawn)) this.charts[name].point(cursor);
+    this.view.time(cursor);
+    const now = performance.now();
+    if (this.view.playing() && now - this.read < BETWEEN_WORDS) return;
+    this.read = now;
+    this.view.read(cursor === null ? "" : this.parts.readingAt(shown, cursor));
+  }
+
+  /** The time that is shown, in what there is to show. */
+  present() {
+    const { shown, state } = this;
+    if (shown.problem || shown.refusal || !shown.time.length) return null;
+    const { low, high } = (this.span = spanOf(shown, this.model));
+    state.cursor = within(state.cursor ?? low, low, high);
+    return this.peeked ?? state.cursor;
+  }
+
+  drawCharts() {
+    const { shown, ghost, theme, span } = this;
     this.view.answered(this.answered());
     const chosen = this.chosen();
     for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
     const more = this.besides();
-    this.drawn = Object.fromEntries(chosen.map((name) => [name, chartOf(name, shown, ghost, theme, more)]));
+    this.drawn = Object.fromEntries(chosen.map((name) => [name, this.parts.chartOf(name, shown, ghost, theme, more)]));
     if (!chosen.length) return;
-    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
-    const recorded = shown.settings.scenario in (this.model.recordings ?? {});
-    const [low, high] = [shown.time[0], recorded ? shown.time.at(-1) : shown.settings.duration];
-    const span = { low, high, ticks: linearScale(low, high, this.width < 600 ? 4 : 8).ticks };
+    const { low, high } = span ?? spanOf(shown, this.model);
+    const axis = { low, high, ticks: linearScale(low, high, this.width < 600 ? 4 : 8).ticks };
     for (const [name, chart] of Object.entries(this.drawn)) {
-      this.charts[name].draw({ ...chart, span, cursor, theme, last: name === chosen.at(-1) });
+      this.charts[name].draw({ ...chart, span: axis, theme, last: name === chosen.at(-1) });
     }
   }
 
@@ -306,12 +350,9 @@ export class Live {
 
   speak() {
     const { shown, model, parts } = this;
-    const { cursor } = this.state;
-    const unread = cursor === null || shown.problem || shown.refusal;
     this.view.words({
       verdicts: this.verdicts(),
       reasons: parts.reasons(shown, model),
-      reading: unread ? "" : parts.readingAt(shown, cursor),
       problem: shown.problem ?? (shown.refusal || undefined),
       legend: [...this.legend(), ...(shown.settings.kept ? [["kept", "kept run"]] : [])],
     });
@@ -366,4 +407,9 @@ export class Live {
   fail(error) {
     this.view.problem(error.message);
   }
+}
+
+/** The times that are shown: the asked duration, though the point may leave earlier, since an axis that stays is easier to read. */
+function spanOf({ settings, time }, { recordings = {} }) {
+  return { low: time[0], high: settings.scenario in recordings ? time.at(-1) : settings.duration };
 }

@@ -3,9 +3,10 @@
 import { readable, spread } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { hull } from "../../common/page/chart_parts.js";
-import { dot, drawPath, squareAround } from "../../common/page/image_frame.js";
+import { drawPath, squareAround } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
 import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
+import { ghostMark, pointMark } from "../../common/page/marks.js";
 import { imagePlaneInWords } from "../model/text.js";
 
 const NEARER = ["-", "PageDown"];
@@ -79,7 +80,7 @@ function pathOf({ points }, k) {
 }
 
 /** The samples that are drawn in full: the seconds before the cursor, and the first ones without it. */
-function trail(time, cursor) {
+export function trail(time, cursor) {
   const last = sampleAt(time, cursor ?? TRAIL);
   return [sampleAt(time, Math.max(0, time[last] - TRAIL)), last];
 }
@@ -99,7 +100,7 @@ function drawAt(pen, { points, images, estimated }, k, { x, y }, theme) {
   for (let p = 0; p < points; p++) {
     const at = 2 * (k * points + p);
     const found = estimated.images;
-    dot(pen, x(images[at]), y(images[at + 1]), 3.5, theme.lines[p]);
-    dot(pen, x(found[at]), y(found[at + 1]), 5.5, theme.lines[p], false);
+    pointMark(pen, x(images[at]), y(images[at + 1]), theme.lines[p], theme);
+    ghostMark(pen, x(found[at]), y(found[at + 1]), theme.lines[p]);
   }
 }

@@ -1,0 +1,38 @@
+// What the scene of many points shows: each point in its colour, and its estimate as a ring in the same one.
+
+import { columnOf, derived } from "../../common/model/derived.js";
+import { readable } from "../../common/model/scales.js";
+import { DASHES } from "../../common/page/lines.js";
+import { trail } from "./image_plane.js";
+
+export function sceneOf(lab) {
+  return {
+    tracksOf(shown, ghost, theme, cursor) {
+      const { locate } = lab.kernels.of(shown.settings);
+      const seen = [0, 0, 1];
+      const track = ({ points }, rows, depths, k) => ({ rows, width: 2 * points, first: 2 * k, distances: columnOf(depths, points, k) });
+      const each = ({ points }, make) => Array.from({ length: points }, (_, k) => make(k));
+      const truths = each(shown, (k) => ({ ...track(shown, shown.images, shown.depths, k), colour: theme.lines[k] }));
+      const found = ({ estimated }) => [estimated.images, estimated.depths];
+      const kept = ghost ? each(ghost, (k) => ({ ...track(ghost, ...found(ghost), k), of: {}, kept: true })) : [];
+      const look = (k) => ({ colour: theme.lines[k], dash: DASHES[k], of: truths[k] });
+      const inverse = (k) => derived(shown.estimated.depths, `inverse ${k}`, () => columnOf(shown.estimated.depths, shown.points, k).map((depth) => 1 / depth));
+      const range = trail(shown.time, cursor);
+      const estimates = each(shown, (k) => ({ ...track(shown, ...found(shown), k), inverse: inverse(k), range, ...look(k) }));
+      return {
+        tracks: [...truths, ...kept, ...estimates],
+        ray(y1, y2, out) {
+          seen[0] = y1;
+          seen[1] = y2;
+          return locate(seen, out);
+        },
+      };
+    },
+    wordsOf({ points, depths, estimated, time }) {
+      const last = points * (time.length - 1);
+      const way = (k) => [0, last].map((at) => readable(depths[at + k])).join(" to ");
+      const one = (k) => `point ${k + 1} goes from depth ${way(k)} m, and its estimate ends at ${readable(estimated.depths[last + k])} m`;
+      return `${Array.from({ length: points }, (_, k) => one(k)).join("; ")}.`;
+    },
+  };
+}
