@@ -8,6 +8,8 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
+
+
 @pytest.mark.parametrize("name", LABS)
 def test_a_lab_works_under_the_policy_that_readme_states(browser, name):
     page = opened(browser, LABS[name]())

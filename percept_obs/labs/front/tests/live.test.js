@@ -61,7 +61,6 @@ class SmallLab extends Live {
     this.drawings = [];
     const plane = { draw: (shown, ghost, cursor) => this.drawings.push([shown.value, ghost?.value ?? null, cursor]) };
     this.planes = [{ ...plane, describe: () => {} }];
-    this.charts = {};
     this.panel = { show: () => {} };
     this.formulas = { show: () => {} };
     const told = (name) => [name, (value) => (this.told[name] = value)];

@@ -102,6 +102,10 @@ export class PointsLab extends Live {
     return this.answered()?.bound ?? null;
   }
 
+  story() {
+    return { settlings: [this.shown.settling], events: undefined };
+  }
+
   besides() {
     return { bound: this.guaranteed(), unseen: this.model.unseen };
   }

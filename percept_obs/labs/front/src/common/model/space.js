@@ -73,7 +73,7 @@ export function ballAround({ low, high }) {
 export function keptBall(before, wanted) {
   if (!before) return wanted;
   const apart = Math.hypot(...before.centre.map((value, i) => value - wanted.centre[i]));
-  return apart + wanted.radius <= 1.02 * before.radius && wanted.radius > 0.4 * before.radius ? before : wanted;
+  return apart + wanted.radius <= 1.3 * before.radius && wanted.radius > 0.4 * before.radius ? before : wanted;
 }
 
 /** Where points come to lie on a picture that shows a ball: functions of X, Y, Z, and pixels a metre. */
@@ -91,9 +91,13 @@ export function frameOf(look, { centre, radius }, { width, height, edge, zoom = 
 /**
  * Where a line leaves a box of low and high corners on the way to a place outside; null if it stays inside.
  *
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {number[][]} corners
  * @returns {{at: [number, number], angle: number} | null}
  */
-export function rimOf([x0, y0], [x1, y1], [[left, top], [right, bottom]]) {
+export function rimOf(from, to, corners) {
+  const [[x0, y0], [x1, y1], [[left, top], [right, bottom]]] = [from, to, corners];
   const shares = [
     [x1 - x0, (x1 > x0 ? right : left) - x0],
     [y1 - y0, (y1 > y0 ? bottom : top) - y0],

@@ -3,6 +3,8 @@
 import { readable, short } from "./scales.js";
 import { sampleAt } from "./tables.js";
 
+const MANY = 3;
+
 export function filled(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
 }
@@ -46,8 +48,9 @@ export function percent(share, digits = 3) {
 
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
-  const row = (rows) =>
-    shown.names.map((name, c) => `${name} = ${readable(rows[k * shown.width + c])}`).join(", ");
+  // Of many observers only what is hidden: what is measured differs little.
+  const told = shown.runs.length > MANY ? shown.hidden : shown.names.map((_, c) => c);
+  const row = (rows) => told.map((c) => `${shown.names[c]} = ${readable(rows[k * shown.width + c])}`).join(", ");
   const parts = [`At ${readable(shown.time[k])} s`];
   if (shown.truth) parts.push(`true ${row(shown.truth)}`);
   for (const run of shown.runs) parts.push(`${run.title} ${row(run.estimate)}`);

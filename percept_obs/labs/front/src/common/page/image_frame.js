@@ -1,5 +1,6 @@
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
+import { LINE } from "./lines.js";
 import { endMark, startMark } from "./marks.js";
 import { linearScale, tickLabel } from "../model/scales.js";
 
@@ -11,6 +12,12 @@ export function squareAround(bounds) {
   const centre = bounds.map(([low, high]) => (low + high) / 2);
   const ticks = centre.map((c) => linearScale(c - half, c + half, 4).ticks.filter((t) => Math.abs(t - c) <= half));
   return { centre, half, ticks };
+}
+
+/** Whether a square shows what another one would: that it is not lost in it, and leaves it by a little at most. */
+export function showsToo({ centre, half }, wanted) {
+  const apart = Math.max(...centre.map((value, i) => Math.abs(value - wanted.centre[i])));
+  return apart + wanted.half <= 1.2 * half && wanted.half > 0.4 * half;
 }
 
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
@@ -113,7 +120,9 @@ export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left,
   }
   pen.strokeStyle = colour;
   pen.setLineDash(dash);
+  pen.lineWidth = LINE;
   pen.stroke();
+  pen.lineWidth = 1;
 }
 
 function clamp(value, bound) {

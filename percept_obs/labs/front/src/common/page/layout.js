@@ -1,8 +1,10 @@
 // Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
 
 import { button, element } from "./controls.js";
+import { Legend } from "./legend.js";
 import { swatch } from "./lines.js";
 import { Player } from "./player.js";
+import { zoomable } from "./zooming.js";
 
 /** What makes something else of the space bar. */
 const OWN_SPACE = "input, select, button, summary, a, .player";
@@ -20,7 +22,7 @@ export function build(lab, place, presets) {
   const why = element("ul", { class: "why" });
   const analysis = element("ul", { class: "analysis" });
   const reading = element("p", { class: "reading" });
-  const legend = element("ul", { class: "legend", "aria-label": "Lines" });
+  const legend = new Legend(lab);
   const card = element("div", { class: "card", hidden: true });
   const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
   const keep = button("Keep this run", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false" });
@@ -93,7 +95,7 @@ export function build(lab, place, presets) {
       "div",
       { class: "stage" },
       element("div", { class: "left" }, ...planes.map((plane) => plane.figure)),
-      element("div", { class: "right" }, legend, chartBox, player.body, reading),
+      element("div", { class: "right" }, legend.body, chartBox, player.body, reading),
       element("div", { class: "words" }, verdicts, why),
     ),
     ...[silence, live, panel.body],
@@ -115,11 +117,10 @@ export function build(lab, place, presets) {
     event.preventDefault();
     player.toggle();
   });
-  for (const chart of Object.values(charts)) {
-    chart.canvas.addEventListener("pointermove", (event) => player.playing || lab.peek(chart.timeAt(event.clientX)));
-    chart.canvas.addEventListener("pointerleave", () => lab.peek(null));
-    chart.canvas.addEventListener("click", (event) => player.put(chart.timeAt(event.clientX)));
+  for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
+    root.addEventListener(type, () => lab.hold(type === "pointerdown"), true);
   }
+  for (const chart of Object.values(charts)) zoomable(lab, chart, player);
 
   let spoken = "";
   const view = {
@@ -133,7 +134,7 @@ export function build(lab, place, presets) {
     words(found) {
       const verdictOf = ({ which, title, text }) => [which, title, text];
       beside(verdicts, found.verdicts.map(verdictOf), (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
-      beside(legend, found.legend, (text) => [text]);
+      legend.show(found.legend);
       fill(why, found.reasons);
       spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
       const { settings } = lab;

@@ -5,6 +5,14 @@ export const DASHES = [
   [7, 4], [2, 3], [10, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3], [4, 2, 4, 7], [2, 7], [16, 3, 5, 3], [13, 3, 2, 3, 7, 3],
 ];
 
+/** Width of all lines, in pixels. */
+export const LINE = 2;
+
+/** How much of a line is seen while the hand picks one out by its colour. */
+export function fading({ picked }, colour) {
+  return picked && picked !== colour ? 0.12 : 1;
+}
+
 export const SOLID = [];
 export const KEPT = [1, 3];
 export const FIT = [5, 3];

@@ -2,20 +2,18 @@
 
 import { within } from "../model/playback.js";
 import { Results } from "../model/results.js";
-import { linearScale } from "../model/scales.js";
 import { schemaOf } from "../model/schema.js";
 import { same } from "../model/settings.js";
 import { State } from "../model/state.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
-import { chartInWords } from "./chart_parts.js";
-import { TimeChart } from "./charts.js";
 import { build } from "./layout.js";
 import { Link } from "./link.js";
 import { surround } from "./surroundings.js";
+import { TimeCharts } from "./time_charts.js";
 
 /** @typedef {import("../../types.js").Plane} Plane */
-/** @typedef {import("../../types.js").ChartParts} ChartParts */
+/** @typedef {import("../../types.js").Settings} Settings */
 
 const REST = 150;
 const BETWEEN_WORDS = 250;
@@ -41,24 +39,23 @@ export class Live {
     this.state = new State(structuredClone(widget.get("settings")));
     /** @type {Plane[]} */
     this.planes = [];
-    /** @type {Record<string, TimeChart>} */
-    this.charts = {};
+    /** @type {TimeCharts} */
+    this.time = new TimeCharts({});
     /** @type {any} */
     this.panel = this.formulas = this.view = null;
     /** @type {any} the result that is shown, and that of the kept run */
     this.shown = this.ghost = null;
-    /** @type {Record<string, ChartParts>} */
-    this.drawn = {};
     /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
     this.answer = null;
     /** @type {Link | null} */
     this.link = null;
     /** @type {ReturnType<typeof themeOf> | null} */
     this.theme = null;
-    /** @type {{low: number, high: number} | null} the times in sight */
-    this.span = null;
     /** @type {number | null} the time under the pointer */
     this.peeked = null;
+    this.choices = 0;
+    /** @type {Settings | null} those at which the hand took hold */
+    this.taken = null;
     this.width = 800;
     this.serial = 0;
     this.pictures = 0;
@@ -76,13 +73,26 @@ export class Live {
     return this.state.settings;
   }
 
+  get charts() {
+    return this.time.charts;
+  }
+
+  get drawn() {
+    return this.time.drawn;
+  }
+
+  /** The times in sight. */
+  get span() {
+    return this.time.timeline.span;
+  }
+
   get figures() {
     return [...this.planes, ...Object.values(this.charts)];
   }
 
   open(place) {
     const { labels, presets } = this.parts;
-    this.charts = Object.fromEntries(Object.entries(labels).map(([name, label]) => [name, new TimeChart(label)]));
+    this.time = new TimeCharts(labels);
     this.follow(build(this, place, presets));
   }
 
@@ -142,6 +152,7 @@ export class Live {
   }
 
   touched(chosen) {
+    if (chosen) this.choices += 1;
     this.schedule();
     if (!chosen) {
       clearTimeout(this.resting);
@@ -173,6 +184,7 @@ export class Live {
 
   reset() {
     this.state.reset(structuredClone(this.model.opening));
+    this.time.timeline.forget();
     this.touched(true);
   }
 
@@ -201,6 +213,28 @@ export class Live {
     if (time === this.peeked) return;
     this.peeked = time;
     this.redraw();
+  }
+
+  /** Show another part of the time. */
+  zoom(change) {
+    change(this.time.timeline);
+    this.choices += 1;
+    this.peeked = null;
+    this.schedule();
+  }
+
+  /** Let the line of a colour stand out, or all of them. */
+  pick(colour) {
+    if (!this.theme || this.theme.picked === colour) return;
+    this.theme = { ...this.theme, picked: colour };
+    this.schedule();
+  }
+
+  /** The hand takes hold, or lets go: what it did not move follows now. */
+  hold(down) {
+    if (down) this.taken = this.settings;
+    else if (this.down && this.taken !== this.settings) this.schedule();
+    this.down = down;
   }
 
   /** Whether a hand holds something, so that what is around it stands still. */
@@ -275,7 +309,7 @@ export class Live {
     const speaking = this.stale && performance.now() - this.spoken > BETWEEN_WORDS;
     try {
       Object.assign(this, this.results.of(settings, speaking));
-      this.theme ??= themeOf(this.view.root);
+      this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
       this.stale = false;
       this.pictures += 1;
@@ -306,7 +340,7 @@ export class Live {
     const cursor = this.present();
     for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
     if (this.stale) this.drawCharts();
-    for (const name of Object.keys(this.drawn)) this.charts[name].point(cursor);
+    this.time.point(cursor);
     this.view.time(cursor);
     const now = performance.now();
     if (this.view.playing() && now - this.read < BETWEEN_WORDS) return;
@@ -317,25 +351,31 @@ export class Live {
   /** The time that is shown, in what there is to show. */
   present() {
     const { shown, state } = this;
-    if (shown.problem || shown.refusal || !shown.time.length) return null;
-    const { low, high } = (this.span = spanOf(shown, this.model));
-    state.cursor = within(state.cursor ?? low, low, high);
+    if (shown.problem || !shown.time.length) return null;
+    const { settings, time } = shown;
+    const recorded = settings.scenario in (this.model.recordings ?? {});
+    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
+    const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
+    const { name, act } = state.preset ?? { name: "", act: -1 };
+    const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
+    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held });
+    if (shown.refusal) return null;
+    state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
   }
 
+  /** When each run settled, in seconds, null where there is no truth to say so; and until when something else happens. */
+  story() {
+    const { runs, inside = [] } = this.shown;
+    return { settlings: runs.map(({ settling }) => settling), events: inside.at(-1)?.[1] };
+  }
+
   drawCharts() {
-    const { shown, ghost, theme, span } = this;
+    const { shown, ghost, theme, held, width } = this;
     this.view.answered(this.answered());
-    const chosen = this.chosen();
-    for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
     const more = this.besides();
-    this.drawn = Object.fromEntries(chosen.map((name) => [name, this.parts.chartOf(name, shown, ghost, theme, more)]));
-    if (!chosen.length) return;
-    const { low, high } = span ?? spanOf(shown, this.model);
-    const axis = { low, high, ticks: linearScale(low, high, this.width < 600 ? 4 : 8).ticks };
-    for (const [name, chart] of Object.entries(this.drawn)) {
-      this.charts[name].draw({ ...chart, span: axis, theme, last: name === chosen.at(-1) });
-    }
+    const partsOf = (name) => this.parts.chartOf(name, shown, ghost, theme, more);
+    this.time.draw(this.chosen(), partsOf, { theme, held, narrow: width < 600 });
   }
 
   /** Bring words and controls to what is drawn. */
@@ -380,7 +420,7 @@ export class Live {
 
   describe() {
     for (const plane of this.planes) plane.describe(this.shown);
-    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].tell(chartInWords(chart));
+    this.time.describe();
     this.formulas.show(this.shown.settings);
   }
 
@@ -407,9 +447,4 @@ export class Live {
   fail(error) {
     this.view.problem(error.message);
   }
-}
-
-/** The times that are shown: the asked duration, though the point may leave earlier, since an axis that stays is easier to read. */
-function spanOf({ settings, time }, { recordings = {} }) {
-  return { low: time[0], high: settings.scenario in recordings ? time.at(-1) : settings.duration };
 }

@@ -2,6 +2,9 @@
 
 const HALO = 3;
 
+/** Length of a reset's tick, which hangs from the top of a chart. */
+export const RESET = 6;
+
 /** Where a path begins: an open circle. */
 export function startMark(pen, x, y, theme) {
   ring(pen, x, y, 4, theme.ink, 1);

@@ -9,6 +9,13 @@ const FINEST = 1e-3;
 const LONGEST_STALL = 0.1;
 const STEPS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -5, PageUp: 5 };
 
+const ZOOMS = {
+  "-": ["−", "Show more of the time", "zoom out"],
+  "+": ["+", "Show less of the time", "zoom in"],
+  0: ["⟷", "Show all of the time", "zoom whole"],
+};
+const KEYS = { "=": "+", _: "-" };
+
 /** The bar below the charts; it moves the time of a lab, which only draws what it has computed. */
 export class Player {
   constructor(lab) {
@@ -23,7 +30,12 @@ export class Player {
     const speeds = SPEEDS.map((speed) => element("option", { value: speed, selected: speed === 1 }, `${speed}×`));
     this.speed = element("select", { class: "speed", "data-control": "speed", "aria-label": "Speed" }, ...speeds);
     this.now = element("output", {});
-    this.body = element("div", { class: "player", role: "group", "aria-label": "Time" }, this.press, this.slider, this.now, this.speed);
+    const zooms = Object.entries(ZOOMS).map(([key, [sign, words, name]]) => {
+      const said = { class: "zoom", "data-control": name, "aria-label": words, title: `${words} (${key})` };
+      return button(sign, () => this.zoom(key), said);
+    });
+    const parts = [this.press, this.slider, this.now, this.speed, element("span", { class: "zooms" }, ...zooms)];
+    this.body = element("div", { class: "player", role: "group", "aria-label": "Time" }, ...parts);
     this.slider.addEventListener("input", () => this.put(this.timeAt(Number(this.slider.value))));
     this.body.addEventListener("keydown", (event) => this.key(event));
     this.still.addEventListener("change", () => this.pause());
@@ -45,8 +57,15 @@ export class Player {
     else if (STEPS[event.key]) this.put(stepped(this.lab.state.cursor, this.span, STEPS[event.key] * (event.shiftKey ? 0.1 : 1)));
     else if (event.key === "Home") this.put(this.span.low);
     else if (event.key === "End") this.put(this.span.high);
+    else if (ZOOMS[KEYS[event.key] ?? event.key]) this.zoom(KEYS[event.key] ?? event.key);
     else return;
     event.preventDefault();
+  }
+
+  /** Show less or more of the time about the present one, or all of it. */
+  zoom(key) {
+    const about = this.lab.state.cursor ?? this.span.low;
+    this.lab.zoom((timeline) => (key === "0" ? timeline.select(timeline.whole) : timeline.zoom(key === "+" ? 0.5 : 2, about)));
   }
 
   /** Show a time that the hand asks for, which ends play. */

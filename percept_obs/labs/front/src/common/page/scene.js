@@ -3,11 +3,12 @@
 import { between, valueBetween } from "../model/playback.js";
 import { linearScale, readable, tickLabel } from "../model/scales.js";
 import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOOK } from "../model/space.js";
+import { indicesIn } from "../model/timeline.js";
 import { positionAt, positionsOf, rimOf, turned } from "../model/space.js";
 import { Picture } from "./canvas.js";
 import { element } from "./controls.js";
 import { stroke } from "./image_frame.js";
-import { KEPT, SOLID } from "./lines.js";
+import { fading, KEPT, LINE, SOLID } from "./lines.js";
 import { ghostMark, label, pointMark, rimMark } from "./marks.js";
 
 const CAPTION = "Scene: y1 to the right, y2 upwards, as in the image";
@@ -89,8 +90,9 @@ export class Scene extends Picture {
     const size = this.fit();
     if (!shown.time.length || shown.problem) return;
     const scene = this.tracksOf(shown, ghost, theme, cursor);
-    const whole = (track) => track.range ?? [0, track.distances.length - 1];
-    const paths = scene.tracks.map((track) => ({ track, positions: positionsOf(track, scene.ray, whole(track)) }));
+    const range = indicesIn(shown.time, this.lab.span);
+    const inSight = (track) => (track.range ?? range).map((k) => Math.min(k, track.distances.length - 1));
+    const paths = scene.tracks.map((track) => ({ track, positions: positionsOf(track, scene.ray, inSight(track)) }));
     const sure = paths.filter(({ track }) => !track.of);
     const wanted = ballAround(boxAround((sure.length ? sure : paths).map(({ positions }) => positions)));
     const ball = this.lab.held && this.ball ? this.ball : keptBall(this.ball, wanted);
@@ -99,11 +101,12 @@ export class Scene extends Picture {
     const corners = [[8, 8], [size.width - 8, size.height - 8]];
     const pen = this.context;
     const drawing = { pen, frame, theme, corners, scene, ball };
+    this.axes(drawing, this.frustum(drawing));
+    if (scene.foe) this.foe(drawing);
+    for (const { track, positions } of paths) path(drawing, positions, track);
     pen.textAlign = "left";
     pen.textBaseline = "alphabetic";
     label(pen, CAPTION, 4, 12, theme.ink, theme);
-    this.axes(drawing, this.frustum(drawing));
-    for (const { track, positions } of paths) path(drawing, positions, track);
     if (cursor === null) return;
     const at = between(shown.time, cursor);
     for (const track of scene.tracks) if (!track.of && !track.kept) this.point(drawing, track, at);
@@ -167,6 +170,20 @@ export class Scene extends Picture {
     });
   }
 
+  /** The direction of the focus of expansion, along which the point moves straight towards the camera or away. */
+  foe({ pen, frame, theme, scene, ball }) {
+    const direction = Array.from(scene.ray(...scene.foe, new Float64Array(3)));
+    const length = Math.hypot(...direction);
+    if (!(length < Infinity)) return;
+    const end = direction.map((value) => (0.6 * ball.radius * value) / length);
+    pen.setLineDash([6, 3]);
+    pen.strokeStyle = theme.warning;
+    line(pen, frame, [0, 0, 0], end);
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    label(pen, "FOE", ...beyond(frame, end, 12), theme.warning, theme);
+  }
+
   /** The true point at a time, on the ray on which the camera sees it. */
   point({ pen, frame, theme, scene, ball }, track, at) {
     const place = positionAt(track, scene.ray, at);
@@ -219,16 +236,20 @@ function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
       begun = true;
     }
   }
-  pen.strokeStyle = kept ? theme.kept : colour;
+  const own = kept ? theme.kept : colour;
+  pen.strokeStyle = own;
   pen.setLineDash(kept ? KEPT : of ? dash : SOLID);
-  pen.globalAlpha = of ? 0.8 : 0.6;
+  pen.globalAlpha = (of ? 0.8 : 0.6) * fading(theme, own);
+  pen.lineWidth = LINE;
   pen.stroke();
+  pen.lineWidth = 1;
   pen.globalAlpha = 1;
 }
 
 /** An estimate as a ghost on its ray, with the distances that it claims, and how far it is from the truth. */
 function estimate({ pen, frame, theme, corners, scene, ball }, track, at) {
   const { colour, of } = track;
+  if (fading(theme, colour) < 1) return;
   const place = positionAt(track, scene.ray, at);
   const [y1, y2] = [0, 1].map((c) => valueBetween(track.rows, track.width, (track.first ?? 0) + c, at));
   const direction = Array.from(scene.ray(y1, y2, new Float64Array(3)));

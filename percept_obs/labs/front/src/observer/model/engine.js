@@ -8,7 +8,7 @@ import { switchOf } from "../../common/model/settings.js";
 import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf } from "./kernels.js";
-import { windowed } from "./measures.js";
+import { spansInside, windowed } from "./measures.js";
 
 export class Engine extends Runner {
   constructor(model) {
@@ -30,9 +30,12 @@ export class Engine extends Runner {
       judged: this.model.judged,
       runs: [],
       excitation: null,
+      inside: [],
       whole: false,
     };
     if (result.problem) return { ...result, whole: true };
+    const { truth, time, circle } = result;
+    if (truth && circle) result.inside = spansInside(time, truth, 3, circle);
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
     result.runs = settings.observers.map((name) => {

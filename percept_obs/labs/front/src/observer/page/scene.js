@@ -18,6 +18,7 @@ export function sceneOf(lab) {
       const seen = [0, 0, ...shapeOf(shown.settings)];
       return {
         tracks: tracksOfPoint(shown, ghost, along, lookOf(theme)),
+        foe: shown.foe,
         ray(y1, y2, out) {
           seen[0] = y1;
           seen[1] = y2;

@@ -18,7 +18,7 @@ const HIDDEN = [1, 4];
 
 export class ImagePlane extends FramedImage {
   constructor(lab, most) {
-    super(Array.from({ length: most }, (_, k) => handleOf(lab, k)));
+    super(lab, Array.from({ length: most }, (_, k) => handleOf(lab, k)));
   }
 
   draw(shown, ghost, cursor, theme) {
