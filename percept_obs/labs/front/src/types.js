@@ -43,7 +43,8 @@
  * @property {Float64Array} smallest  eigenvalue of the integral of w w^T over the window
  *
  * @typedef {object} OfObserverLab
- * @property {number[] | null} foe  the focus of expansion in the image
+ * @property {number[] | null} foe  the focus of expansion in the image; null where it is at infinity
+ * @property {number[] | null} foeTowards  the direction in which it is there, of length 1
  * @property {number[] | null} circle  its y1, y2 and radius, within which |w| is below the threshold
  * @property {number[][]} inside  when the image of the point is in it: begin and end
  * @property {Excitation | null} excitation

@@ -23,14 +23,17 @@ export class ObserverLab extends Live {
       ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
       ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
     });
+    const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
+      arrowsOf: scene.arrowsOf,
       name: "foe",
       label: "Focus of expansion",
       tag: "FOE",
       placeOf: (shown) => shown.foe,
+      towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
-    this.planes = [plane, new Scene(this, { image: plane, ...sceneOf(this) })];
+    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
       numbersOf: ({ A, b, normal }) => lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }),

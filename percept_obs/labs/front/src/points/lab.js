@@ -30,8 +30,9 @@ export class PointsLab extends Live {
   constructor(widget, place, model) {
     const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { words: WORDS, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
-    const plane = new ImagePlane(this, this.model.mostPoints);
-    this.planes = [plane, new Scene(this, { image: plane, ...sceneOf(this) })];
+    const scene = sceneOf(this);
+    const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
+    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
     this.open(place);

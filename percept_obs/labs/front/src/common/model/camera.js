@@ -28,8 +28,10 @@ export function errorOf(kind, size, draw) {
  *   sampled(seen, settings, drawn)   the samples, with noise
  */
 export class PointCamera {
-  constructor(model, memory, drawsOf) {
+  constructor(model, memory, drawsOf, remedy) {
     this.model = model;
+    /** What to do, in the panel's words, when the point starts behind the camera. */
+    this.remedy = remedy;
     this.memory = memory;
     this.drawsOf = drawsOf;
   }
@@ -58,7 +60,7 @@ export class PointCamera {
     if (inFront < 2) {
       const problem = inFront
         ? "the point leaves the half-space in front of the camera at once"
-        : "the point starts behind the camera; move X0 in front of it";
+        : `the point starts behind the camera: ${this.remedy}`;
       return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
     }
     const leavesAt = inFront < count ? time[inFront] : null;

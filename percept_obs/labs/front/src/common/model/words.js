@@ -19,8 +19,9 @@ export function verdict(run, shown, model) {
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: since(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
     const gaps = run.gaps.filter((gap) => gap[2] === which);
-    besides += say("gap", { begin: since(gaps[0][0]), end: since(gaps[0][1]), reason: run.gapReasons[which - 1] });
-    if (gaps.length > 1) besides += say("more gaps", { count: gaps.length - 1 });
+    const [begin, end] = gaps[0].slice(0, 2).map(since);
+    besides += say(begin === end ? "short gap" : "gap", { begin, end, reason: run.gapReasons[which - 1] });
+    if (gaps.length > 1) besides += say(gaps.length === 2 ? "one more gap" : "more gaps", { count: gaps.length - 1 });
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;

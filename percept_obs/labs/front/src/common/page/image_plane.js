@@ -11,6 +11,8 @@ import { hull } from "./chart_parts.js";
 import { Handle } from "./handle.js";
 import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
 import { DASHES, fading, KEPT, SOLID } from "./lines.js";
+import { meanSpeed } from "../model/why.js";
+import { drawWhy } from "./why.js";
 import { ghostMark, pointMark, rimMark } from "./marks.js";
 
 /** How much is seen of the path at times that are not in sight. */
@@ -46,7 +48,7 @@ export class FramedImage extends Picture {
   }
 
   /** Paint inside a square, and put handles in their places. */
-  paint(squareOf, theme, inside, places) {
+  paint(squareOf, theme, inside, placesIn) {
     const square = this.squareFor(squareOf());
     this.square = square;
     const frame = placed(this, square);
@@ -56,23 +58,30 @@ export class FramedImage extends Picture {
     clipTo(pen, frame.box);
     inside(pen, frame);
     pen.restore();
+    const places = placesIn(square);
     this.handles.forEach((handle, k) => handle.stand(places[k], frame));
   }
 }
 
 /** The image of one point; `placeOf` says of a result where the handle stands. */
 export class ImagePlane extends FramedImage {
-  constructor(lab, { name, label, tag, placeOf, onMove }) {
+  constructor(lab, { name, label, tag, placeOf, towardsOf = (_shown) => null, arrowsOf, onMove }) {
     const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
     super(lab, [{ name, ...said, onMove, onRest: () => lab.rest() }]);
     this.placeOf = placeOf;
-    this.handles[0].node.dataset.tag = tag;
+    this.arrowsOf = arrowsOf;
+    this.tag = tag;
+    this.towardsOf = towardsOf;
   }
 
   draw(shown, ghost, cursor, theme) {
     const place = this.placeOf(shown);
     const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
-    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, inside, [place]);
+    const towards = this.towardsOf(shown);
+    const placesIn = ({ centre, half }) => [place ?? (towards && centre.map((value, c) => value + 1.5 * half * towards[c]))];
+    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, inside, placesIn);
+    const tag = place || !towards ? this.tag : `${this.tag} at infinity`;
+    if (this.handles[0].node.dataset.tag !== tag) this.handles[0].node.dataset.tag = tag;
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {
@@ -91,12 +100,17 @@ export class ImagePlane extends FramedImage {
     if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
     if (shown.truth?.length) drawEnds(pen, shown.truth.subarray(from * width, (to + 1) * width), width, frame, theme);
-    if (cursor !== null) drawAt(pen, shown, cursor, frame, theme);
+    if (cursor === null) return;
+    if (shown.truth?.length) {
+      const speed = meanSpeed(shown.time, shown.truth, width, 0, [from, to]);
+      drawWhy(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
+    }
+    drawAt(pen, shown, cursor, frame, theme);
   }
 
   describe(shown) {
     this.tell(imagePlaneInWords(shown));
-    this.handles[0].describe();
+    this.handles[0].describe(this.towardsOf(shown) ? ", at infinity" : "");
   }
 }
 

@@ -414,7 +414,8 @@ export class Live {
   }
 
   legend() {
-    const { truth, runs } = this.shown;
+    const { truth, runs, problem } = this.shown;
+    if (problem) return [];
     return [...(truth ? [["truth", "truth"]] : []), ...runs.map(({ order, title }) => [order, title])];
   }
 

@@ -1,6 +1,8 @@
 // What the scene of the observer lab shows: the point and its estimates along the rays of the imaging surface.
 
 import { columnOf, distancesOf } from "../../common/model/derived.js";
+import { valueBetween } from "../../common/model/playback.js";
+import { affine, imageVelocities } from "../../common/model/why.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { tracksOfPoint } from "../../common/model/tracks.js";
 import { lookOf } from "../../common/page/lines.js";
@@ -25,6 +27,19 @@ export function sceneOf(lab) {
           return ray(seen, out);
         },
       };
+    },
+    /** How fast the image of the point and of its copies moves, where the motion is known. */
+    arrowsOf(shown, at, theme) {
+      const { settings, truth, width } = shown;
+      if (!truth?.length || settings.scenario in lab.model.recordings) return [];
+      const { ray, project } = lab.kernels.of(settings);
+      const shape = shapeOf(settings);
+      const out = new Float64Array(3);
+      const place = [0, 1].map((c) => valueBetween(truth, width, c, at));
+      const distance = 1 / valueBetween(truth, width, width - 1, at);
+      const there = Array.from(ray([...place, ...shape], out), (value) => value * distance);
+      const velocityAt = (copy) => affine(settings.A, settings.b, copy);
+      return [{ place, velocities: imageVelocities(there, velocityAt, (copy) => project([...copy, ...shape], out)), colour: theme.ink }];
     },
     wordsOf: (shown) => sceneInWords(shown, (rows) => distancesOf(rows, shown.width)),
   };

@@ -8,6 +8,8 @@ import { inWords, mainly } from "./directions.js";
 import { eigen } from "./symmetric.js";
 
 const MOST_ABSENCES = 3;
+/** Rates below this, per second, are those of rounding. */
+const NO_RATE = 1e-9;
 
 /** What happened to the error, as PointsRun.verdict() in Python. */
 export function verdict({ time, worst, settling, divergedAt }, model) {
@@ -20,7 +22,7 @@ export function verdict({ time, worst, settling, divergedAt }, model) {
 /** How fast the error decays, and what is guaranteed. */
 export function decayInWords({ fit }, bound) {
   if (!fit) return "no rate can be fitted to the last two thirds of the run";
-  const measured = `${readable(fit.rate, 2)} per second, fitted from ${readable(fit.begin)} s on`;
+  const measured = `${readable(Math.abs(fit.rate) < NO_RATE ? 0 : fit.rate, 2)} per second, fitted from ${readable(fit.begin)} s on`;
   return bound === null ? measured : `${measured}; at least ${readable(bound, 2)} is guaranteed`;
 }
 

@@ -2,6 +2,8 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
+import { imageVelocities } from "../../common/model/why.js";
+import { motionAt } from "../model/motion.js";
 import { DASHES } from "../../common/page/lines.js";
 import { trail } from "./image_plane.js";
 
@@ -27,6 +29,15 @@ export function sceneOf(lab) {
           return locate(seen, out);
         },
       };
+    },
+    /** How fast the images of the points move, and how fast they would if all of the state were nearer or farther. */
+    arrowsOf(shown, at, theme) {
+      const velocitiesOf = motionAt(lab, shown, at);
+      return Array.from({ length: shown.points }, (_, k) => {
+        const { place, velocityAt } = velocitiesOf(k);
+        const velocities = imageVelocities(place, velocityAt, ([x, y, z]) => [x / z, y / z]);
+        return { place: [place[0] / place[2], place[1] / place[2]], depth: place[2], velocities, colour: theme.lines[k] };
+      }).filter(({ depth }) => depth > 0);
     },
     wordsOf({ points, depths, estimated, time }) {
       const last = points * (time.length - 1);

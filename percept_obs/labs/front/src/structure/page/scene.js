@@ -1,16 +1,32 @@
 // What the scene of the structure lab shows: the object and its estimates, in the range that each d_s stands for.
 
 import { tracksOfPoint } from "../../common/model/tracks.js";
+import { valueBetween } from "../../common/model/playback.js";
+import { affine, imageVelocities } from "../../common/model/why.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { straight } from "../../common/model/space.js";
 import { lookOf } from "../../common/page/lines.js";
 import { inverseRange, rangeOf } from "../model/quantities.js";
 
-export const SCENE = {
+export const sceneOf = (lab) => ({
+  /** How fast the image of the point and of its copies moves. */
+  arrowsOf(shown, at, theme) {
+    const { settings, image, scale, time } = shown;
+    const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
+    const when = valueBetween(time, 1, 0, at);
+    const { rows } = lab.results.engines[0].camera.velocities(settings, lab.kernels.of(settings).swinging, [when]);
+    const [w1, w2, w3, ...v] = rows;
+    // The point as the camera sees it move: [w]x X + v_p - v_c, as rigid() has it.
+    const A = [[0, -w3, w2], [w3, 0, -w1], [-w2, w1, 0]];
+    const motion = [0, 1, 2].map((i) => v[3 + i] - v[i]);
+    const there = [y1, y2, 1].map((value) => value / (scale * ybar3));
+    const velocities = imageVelocities(there, (copy) => affine(A, motion, copy), ([x, y, z]) => [x / z, y / z]);
+    return [{ place: [y1, y2], velocities, colour: theme.ink }];
+  },
   tracksOf(shown, ghost, theme) {
     const along = (result, rows, run) => ({ distances: rangeOf(result, rows), ...inverseRange(result, rows, run) });
     const seen = shown.refusal ? { ...shown, truth: shown.image } : shown;
     return { tracks: tracksOfPoint(seen, ghost, along, lookOf(theme)), ray: straight };
   },
   wordsOf: (shown) => sceneInWords(shown.refusal ? { ...shown, truth: shown.image } : shown, (rows) => rangeOf(shown, rows)),
-};
+});
