@@ -1,4 +1,4 @@
-"""The arrows in the image are the velocities of the point and of its copies, and fall together where nothing is told."""
+"""The arrows in the image are velocities of the point and of its copies, and fall together where nothing is told."""
 
 import pytest
 from lab_alone import DRAWN, opened

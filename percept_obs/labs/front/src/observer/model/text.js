@@ -23,7 +23,7 @@ export function reasons(shown, model) {
     found.push(`Only ${names[measured[0]]} is measured: an instant never tells both hidden coordinates, a window may.`);
   }
   if (shown.foeTowards) {
-    found.push("The focus of expansion is at infinity: the translation is parallel to the image, so that every image moves with it.");
+    found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
   }
   if (!(settings.scenario in model.recordings) && settings.b.every((value) => value === 0)) {
     found.push("Nothing translates, b = 0: there is no focus of expansion, and images do not tell any distance.");
