@@ -1,6 +1,5 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
-import { within } from "../model/playback.js";
 import { Results } from "../model/results.js";
 import { schemaOf } from "../model/schema.js";
 import { same } from "../model/settings.js";
@@ -9,11 +8,9 @@ import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
 import { Link } from "./link.js";
+import { Showing } from "./showing.js";
 import { surround } from "./surroundings.js";
 import { TimeCharts } from "./time_charts.js";
-
-/** @typedef {import("../../types.js").Plane} Plane */
-/** @typedef {import("../../types.js").Settings} Settings */
 
 const REST = 150;
 const BETWEEN_WORDS = 250;
@@ -28,66 +25,25 @@ const BETWEEN_WORDS = 250;
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
-export class Live {
+export class Live extends Showing {
   constructor(widget, model, { Kernels, Engine, ...parts }) {
+    super(model, new State(structuredClone(widget.get("settings"))), parts);
     this.widget = widget;
-    this.model = model;
-    this.parts = parts;
     this.schema = schemaOf(model.schema, parts.words);
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
-    this.state = new State(structuredClone(widget.get("settings")));
-    /** @type {Plane[]} */
-    this.planes = [];
-    /** @type {TimeCharts} */
-    this.time = new TimeCharts({});
     /** @type {any} */
-    this.panel = this.formulas = this.view = null;
-    /** @type {any} the result that is shown, and that of the kept run */
-    this.shown = this.ghost = null;
+    this.panel = this.formulas = null;
     /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
     this.answer = null;
     /** @type {Link | null} */
     this.link = null;
-    /** @type {ReturnType<typeof themeOf> | null} */
-    this.theme = null;
-    /** @type {number | null} the time under the pointer */
-    this.peeked = null;
-    this.choices = 0;
-    /** @type {Settings | null} those at which the hand took hold */
-    this.taken = null;
-    this.width = 800;
     this.serial = 0;
     this.pictures = 0;
     this.spoken = 0;
-    this.read = 0;
     this.frame = 0;
-    this.pending = this.closed = this.down = false;
-    this.stale = true;
-    /** @type {any} the timer that runs while the hand may go on */
-    this.resting = null;
+    this.pending = this.closed = false;
     this.leave = () => {};
-  }
-
-  get settings() {
-    return this.state.settings;
-  }
-
-  get charts() {
-    return this.time.charts;
-  }
-
-  get drawn() {
-    return this.time.drawn;
-  }
-
-  /** The times in sight. */
-  get span() {
-    return this.time.timeline.span;
-  }
-
-  get figures() {
-    return [...this.planes, ...Object.values(this.charts)];
   }
 
   open(place) {
@@ -113,18 +69,6 @@ export class Live {
     this.panel.show();
     this.schedule();
     this.rest();
-  }
-
-  resized(node, size) {
-    const picture = this.figures.find(({ figure }) => figure === node);
-    if (picture) picture.size = size;
-    else this.width = size.width;
-    this.schedule();
-  }
-
-  retheme() {
-    this.theme = null;
-    this.schedule();
   }
 
   close() {
@@ -200,48 +144,6 @@ export class Live {
     this.change({ kept: this.settings.kept ? null : { ...structuredClone(this.settings), kept: null } }, true);
   }
 
-  /** Show a time: nothing is computed again. */
-  point(cursor) {
-    if (cursor === null || cursor === this.state.cursor || this.shown?.problem) return;
-    this.state.cursor = cursor;
-    this.peeked = null;
-    this.redraw();
-  }
-
-  /** Show the time under a pointer until it leaves. */
-  peek(time) {
-    if (time === this.peeked) return;
-    this.peeked = time;
-    this.redraw();
-  }
-
-  /** Show another part of the time. */
-  zoom(change) {
-    change(this.time.timeline);
-    this.choices += 1;
-    this.peeked = null;
-    this.schedule();
-  }
-
-  /** Let the line of a colour stand out, or all of them. */
-  pick(colour) {
-    if (!this.theme || this.theme.picked === colour) return;
-    this.theme = { ...this.theme, picked: colour };
-    this.schedule();
-  }
-
-  /** The hand takes hold, or lets go: what it did not move follows now. */
-  hold(down) {
-    if (down) this.taken = this.settings;
-    else if (this.down && this.taken !== this.settings) this.schedule();
-    this.down = down;
-  }
-
-  /** Whether a hand holds something, so that what is around it stands still. */
-  get held() {
-    return this.down || this.resting !== null;
-  }
-
   // What is there to show it with.
 
   /** What is shown, and what is kept to compare with. */
@@ -284,11 +186,6 @@ export class Live {
     this.view.rested();
   }
 
-  schedule() {
-    this.stale = true;
-    this.redraw();
-  }
-
   /** Draw what was computed, at another time or from elsewhere; the time charts only if they have changed. */
   redraw() {
     if (this.pending || this.closed) return;
@@ -311,7 +208,6 @@ export class Live {
       Object.assign(this, this.results.of(settings, speaking));
       this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
-      this.stale = false;
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {
@@ -326,56 +222,6 @@ export class Live {
       () => this.awaited === settings && this.schedule(),
       (error) => this.fail(error),
     );
-  }
-
-  // What is shown.
-
-  chosen() {
-    const { problem, settings } = this.shown;
-    return problem ? [] : this.model.pictures.filter((name) => settings.pictures.includes(name));
-  }
-
-  draw() {
-    const { shown, ghost, theme } = this;
-    const cursor = this.present();
-    for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
-    if (this.stale) this.drawCharts();
-    this.time.point(cursor);
-    this.view.time(cursor);
-    const now = performance.now();
-    if (this.view.playing() && now - this.read < BETWEEN_WORDS) return;
-    this.read = now;
-    this.view.read(cursor === null ? "" : this.parts.readingAt(shown, cursor));
-  }
-
-  /** The time that is shown, in what there is to show. */
-  present() {
-    const { shown, state } = this;
-    if (shown.problem || !shown.time.length) return null;
-    const { settings, time } = shown;
-    const recorded = settings.scenario in (this.model.recordings ?? {});
-    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
-    const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
-    const { name, act } = state.preset ?? { name: "", act: -1 };
-    const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
-    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held });
-    if (shown.refusal) return null;
-    state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
-    return this.peeked ?? state.cursor;
-  }
-
-  /** When each run settled, in seconds, null where there is no truth to say so; and until when something else happens. */
-  story() {
-    const { runs, inside = [] } = this.shown;
-    return { settlings: runs.map(({ settling }) => settling), events: inside.at(-1)?.[1] };
-  }
-
-  drawCharts() {
-    const { shown, ghost, theme, held, width } = this;
-    this.view.answered(this.answered());
-    const more = this.besides();
-    const partsOf = (name) => this.parts.chartOf(name, shown, ghost, theme, more);
-    this.time.draw(this.chosen(), partsOf, { theme, held, narrow: width < 600 });
   }
 
   /** Bring words and controls to what is drawn. */
@@ -402,11 +248,6 @@ export class Live {
   verdicts() {
     const { shown, model } = this;
     return shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) }));
-  }
-
-  /** What else the time charts show. */
-  besides() {
-    return {};
   }
 
   copy() {
