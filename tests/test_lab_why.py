@@ -1,7 +1,9 @@
 """The arrows in the image are velocities of the point and of its copies, and fall together where nothing is told."""
 
+import numpy as np
 import pytest
 from lab_alone import DRAWN, opened
+from lab_browser import control
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -31,6 +33,17 @@ ARROWS = """() => {
     });
 }"""
 STILL = [[0.0] * 3] * 3
+UNSEEN = {
+    "one output": lambda: observer_lab(outputs=["y1"]),
+    "no input": lambda: points_lab(input=0.0),
+    "no known velocity": lambda: structure_lab(v_c=[0.0, 0.0, 0.0]),
+}
+SWUNG = """() => {
+    const [lab] = window.perceptObsLabs;
+    const [, scene] = lab.planes;
+    const { moved } = scene.unseenOf(lab.shown, { sample: 50, part: 0 }, lab.theme);
+    return [-1, 0, 1].map((amount) => moved(amount).map(({ image, place }) => [image, place]));
+}"""
 
 
 def arrows_of(browser, lab):
@@ -59,3 +72,47 @@ def test_at_the_focus_of_expansion_and_without_input_all_arrows_fall_together(br
             near, own, far = arrow["velocities"]
             assert near == pytest.approx(own, abs=1e-6)
             assert far == pytest.approx(own, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", UNSEEN)
+def test_what_is_not_seen_is_moved_and_what_is_measured_stands_still(browser, name):
+    lab = UNSEEN[name]()
+    page = opened(browser, lab)
+    page.wait_for_function(DRAWN)
+    swung = page.evaluate(SWUNG)
+    for copies in zip(*swung, strict=True):
+        images, places = ([copy[k] for copy in copies] for k in (0, 1))
+        seen = [0] if name == "one output" else [0, 1]
+        for image, place in zip(images, places, strict=True):
+            assert [image[c] for c in seen] == pytest.approx([images[1][c] for c in seen], abs=1e-9)
+            assert image == pytest.approx([place[0] / place[2], place[1] / place[2]])
+            if name == "one output":
+                assert rate_of_y1(place, lab.settings) == pytest.approx(rate_of_y1(places[1], lab.settings))
+        depths = [place[2] for place in places]
+        assert max(depths) > 1.2 * min(depths)
+    page.click(control("swing"))
+    page.wait_for_function("() => Math.abs([...window.perceptObsLabs][0].planes[1].swing.amount) > 0.2")
+    page.click(control("swing"))
+    assert page.evaluate("[...window.perceptObsLabs][0].planes[1].swing.amount") is None
+    page.close()
+
+
+def rate_of_y1(place, settings):
+    """The rate of X / Z where X' = A X + b."""
+    velocity = np.asarray(settings["A"]) @ place + settings["b"]
+    return (velocity[0] - place[0] / place[2] * velocity[2]) / place[2]
+
+
+def test_where_everything_is_told_there_is_nothing_unseen_to_move_and_with_reduced_motion_it_moves_by_steps(browser):
+    for lab in (observer_lab(), points_lab(), structure_lab()):
+        page = opened(browser, lab)
+        page.wait_for_function(DRAWN)
+        assert page.locator(control("swing")).is_hidden()
+        page.close()
+    page = opened(browser, points_lab(input=0.0), reduced_motion="reduce")
+    page.wait_for_function(DRAWN)
+    page.click(control("swing"))
+    first = page.evaluate("[...window.perceptObsLabs][0].planes[1].swing.amount")
+    page.wait_for_timeout(150)
+    assert page.evaluate("[...window.perceptObsLabs][0].planes[1].swing.amount") == first > 0.5
+    page.close()

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { advanced, begun, between, stepped, valueBetween } from "../src/common/model/playback.js";
+import { scaled, unseenDirection } from "../src/common/model/why.js";
 import * as space from "../src/common/model/space.js";
 
 const near = (one, other, slack = 1e-12) => one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));
@@ -65,6 +66,16 @@ test("two standard deviations of an inverse distance are an interval of distance
   near(space.claimedDistances(0.5, 0.125), [4 / 3, 4]);
   assert.deepEqual(space.claimedDistances(0.5, 0.25), [1, Infinity]);
   assert.equal(space.claimedDistances(-1, 0.1), null);
+});
+
+test("a copy scaled is on its ray, and one moved along what w does not tell changes no measured rate", () => {
+  const [copy] = scaled([{ place: [1, -2, 4], colour: "red" }], 1);
+  assert.deepEqual(copy, { place: [2, -4, 8], colour: "red" });
+  for (const w of [[0.3, -2], [0, 1], [5, 0], [0, 0]]) {
+    const direction = unseenDirection(w, 0.4);
+    near([dot(w, direction)], [0]);
+    assert.ok(Math.abs(direction[1]) <= 0.2 + 1e-12 && Math.abs(direction[0]) <= 0.5 + 1e-12 && Math.hypot(...direction) > 0.01);
+  }
 });
 
 test("play goes on at its speed, stops at the end, and begins there anew", () => {

@@ -29,6 +29,22 @@ export function imageVelocities(place, velocityAt, project) {
   });
 }
 
+/** By how much a copy grows that swings between half as far and twice as far. */
+const LARGEST = 2;
+
+/** Copies of places, all lengths larger or smaller by a swing between -1 and 1: no image moves. */
+export function scaled(places, amount) {
+  const size = LARGEST ** amount;
+  return places.map(({ place, ...more }) => ({ ...more, place: place.map((value) => size * value) }));
+}
+
+/** The step in a hidden image coordinate and the inverse distance that w does not tell, of a size that can be seen. */
+export function unseenDirection([other, inverse], atInverse) {
+  const [first, second] = other === 0 && inverse === 0 ? [0, 1] : [-inverse, other];
+  const size = Math.min((0.5 * Math.abs(atInverse)) / Math.abs(second), 0.5 / Math.abs(first));
+  return [size * first, size * second];
+}
+
 /** A x + v for a matrix in rows. */
 export function affine(A, v, x) {
   return A.map((row, i) => row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + v[i]);

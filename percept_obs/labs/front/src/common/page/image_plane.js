@@ -12,6 +12,7 @@ import { Handle } from "./handle.js";
 import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
 import { DASHES, fading, KEPT, SOLID } from "./lines.js";
 import { meanSpeed } from "../model/why.js";
+import { drawSwung } from "./swing.js";
 import { drawWhy } from "./why.js";
 import { ghostMark, pointMark, rimMark } from "./marks.js";
 
@@ -27,6 +28,8 @@ export class FramedImage extends Picture {
     this.square = null;
     this.handles = handles.map((handle) => new Handle(handle));
     this.choices = 0;
+    /** @type {any} the scene beside it */
+    this.scene = null;
     const said = { class: "fitting", hidden: true, "data-control": "fit image", title: "Show all of the path" };
     this.fitting = button("Fit", () => {
       this.square = null;
@@ -60,6 +63,12 @@ export class FramedImage extends Picture {
     pen.restore();
     const places = placesIn(square);
     this.handles.forEach((handle, k) => handle.stand(places[k], frame));
+  }
+
+  /** The images of the copies that swing along what is not seen. */
+  swing(pen, { box, x, y }, shown, cursor, theme) {
+    const swung = this.scene?.swung(shown, cursor, theme);
+    if (swung) drawSwung(pen, swung.copies, ({ image }) => [x(image[0]), y(image[1])], swung.words, [box.left + 4, box.top + 14], theme);
   }
 }
 
@@ -106,6 +115,7 @@ export class ImagePlane extends FramedImage {
       drawWhy(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, cursor, frame, theme);
+    this.swing(pen, frame, shown, cursor, theme);
   }
 
   describe(shown) {

@@ -6,6 +6,7 @@ import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOO
 import { indicesIn } from "../model/timeline.js";
 import { positionAt, positionsOf, rimOf, turned } from "../model/space.js";
 import { Picture } from "./canvas.js";
+import { drawSwung, Swing } from "./swing.js";
 import { element } from "./controls.js";
 import { stroke } from "./image_frame.js";
 import { fading, KEPT, LINE, SOLID } from "./lines.js";
@@ -22,19 +23,22 @@ const HOW = "Scene in metres: turn it with the arrow keys or by dragging, plus a
 
 /** What a lab shows in it: `tracksOf(shown, ghost, theme)` and `wordsOf(shown)`; `image` is the image plane beside it. */
 export class Scene extends Picture {
-  constructor(lab, { image, tracksOf, wordsOf }) {
+  constructor(lab, { image, tracksOf, wordsOf, unseenOf }) {
     super("scene", "Scene, seen from the side");
     this.lab = lab;
     this.image = image;
     this.tracksOf = tracksOf;
     this.wordsOf = wordsOf;
+    this.unseenOf = unseenOf;
+    this.swing = new Swing(lab);
+    image.scene = this;
     this.look = OPENING_LOOK;
     this.zoom = 1;
     /** @type {ReturnType<typeof ballAround> | null} */
     this.ball = null;
     this.eye = element("div", { class: "eye", tabindex: 0, role: "slider", "aria-label": HOW, title: "Drag to turn; wheel to zoom" });
     this.eye.dataset.control = "scene";
-    this.figure.append(this.eye);
+    this.figure.append(this.eye, this.swing.press);
     this.listen();
     this.say();
   }
@@ -86,9 +90,19 @@ export class Scene extends Picture {
     this.tell(this.wordsOf(shown));
   }
 
+  /** The copies that swing along what is not seen, and words of what stands still; null while none does. */
+  swung(shown, cursor, theme) {
+    const { amount } = this.swing;
+    if (amount === null || cursor === null) return null;
+    const unseen = this.unseenOf(shown, between(shown.time, cursor), theme);
+    return unseen && { copies: unseen.moved(amount), words: unseen.words };
+  }
+
   draw(shown, ghost, cursor, theme) {
     const size = this.fit();
-    if (!shown.time.length || shown.problem) return;
+    const there = shown.time.length > 0 && !shown.problem;
+    this.swing.offer(there && cursor !== null && this.unseenOf(shown, between(shown.time, cursor), theme));
+    if (!there) return;
     const scene = this.tracksOf(shown, ghost, theme, cursor);
     const range = indicesIn(shown.time, this.lab.span);
     const inSight = (track) => (track.range ?? range).map((k) => Math.min(k, track.distances.length - 1));
@@ -111,6 +125,8 @@ export class Scene extends Picture {
     const at = between(shown.time, cursor);
     for (const track of scene.tracks) if (!track.of && !track.kept) this.point(drawing, track, at);
     for (const track of scene.tracks) if (track.of && !track.kept) estimate(drawing, track, at);
+    const swung = this.swung(shown, cursor, theme);
+    if (swung) drawSwung(pen, swung.copies, ({ place }) => on(frame, place), "", [0, 0], theme);
   }
 
   /** X, Y and Z from the camera on, as far as the scene goes, with round numbers of metres where nothing else is said. */

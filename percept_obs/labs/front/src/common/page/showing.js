@@ -137,7 +137,7 @@ export class Showing {
     const now = performance.now();
     if (this.view.playing() && now - this.read < BETWEEN_READINGS) return;
     this.read = now;
-    this.view.read(cursor === null ? "" : this.parts.readingAt(shown, cursor));
+    this.view.read(cursor === null || shown.refusal ? "" : this.parts.readingAt(shown, cursor));
   }
 
   /** The time that is shown, in what there is to show. */
@@ -151,7 +151,6 @@ export class Showing {
     const { name, act } = state.preset ?? { name: "", act: -1 };
     const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
     this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held });
-    if (shown.refusal) return null;
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
   }

@@ -52,6 +52,7 @@ export class ImagePlane extends FramedImage {
       drawWhy(pen, frame, this.arrowsOf(shown, between(time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, between(shown.time, cursor ?? shown.time[last]), frame, theme);
+    this.swing(pen, frame, shown, cursor, theme);
   }
 
   describe(shown) {

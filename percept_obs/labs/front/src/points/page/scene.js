@@ -2,7 +2,7 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { imageVelocities } from "../../common/model/why.js";
+import { imageVelocities, scaled } from "../../common/model/why.js";
 import { motionAt } from "../model/motion.js";
 import { DASHES } from "../../common/page/lines.js";
 import { trail } from "./image_plane.js";
@@ -38,6 +38,16 @@ export function sceneOf(lab) {
         const velocities = imageVelocities(place, velocityAt, ([x, y, z]) => [x / z, y / z]);
         return { place: [place[0] / place[2], place[1] / place[2]], depth: place[2], velocities, colour: theme.lines[k] };
       }).filter(({ depth }) => depth > 0);
+    },
+    /** Without input the scale is not seen: all of the state may be larger, and moves as before. */
+    unseenOf(shown, at, theme) {
+      const { input, velocity } = shown.settings;
+      if (input !== 0 || velocity.some((value) => value !== 0)) return null;
+      const placeOf = motionAt(lab, shown, at);
+      const points = Array.from({ length: shown.points }, (_, k) => ({ place: placeOf(k).place, colour: theme.lines[k] }));
+      const seen = points.filter(({ place }) => place[2] > 0);
+      const copies = seen.map((point) => ({ ...point, image: [point.place[0] / point.place[2], point.place[1] / point.place[2]] }));
+      return { words: "no image moves, whatever the scale", moved: (amount) => scaled(copies, amount) };
     },
     wordsOf({ points, depths, estimated, time }) {
       const last = points * (time.length - 1);

@@ -2,10 +2,11 @@
 
 import { tracksOfPoint } from "../../common/model/tracks.js";
 import { valueBetween } from "../../common/model/playback.js";
-import { affine, imageVelocities } from "../../common/model/why.js";
+import { affine, imageVelocities, scaled } from "../../common/model/why.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { straight } from "../../common/model/space.js";
 import { lookOf } from "../../common/page/lines.js";
+import { keyOf } from "../model/kernels.js";
 import { inverseRange, rangeOf } from "../model/quantities.js";
 
 export const sceneOf = (lab) => ({
@@ -22,6 +23,14 @@ export const sceneOf = (lab) => ({
     const there = [y1, y2, 1].map((value) => value / (scale * ybar3));
     const velocities = imageVelocities(there, (copy) => affine(A, motion, copy), ([x, y, z]) => [x / z, y / z]);
     return [{ place: [y1, y2], velocities, colour: theme.ink }];
+  },
+  /** Where no velocity is known the scale is not seen: all lengths and velocities may be larger. */
+  unseenOf(shown, at, theme) {
+    const { settings, image, scale } = shown;
+    if (!shown.refusal || shown.refusal !== lab.model.unknowns[keyOf(settings)]?.withoutThem) return null;
+    const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
+    const point = { image: [y1, y2], place: [y1, y2, 1].map((value) => value / (scale * ybar3)), colour: theme.ink };
+    return { words: "the image stands still, whatever the scale", moved: (amount) => scaled([point], amount) };
   },
   tracksOf(shown, ghost, theme) {
     const along = (result, rows, run) => ({ distances: rangeOf(result, rows), ...inverseRange(result, rows, run) });
