@@ -29,8 +29,8 @@ export function imageVelocities(place, velocityAt, project) {
   });
 }
 
-/** By how much a copy grows that swings between half as far and twice as far. */
-const LARGEST = 2;
+/** By how much a copy grows at most; it stays in the scene. */
+const LARGEST = 1.3;
 
 /** Copies of places, all lengths larger or smaller by a swing between -1 and 1: no image moves. */
 export function scaled(places, amount) {
