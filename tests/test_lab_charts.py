@@ -133,10 +133,10 @@ def test_the_line_that_the_legend_points_at_stands_out(browser):
         return count;
     }"""
     assert page.evaluate(faint) == 0
-    page.hover(control("line sliding mode"))
+    page.hover(".line-name:has-text('sliding mode')")
     assert page.evaluate(faint) >= 6
     page.mouse.move(5, 5)
     assert page.evaluate(faint) == 0
-    page.focus(control("line truth"))
+    page.focus(".line-name:has-text('truth')")
     assert page.evaluate(faint) >= 6
     page.close()

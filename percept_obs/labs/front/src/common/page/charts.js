@@ -5,7 +5,7 @@ import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
 import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, sayNothing, shade, shows } from "./chart_events.js";
 import { element } from "./controls.js";
-import { fading, LINE } from "./lines.js";
+import { fading } from "./lines.js";
 import { horizontal } from "./chart_events.js";
 import { tickLabel } from "../model/scales.js";
 
@@ -136,7 +136,7 @@ function strokeLine(pen, place, { time, values, colour, dash }, theme) {
   pen.strokeStyle = colour;
   pen.setLineDash(dash ?? []);
   pen.lineJoin = "bevel";
-  pen.lineWidth = LINE;
+  pen.lineWidth = theme.width;
   pen.globalAlpha = fading(theme, colour);
   pen.stroke();
   pen.globalAlpha = 1;

@@ -94,7 +94,7 @@ export function drawEnds(pen, rows, width, { x, y }, theme) {
 }
 
 /** One path of rows of numbers, whose coordinates y1, y2 stand at `first`, with gaps where they are none. */
-export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left, top, far }, colour, dash) {
+export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left, top, far, lineWidth = LINE }, colour, dash) {
   const [middle1, middle2] = centre;
   // Points closer than a pixel do not show.
   const near = 1.2 / scale;
@@ -120,7 +120,7 @@ export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left,
   }
   pen.strokeStyle = colour;
   pen.setLineDash(dash);
-  pen.lineWidth = LINE;
+  pen.lineWidth = lineWidth;
   pen.stroke();
   pen.lineWidth = 1;
 }

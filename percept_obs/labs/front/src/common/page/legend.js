@@ -21,7 +21,7 @@ export class Legend {
   }
 
   entry(which, text) {
-    const said = { class: "line-name", "data-control": `line ${text}`, title: "Let this line stand out", "aria-pressed": String(which === this.kept) };
+    const said = { class: "line-name", "data-control": "line", title: "Let this line stand out", "aria-pressed": String(which === this.kept) };
     const press = button("", () => this.keep(which === this.kept ? null : which), said);
     press.append(swatch(which), element("span", {}, text));
     press.dataset.line = which;

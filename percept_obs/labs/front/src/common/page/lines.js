@@ -5,8 +5,9 @@ export const DASHES = [
   [7, 4], [2, 3], [10, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3], [4, 2, 4, 7], [2, 7], [16, 3, 5, 3], [13, 3, 2, 3, 7, 3],
 ];
 
-/** Width of all lines, in pixels. */
+/** Width of all lines, in pixels; thin ones while a hand moves, for a page draws wide dashes several times slower. */
 export const LINE = 2;
+export const MOVING_LINE = 1;
 
 /** How much of a line is seen while the hand picks one out by its colour. */
 export function fading({ picked }, colour) {

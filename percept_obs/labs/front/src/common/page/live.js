@@ -7,6 +7,7 @@ import { State } from "../model/state.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
+import { LINE } from "./lines.js";
 import { Link } from "./link.js";
 import { Showing } from "./showing.js";
 import { surround } from "./surroundings.js";
@@ -169,6 +170,7 @@ export class Live extends Showing {
   async settle() {
     clearTimeout(this.resting);
     this.resting = null;
+    if (this.theme && this.theme.width !== LINE) this.schedule();
     if (this.pending) this.paint();
     const { settings } = this;
     try {

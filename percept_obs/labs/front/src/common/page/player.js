@@ -72,6 +72,8 @@ export class Player {
   put(time) {
     this.pause();
     this.lab.point(time);
+    // The next key begins where this one leads, though the picture comes later.
+    this.show(this.lab.state.cursor);
   }
 
   toggle() {

@@ -9,7 +9,7 @@ import { Picture } from "./canvas.js";
 import { drawSwung, Swing } from "./swing.js";
 import { element } from "./controls.js";
 import { stroke } from "./image_frame.js";
-import { fading, KEPT, LINE, SOLID } from "./lines.js";
+import { fading, KEPT, SOLID } from "./lines.js";
 import { ghostMark, label, pointMark, rimMark } from "./marks.js";
 
 const CAPTION = "Scene: y1 to the right, y2 upwards, as in the image";
@@ -256,7 +256,7 @@ function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.strokeStyle = own;
   pen.setLineDash(kept ? KEPT : of ? dash : SOLID);
   pen.globalAlpha = (of ? 0.8 : 0.6) * fading(theme, own);
-  pen.lineWidth = LINE;
+  pen.lineWidth = theme.width;
   pen.stroke();
   pen.lineWidth = 1;
   pen.globalAlpha = 1;

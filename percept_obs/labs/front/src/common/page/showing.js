@@ -1,6 +1,7 @@
 // What a lab shows: its pictures of a result, at one time, over the part of the time that is in sight.
 
 import { within } from "../model/playback.js";
+import { LINE, MOVING_LINE } from "./lines.js";
 import { TimeCharts } from "./time_charts.js";
 
 /** @typedef {import("../../types.js").Plane} Plane */
@@ -128,6 +129,7 @@ export class Showing {
 
   draw() {
     const { shown, ghost, theme } = this;
+    theme.width = this.held ? MOVING_LINE : LINE;
     const cursor = this.present();
     for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
     if (this.stale) this.drawCharts();
