@@ -54,7 +54,7 @@ def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(
     assert y < middle_y
     page.mouse.move(x, y)
     page.mouse.down()
-    page.mouse.move(middle_x, middle_y, steps=4)
+    page.mouse.move(middle_x, middle_y)
     page.mouse.up()
     page.wait_for_function(DRAWN)
     b1, b2, b3 = page.evaluate(B)
