@@ -93,10 +93,12 @@ def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) 
         x + z
             ^
     """
-    return _Parser(text, letters, labels).lines()
+    return Parser(text, letters, labels).lines()
 
 
-class _Parser(Cursor):
+class Parser(Cursor):
+    """What `read` reads with; its `tokens` are then the words as they were understood, letters side by side apart."""
+
     def __init__(self, text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str]) -> None:
         super().__init__(text)
         self.letters, self.labels, self.depth = dict(letters), set(labels), 0

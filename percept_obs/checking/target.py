@@ -15,7 +15,7 @@ from sympy.logic.boolalg import Boolean
 
 from percept_obs.checking.deciding import explicit
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS, Reading, read
+from percept_obs.checking.reading import FUNCTIONS, Parser, Reading, read
 from percept_obs.checking.tokens import tokens
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
@@ -139,11 +139,15 @@ class Target:
         letters = set(self.letters.values())
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
+    def parser(self, text: str) -> Parser:
+        """What reads a text in these letters."""
+        extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
+        return Parser(text, extra | self.letters, [*self.rows, *self.blocks, *_LABELS])
+
     def read(self, mine: Any) -> list[Reading]:
         """What somebody gives, as readings: text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
-            return read(mine, extra | self.letters, [*self.rows, *self.blocks, *_LABELS])
+            return self.parser(mine).lines()
         if isinstance(mine, Mapping):
             return [
                 replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
