@@ -59,14 +59,13 @@ def entry_of(sheet: Sheet, row: int, text: str) -> Entry:
     """What is typed in a line of a sheet."""
     goal, line = sheet.goal, sheet.goal.lines[row]
     try:
-        parser = goal.parser(text)
+        shown = typed_markup(goal.words(text), goal.letters)
     except CannotRead as error:
         return Entry("", None, _first_line(error), error.position)
     try:
-        readings = parser.lines()
+        readings = goal.read(text)
     except CannotRead as error:
-        return Entry(typed_markup(parser.tokens, goal.letters), None, _first_line(error), error.position)
-    shown = typed_markup(parser.tokens, goal.letters)
+        return Entry(shown, None, _first_line(error), error.position)
     names = {reading.name for reading in readings}
     if len(readings) != 1 or not isinstance(readings[0].formula, sp.Expr):
         return Entry(shown, None, "one formula is asked for here, without other equations or relations", len(text))

@@ -1,4 +1,4 @@
-"""What is asked for at the desk: the steps of a derivation, a line for each formula, and what these are compared with."""
+"""What is asked for at the desk: the steps of a derivation, a line for each formula, and the goal."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def typed_markup(words: list[Token], letters: Mapping[str, sp.Symbol] = MappingP
     Parameters
     ----------
     words : list of Token
-        As `Parser` leaves them; the last one is of the kind "end".
+        As `Target.words` gives them; the last one is of the kind "end".
     letters : mapping of names without underscores to symbols
 
     Examples
