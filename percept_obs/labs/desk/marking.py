@@ -67,11 +67,14 @@ def entry_of(sheet: Sheet, row: int, text: str) -> Entry:
     except CannotRead as error:
         return Entry(shown, None, _first_line(error), error.position)
     names = {reading.name for reading in readings}
-    if len(readings) != 1 or not isinstance(readings[0].formula, sp.Expr):
+    formulas = [
+        r.formula for r in readings if isinstance(r.formula, sp.Expr) and not isinstance(r.formula, sp.MatrixBase)
+    ]
+    if len(readings) != 1 or not formulas:
         return Entry(shown, None, "one formula is asked for here, without other equations or relations", len(text))
     if names - {"", line.key}:
         return Entry(shown, None, f"this is the line for {line.name}; type its right side only")
-    return Entry(shown, Reading(f"line{row}", readings[0].formula))
+    return Entry(shown, Reading(f"line{row}", formulas[0]))
 
 
 def _first_line(error: CannotRead) -> str:

@@ -11,7 +11,7 @@ HINTS = ("which line", "which term", "which slip, and in which step")
 _PLACE: dict[str, Any] = {"low": -1, "high": 1, "usual": (-1, 1), "step": 0.01}
 
 SCHEMA = Schema(
-    student=Text(most=60, label="Your name or number", about="whose system it is; empty for the one chosen"),
+    student=Text(most=60, label="Name or number", about="whose system it is; empty for the one chosen"),
     motion=Choice("affine", tuple(MOTIONS)),
     surface=Choice("pinhole", tuple(SURFACES)),
     outputs=Names(["y1", "y2"], ("y1", "y2", "y3"), label="Measured"),

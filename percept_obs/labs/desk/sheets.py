@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import sympy as sp
 
@@ -19,10 +20,10 @@ from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
 PARTS = {
-    "rate": "the motion of the image",
-    "form": "measured and hidden: w, φ and g",
-    "observer": "the observer's equations",
-    "error": "the dynamics of its error",
+    "rate": "the image's motion",
+    "form": "w, φ and g",
+    "observer": "an observer",
+    "error": "its error dynamics",
 }
 """What can be derived, in the order in which one thing needs the other."""
 
@@ -75,9 +76,9 @@ def sheet_of(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str,
 def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
     surface = system.surface
     seen = {s.name: e for s, e in zip(surface.coordinates, (*surface.image, 1 / surface.distance), strict=True)}
-    steps = [step for step in system.derivation() if step.values and dict(step.values) != seen]
+    steps = [step for step in system.derivation() if step.values]
     # what is only written in another form is asked for once
-    kept = [step for before, step in zip([None, *steps], steps, strict=False) if not _again(step, before)]
+    kept = [step for before, step in pairwise([None, *steps]) if step and not _again(step, before)]
     given = [
         formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(system.motion.A, sp.Matrix(POINT)), system.motion.b)),
         row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),

@@ -8,15 +8,15 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.observers import Observer, de_luca, identifier_based, sliding_mode, spica
+from percept_obs.observers import Observer, de_luca, identifier_based, spica
 from percept_obs.system import surfaces
 from percept_obs.system.motion import Motion, affine, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 
 MOTIONS = {make.__name__: make for make in (affine, rigid)}
 SURFACES = {make.__name__: make for make in surfaces.SURFACES}
-OBSERVERS = {make.key: make for make in (identifier_based, sliding_mode, de_luca, spica)}
-"""Observers whose equations fit on a sheet of paper: those without a covariance."""
+OBSERVERS = {make.key: make for make in (identifier_based, de_luca, spica)}
+"""Observers whose equations can be typed in a line: those without a covariance and without branches."""
 
 
 @lru_cache

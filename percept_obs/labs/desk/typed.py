@@ -1,5 +1,6 @@
 """What somebody types, as mathematics: in the order in which it stands there, also while it is not yet complete."""
 
+import re
 from collections.abc import Mapping
 from html import escape
 from types import MappingProxyType
@@ -15,6 +16,7 @@ DEEPEST = 40
 GAP = "<mi>□</mi>"
 """What stands where something is still missing."""
 
+_IN_BRACKETS = re.compile(r"<mrow><mo[^>]*>\(</mo>(.*)<mo[^>]*>\)</mo></mrow>", re.DOTALL)
 _CLOSES = {"(": ")", "[": "]", "{": "}", "|left": "|right"}
 _SIGNS = {"*": "·", "-": "−", "<=": "≤", ">=": "≥", "!=": "≠"}
 _ENDS = {*_CLOSES.values(), "line", "end"}
@@ -82,12 +84,12 @@ class _Writer:
     def power(self) -> str:
         base = self.atom()
         if self.now.kind == "raised":
-            return f"<msup>{_one(base)}<mn>{self.take().text}</mn></msup>"
+            return _raised(base, f"<mn>{self.take().text}</mn>")
         if self.now.kind != "^":
             return base
         self.take()
         minus = _sign(self.take()) if self.now.kind == "-" else ""
-        return f"<msup>{_one(base)}<mrow>{minus}{_bare(self.atom())}</mrow></msup>"
+        return _raised(base, f"<mrow>{minus}{_bare(self.atom())}</mrow>")
 
     def atom(self) -> str:
         token = self.now
@@ -125,7 +127,9 @@ class _Writer:
         left, right = {"{": ("", ""), "[": ("[", "]"), "|left": ("|", "|")}.get(opened.kind, ("(", ")"))
         if not left:
             return f"<mrow>{inside or GAP}</mrow>"
-        return f"<mrow><mo>{left}</mo>{inside or GAP}{f'<mo>{right}</mo>' if closed else ''}</mrow>"
+        # stretched by a browser without a mathematical font they would tower over letters
+        kind = "<mo>" if "<mfrac>" in inside else '<mo stretchy="false">'
+        return f"<mrow>{kind}{left}</mo>{inside or GAP}{f'{kind}{right}</mo>' if closed else ''}</mrow>"
 
 
 def _sign(token: Token) -> str:
@@ -134,11 +138,17 @@ def _sign(token: Token) -> str:
     return f"<mo>{escape(_SIGNS.get(token.kind, token.kind))}</mo>"
 
 
+def _raised(base: str, exponent: str) -> str:
+    """A power; over an index, not beside it."""
+    if base.startswith("<msub>") and base.endswith("</msub>"):
+        return f"<msubsup>{base.removeprefix('<msub>').removesuffix('</msub>')}{exponent}</msubsup>"
+    return f"<msup>{_one(base)}{exponent}</msup>"
+
+
 def _bare(text: str) -> str:
     """What stands in brackets, without them, where a line or a place already keeps it together."""
-    inside = text.removeprefix("<mrow><mo>(</mo>").removesuffix("<mo>)</mo></mrow>")
-    whole = len(inside) == len(text) - len("<mrow><mo>(</mo><mo>)</mo></mrow>")
-    return f"<mrow>{inside}</mrow>" if whole else text
+    found = _IN_BRACKETS.fullmatch(text)
+    return f"<mrow>{found[1]}</mrow>" if found else text
 
 
 def _one(text: str) -> str:

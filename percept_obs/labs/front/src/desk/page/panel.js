@@ -6,7 +6,6 @@ import { Fieldsets } from "../../common/page/fieldsets.js";
 
 export const WORDS = {
   surface: { label: "Imaging surface" },
-  point: { label: "Point" },
 };
 
 const WITH_OBSERVER = ["observer", "error"];

@@ -67,7 +67,7 @@ class Line {
     const words = label ? [element("span", { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)] : [name];
     if (label) words[0].innerHTML = `<math>${label}</math>`;
     this.mark = element("span", { class: "mark", role: "img" });
-    this.formula = element("div", { class: "as-typed", tabindex: -1 });
+    this.formula = element("div", { class: "as-typed", role: "group", "aria-label": `${name} as mathematics` });
     this.state = element("p", { class: "state", id: `${id}-found` });
     this.hints = element("ul", { class: "told" });
     this.row = element(
@@ -88,6 +88,10 @@ class Line {
     if (mine && this.markup !== found.markup) {
       this.markup = found.markup;
       this.formula.innerHTML = found.markup && `<math displaystyle="true">${found.markup}</math>`;
+      // What is wider than its place scrolls, which a keyboard must reach.
+      const { scrollWidth, clientWidth } = this.formula;
+      if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
+      else this.formula.removeAttribute("tabindex");
     }
     const mark = mine && (calm || found.mark === "right") ? found.mark : "";
     put(this.mark, MARKS[mark] ?? "");
@@ -95,10 +99,10 @@ class Line {
     if (mark) this.mark.setAttribute("aria-label", SAID[mark]);
     else this.mark.removeAttribute("aria-label");
     this.mark.hidden = !mark;
-    const refusal = mine && found.refusal ? found : null;
-    this.field.setAttribute("aria-invalid", String(Boolean(calm && refusal)));
-    if (refusal && calm) this.refuse(refusal, text);
-    else put(this.state, text && ((mine && found.refusal) || (!calm && mine && found.mark !== "right" && !found.markup)) ? UNFINISHED : "");
+    const refused = Boolean(mine && found.refusal);
+    this.field.setAttribute("aria-invalid", String(calm && refused));
+    if (calm && refused) this.refuse(found, text);
+    else put(this.state, refused ? UNFINISHED : "");
     this.tell(mine ? found.told : []);
   }
 
@@ -107,9 +111,8 @@ class Line {
     const at = Math.min(position, text.length);
     const place = element("mark", {}, text.slice(at, at + 1) || " ");
     const quoted = element("code", {}, text.slice(Math.max(0, at - 30), at), place, text.slice(at + 1, at + 20));
-    if (this.state.dataset.key === refusal + at + text && this.state.children.length) return;
-    this.state.dataset.key = refusal + at + text;
-    this.state.replaceChildren(quoted, ` ${refusal}`);
+    const said = `${quoted.textContent} ${refusal}`;
+    if (this.state.textContent !== said) this.state.replaceChildren(quoted, ` ${refusal}`);
   }
 
   /** Hints, in words and mathematics. */
