@@ -15,6 +15,7 @@ document.addEventListener("securitypolicyviolation", (event) => window.refused.p
 const bytes = Uint8Array.from(atob(STATE.texts), (c) => c.charCodeAt(0));
 const state = { ...STATE, texts: new DataView(bytes.buffer) };
 const listeners = {};
+window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
     Object.assign(state, found);
     for (const name of Object.keys(found)) listeners[`change:${name}`]?.();
@@ -22,7 +23,8 @@ window.heard = (found) => {
 const model = {
     get: (name) => state[name],
     set: (name, value) => (state[name] = value),
-    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary }).then(window.heard),
+    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary })
+        .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
     on: (event, listener) => (listeners[event] = listener),
     off() {},
 };

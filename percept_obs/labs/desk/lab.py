@@ -113,7 +113,7 @@ class DerivationDesk(Lab):
         return {
             "title": _title(system, outputs),
             "given": sheet.given,
-            "letters": [markup(s) for s in sorted(_letters(sheet), key=str)],
+            "letters": sheet.letters,
             "steps": [
                 {"reason": sheet.derivation[k - 1].reason.rstrip(":"), **state_of(sheet, k, texts)} for k in steps
             ],
@@ -146,10 +146,6 @@ def _line(sheet: Sheet, row: int, texts: Mapping[int, str], told: Mapping[int, S
     if entry.reading is None:
         return {"markup": entry.markup, "mark": "", "told": [], "refusal": entry.refusal, "position": entry.position}
     return {"markup": entry.markup, **told[row]}
-
-
-def _letters(sheet: Sheet) -> set[sp.Symbol]:
-    return {s for line in sheet.goal.lines for s in line.formula.free_symbols}
 
 
 def _label(name: str) -> str:

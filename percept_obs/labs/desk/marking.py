@@ -143,7 +143,7 @@ def hints_of(review: Review, hints: int) -> dict[int, dict[str, Any]]:
 
 def _sentences(review: Review, k: int, hints: int) -> Iterator[Words]:
     line = review.lines[k]
-    if line.verdict == Verdict.WRONG and k in review.explanations and hints > 1:
+    if hints > 1 and line.verdict == Verdict.WRONG and k in review.explanations:
         shown: list[str] = []
 
         def show(e: sp.Basic) -> str:

@@ -55,6 +55,12 @@ class Sheet:
         lines = (replace(line, name=f"line{k}") for k, line in enumerate(self.goal.lines))
         return replace(self.goal, lines=tuple(lines))
 
+    @cached_property
+    def letters(self) -> list[str]:
+        """The letters that occur in the lines, as MathML."""
+        used = {s for line in self.goal.lines for s in line.formula.free_symbols}
+        return [markup(s) for s in sorted(used, key=str)]
+
     def rows(self, step: int) -> range:
         """The lines of a step, which is counted from 1."""
         start = sum(len(before.values) for before in self.derivation[: step - 1])

@@ -77,7 +77,7 @@ class Line {
       element("div", { class: "entry" }, this.field, this.mark),
       element("div", { class: "beneath" }, this.formula, this.state, this.hints),
     );
-    this.markup = this.hinted = "";
+    this.markup = this.hinted = this.measured = "";
   }
 
   show(found, calm) {
@@ -87,12 +87,9 @@ class Line {
     this.row.classList.toggle("late", !mine);
     if (mine && this.markup !== found.markup) {
       this.markup = found.markup;
-      this.formula.innerHTML = found.markup && `<math displaystyle="true">${found.markup}</math>`;
-      // What is wider than its place scrolls, which a keyboard must reach.
-      const { scrollWidth, clientWidth } = this.formula;
-      if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
-      else this.formula.removeAttribute("tabindex");
+      this.formula.replaceChildren(...inPieces(found.markup));
     }
+    this.letScroll(found.markup);
     const mark = mine && (calm || found.mark === "right") ? found.mark : "";
     put(this.mark, MARKS[mark] ?? "");
     this.mark.className = `mark ${mark}`;
@@ -104,6 +101,16 @@ class Line {
     if (calm && refused) this.refuse(found, text);
     else put(this.state, refused ? UNFINISHED : "");
     this.tell(mine ? found.told : []);
+  }
+
+  /** What is wider than its place scrolls, which a keyboard must reach. */
+  letScroll(markup) {
+    const seen = `${this.lab.width} ${markup}`;
+    if (seen === this.measured) return;
+    this.measured = seen;
+    const { scrollWidth, clientWidth } = this.formula;
+    if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
+    else this.formula.removeAttribute("tabindex");
   }
 
   /** Say why a text cannot be read, with the place in it. */
@@ -135,4 +142,31 @@ function pieceOf({ text, math }) {
   const node = element("span", {});
   node.innerHTML = `<math>${math}</math>`;
   return node;
+}
+
+/** A sum in pieces, a formula for each term, so that it goes on in the next line where its place is narrow. */
+function inPieces(markup) {
+  if (!markup) return [];
+  const whole = element("div", {});
+  whole.innerHTML = `<math>${markup}</math>`;
+  /** @type {Element[][]} */
+  const pieces = [[]];
+  for (const node of [...whole.querySelectorAll("math > mrow > *")]) {
+    const before = pieces.at(-1) ?? [];
+    if (isSign(node) && before.length && !isSign(before[before.length - 1])) {
+      node.setAttribute("form", "infix");
+      pieces.push([]);
+    }
+    pieces.at(-1)?.push(node);
+  }
+  return pieces.map((nodes) => {
+    const piece = element("span", {});
+    piece.innerHTML = '<math displaystyle="true"></math>';
+    piece.firstElementChild?.append(...nodes);
+    return piece;
+  });
+}
+
+function isSign(node) {
+  return node.localName === "mo" && "+−=".includes(node.textContent);
 }
