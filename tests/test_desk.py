@@ -11,7 +11,7 @@ from percept_obs import PerspectiveSystem, affine, plane, rigid
 from percept_obs.checking.explaining import plain
 from percept_obs.checking.tokens import tokens
 from percept_obs.labs import derivation_desk
-from percept_obs.labs.desk.settings import LONGEST_LINE
+from percept_obs.labs.desk.settings import LONGEST_LINE, SCHEMA
 from percept_obs.labs.desk.sheets import PARTS, sheet_of
 from percept_obs.labs.desk.systems import OBSERVERS, SURFACES, number_of, system_of, system_of_student
 from percept_obs.labs.desk.typed import typed_markup
@@ -234,3 +234,26 @@ def test_answers_carry_the_serial_of_their_settings():
         desk.set_state({"settings": {**desk.settings, "typed": typed}, "summary": {"serial": serial}})
         assert desk.analysis["serial"] == serial
         assert as_tree(desk.analysis["lines"][0]["markup"]) is not None
+
+
+def test_every_setting_opens_with_what_is_of_its_kind_and_is_in_the_docstring():
+    for name, kind in SCHEMA.items():
+        assert kind.read(name, derivation_desk().settings[name]) == kind.opening
+        assert f"\n{name} : " in derivation_desk.__doc__
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "refusal"),
+    [
+        ("student", "x" * 61, "student is .*; it must be a text of at most 60 characters"),
+        ("student", 7, "student is 7; it must be a text"),
+        ("typed", {"rate 1 X'": 5}, "typed .*rate 1 X'.* is 5; it must be a text of at most 2000 characters"),
+        ("typed", {k * "x": "" for k in range(201)}, "it must be a mapping of at most 200 names"),
+        ("typed", {"x" * 101: ""}, "it must be a mapping of at most 200 names"),
+        ("hints", {"rate 1": 4}, "it must be a whole number from 0 to 3"),
+        ("step", 0, "it must be a whole number from 1 to 20"),
+    ],
+)
+def test_settings_of_another_kind_are_refused(name, value, refusal):
+    with pytest.raises(ValueError, match=refusal):
+        derivation_desk(**{name: value})

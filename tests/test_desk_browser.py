@@ -139,8 +139,9 @@ def test_axe_finds_nothing_serious(browser, scheme, part):
 
 def test_all_fits_in_400_pixels(browser):
     typed = {"rate 6 y1'": MISTAKES["wrong sign"][0]}
-    for step in (4, 6):
-        desk = derivation_desk(step=step, typed=typed, hints={"rate 6": 3})
+    cases = [{"step": 4}, {"step": 6}, {"part": "form", "outputs": ["y1"]}, {"part": "observer", "outputs": ["y1"]}]
+    for case in cases:
+        desk = derivation_desk(**case, typed=typed, hints={"rate 6": 3})
         for page in at_desk(browser, desk, viewport={"width": 400, "height": 800}):
             assert page.evaluate("document.documentElement.scrollWidth") <= 400
             boxes = [box.bounding_box() for box in page.locator(".sheet input, .actions button, .steps button").all()]

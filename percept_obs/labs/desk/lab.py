@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
-import sympy as sp
-
-from percept_obs.labs.desk.marking import entry_of, hints_of, offered, review_of, state_of, summary_of
+from percept_obs.labs.desk.answering import said_of
 from percept_obs.labs.desk.settings import SCHEMA
 from percept_obs.labs.desk.sheets import Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
-from percept_obs.labs.desk.witness import witness_of
 from percept_obs.labs.shared.lab import Lab
-from percept_obs.labs.shared.markup import dotted, markup
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.system.perspective import PerspectiveSystem
@@ -100,60 +95,10 @@ class DerivationDesk(Lab):
         except ValueError as error:
             return {"problem": str(error)}
         system, outputs = self.system()
-        steps = range(1, len(sheet.derivation) + 1)
-        step = min(settings["step"], len(steps))
-        keys = {f"{settings['part']} {k} {name}": (k, name) for k in steps for name in sheet.derivation[k - 1].values}
-        texts = {row: text for row, key in enumerate(keys) if (text := settings["typed"].get(key, "")).strip()}
-        review = review_of(sheet, step, texts)
-        rows = sheet.rows(step)
-        hints = int(settings["hints"].get(f"{settings['part']} {step}", 0))
-        following, says = offered(review, hints)
-        told = hints_of(review, hints)
-        names = list(keys)
-        return {
-            "title": _title(system, outputs),
-            "given": sheet.given,
-            "letters": sheet.letters,
-            "steps": [
-                {"reason": sheet.derivation[k - 1].reason.rstrip(":"), **state_of(sheet, k, texts)} for k in steps
-            ],
-            "step": step,
-            "lines": [
-                {
-                    "key": names[row],
-                    "name": keys[names[row]][1],
-                    "label": _label(keys[names[row]][1]),
-                    **_line(sheet, row, texts, told),
-                }
-                for row in rows
-            ],
-            "words": summary_of(review, len(rows)),
-            "right": review.right if review.lines else None,
-            "hint": following,
-            "says": says,
-            "witness": witness_of(sheet, rows, texts, system, settings["point"]),
-        }
+        return {"title": _title(system, outputs), **said_of(sheet, settings, system)}
 
 
 derivation_desk = DerivationDesk
-
-
-def _line(sheet: Sheet, row: int, texts: Mapping[int, str], told: Mapping[int, Settings]) -> Settings:
-    """What is said of a line."""
-    if row not in texts:
-        return {"markup": "", "mark": "", "told": []}
-    entry = entry_of(sheet, row, texts[row])
-    if entry.reading is None:
-        return {"markup": entry.markup, "mark": "", "told": [], "refusal": entry.refusal, "position": entry.position}
-    return {"markup": entry.markup, **told[row]}
-
-
-def _label(name: str) -> str:
-    """The name of a line as MathML; empty for words."""
-    stem = name.removesuffix("'")
-    if " " in name:
-        return ""
-    return dotted(sp.Symbol(stem)) if stem != name else markup(sp.Symbol(name))
 
 
 def _title(system: PerspectiveSystem, outputs: tuple[str, ...]) -> str:

@@ -3,8 +3,6 @@
 import { button, element } from "../../common/page/controls.js";
 import { keys, put, sayings, ways } from "../../common/page/layout.js";
 
-const MARKS = { right: "✓", wrong: "" };
-
 export function build(lab, place) {
   const { panel, sheet, picture } = lab;
   const { problem, pythonError, silence, notice, said, functions } = sayings();
@@ -51,6 +49,7 @@ export function build(lab, place) {
       root.querySelector(".stage").classList.toggle("waiting", !ofThisSheet);
       if (!answer.steps || answer.problem) return;
       put(title, answer.title);
+      root.dataset.part = answer.settings.part;
       const known = JSON.stringify([answer.given, answer.letters]);
       if (known !== drawn) {
         drawn = known;
@@ -64,14 +63,14 @@ export function build(lab, place) {
       put(reason, `${step}. ${answer.steps[step - 1].reason}`);
       const inside = steps.contains(document.activeElement);
       steps.replaceChildren(...answer.steps.map((each, k) => entryOf(each, k + 1, step)));
-      if (inside) steps.querySelector("[aria-current] ").focus({ preventScroll: true });
+      if (inside) steps.querySelector("[aria-current]").focus({ preventScroll: true });
     },
   };
 
   function entryOf({ reason: why, mark, given: filled, asked }, number, step) {
     const done = mark === "right" && filled === asked;
     const how = done ? "done" : filled ? `${filled} of ${asked}` : "";
-    const text = [element("span", { class: "why-step" }, why), element("span", { class: `how ${mark}` }, done ? `${MARKS[mark]} ${how}` : how)];
+    const text = [element("span", { class: "why-step" }, why), element("span", { class: `how ${mark}` }, done ? `✓ ${how}` : how)];
     const turn = button("", () => lab.turnTo(number), { "data-control": `step ${number}`, "aria-current": number === step && "step" });
     turn.append(...text);
     return element("li", {}, turn);
