@@ -14,7 +14,7 @@ from percept_obs.checking import CannotRead, Review, Verdict
 from percept_obs.checking.explaining import sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
-from percept_obs.labs.desk.settings import HINTS
+from percept_obs.checking.review import HINTS
 from percept_obs.labs.desk.sheets import Sheet
 from percept_obs.labs.desk.typed import typed_markup
 from percept_obs.labs.shared.markup import markup

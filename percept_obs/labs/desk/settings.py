@@ -2,12 +2,12 @@
 
 from typing import Any
 
+from percept_obs.checking.review import HINTS
 from percept_obs.labs.desk.sheets import PARTS
 from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, SURFACES
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
 
 MOST_LINES, LONGEST_LINE = 200, 2000
-HINTS = ("which line", "which term", "which slip, and in which step")
 _PLACE: dict[str, Any] = {"low": -1, "high": 1, "usual": (-1, 1), "step": 0.01}
 
 SCHEMA = Schema(
