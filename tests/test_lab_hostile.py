@@ -7,9 +7,9 @@ import traitlets
 from hostile_messages import CANARY, messages
 from sample_sizes import sampled
 
-from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
-LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
+LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab, "desk": derivation_desk}
 
 
 @pytest.mark.parametrize("name", LABS)

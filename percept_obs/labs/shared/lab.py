@@ -96,7 +96,7 @@ class Lab(anywidget.AnyWidget):
         """Complete settings, or a ValueError that says what is wrong."""
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
-        if whole["kept"] is not None:
+        if whole.get("kept") is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})
         return whole
 

@@ -2,16 +2,12 @@
 
 import { Results } from "../model/results.js";
 import { linearScale } from "../model/scales.js";
-import { schemaOf } from "../model/schema.js";
-import { same } from "../model/settings.js";
-import { State } from "../model/state.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { chartInWords } from "./chart_parts.js";
 import { TimeChart } from "./charts.js";
+import { Following } from "./following.js";
 import { build } from "./layout.js";
-import { Link } from "./link.js";
-import { surround } from "./surroundings.js";
 
 /** @typedef {import("../../types.js").Plane} Plane */
 /** @typedef {import("../../types.js").ChartParts} ChartParts */
@@ -29,44 +25,24 @@ const BETWEEN_WORDS = 250;
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
-export class Live {
+export class Live extends Following {
   constructor(widget, model, { Kernels, Engine, ...parts }) {
-    this.widget = widget;
-    this.model = model;
+    super(widget, model, parts.words);
     this.parts = parts;
-    this.schema = schemaOf(model.schema, parts.words);
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
-    this.state = new State(structuredClone(widget.get("settings")));
     /** @type {Plane[]} */
     this.planes = [];
     /** @type {Record<string, TimeChart>} */
     this.charts = {};
     /** @type {any} */
-    this.panel = this.formulas = this.view = null;
-    /** @type {any} the result that is shown, and that of the kept run */
-    this.shown = this.ghost = null;
+    this.formulas = null;
+    /** @type {any} the result of the kept run */
+    this.ghost = null;
     /** @type {Record<string, ChartParts>} */
     this.drawn = {};
-    /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
-    this.answer = null;
-    /** @type {Link | null} */
-    this.link = null;
-    /** @type {ReturnType<typeof themeOf> | null} */
-    this.theme = null;
-    this.width = 800;
-    this.serial = 0;
     this.pictures = 0;
     this.spoken = 0;
-    this.frame = 0;
-    this.pending = this.closed = false;
-    /** @type {any} the timer that runs while the hand may go on */
-    this.resting = null;
-    this.leave = () => {};
-  }
-
-  get settings() {
-    return this.state.settings;
   }
 
   get figures() {
@@ -79,59 +55,7 @@ export class Live {
     this.follow(build(this, place, presets));
   }
 
-  /** Begin to follow, once the page is built: the hand, the page's size and theme, Python. */
-  follow(view) {
-    this.view = view;
-    this.link = new Link(this.widget, {
-      onSettings: (settings) => same(settings, this.settings) || this.replace(settings),
-      onAnalysis: (analysis, settings) => this.analysed({ ...analysis, settings }),
-      onError: (text) => this.view.pythonError(text),
-      onSilence: (silence) => this.view.silence(silence),
-    });
-    this.leave = surround(this.view.root, {
-      figures: this.figures.map(({ figure }) => figure),
-      onSize: (node, size) => this.resized(node, size),
-      onTheme: () => this.retheme(),
-    });
-    this.panel.show();
-    this.schedule();
-    this.rest();
-  }
-
-  resized(node, size) {
-    const picture = this.figures.find(({ figure }) => figure === node);
-    if (picture) picture.size = size;
-    else this.width = size.width;
-    this.schedule();
-  }
-
-  retheme() {
-    this.theme = null;
-    this.schedule();
-  }
-
-  close() {
-    this.closed = true;
-    cancelAnimationFrame(this.frame);
-    clearTimeout(this.resting);
-    this.link?.close();
-    this.leave();
-  }
-
   // What the hand does.
-
-  /** Take changed settings; what is chosen rather than moved is a step of its own, and told to Python at once. */
-  change(changes, chosen = false) {
-    if (chosen) this.state.step({ settings: { ...this.settings, ...changes } });
-    else this.state.move(changes);
-    this.touched(chosen);
-  }
-
-  /** Take whole settings, which Python has set. */
-  replace(settings) {
-    this.state.step({ settings: structuredClone(settings) });
-    this.touched(true);
-  }
 
   touched(chosen) {
     this.schedule();
@@ -161,19 +85,6 @@ export class Live {
   goBack() {
     this.state.leave();
     this.touched(true);
-  }
-
-  reset() {
-    this.state.reset(structuredClone(this.model.opening));
-    this.touched(true);
-  }
-
-  undo() {
-    if (this.state.undo()) this.touched(true);
-  }
-
-  redo() {
-    if (this.state.redo()) this.touched(true);
   }
 
   keep() {
@@ -227,12 +138,6 @@ export class Live {
     this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
     this.describe();
     this.view.rested();
-  }
-
-  schedule() {
-    if (this.pending || this.closed) return;
-    this.pending = true;
-    this.frame = requestAnimationFrame(() => this.pending && this.paint());
   }
 
   /** Draw what is shown of the settings, which is computed only when they have changed. */
@@ -357,13 +262,5 @@ export class Live {
   /** Python's answer, if it is about what is shown. */
   answered() {
     return this.answer?.settings === this.shown?.settings ? this.answer : null;
-  }
-
-  say(text) {
-    this.view.say(text);
-  }
-
-  fail(error) {
-    this.view.problem(error.message);
   }
 }

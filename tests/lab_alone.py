@@ -1,0 +1,60 @@
+"""A lab in a page of its own, without JupyterLab; Python answers it if it is asked to."""
+
+import base64
+import json
+import re
+
+from jupyter_harness import NOTEBOOKS
+from lab_settings import FRONT
+
+PAGE = '<!doctype html><meta charset="utf-8"><title>A lab</title><body><script type="module" src="/start.js"></script>'
+START = """
+import bundle from "/lab.js";
+window.refused = [];
+document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
+const bytes = Uint8Array.from(atob(STATE.texts), (c) => c.charCodeAt(0));
+const state = { ...STATE, texts: new DataView(bytes.buffer) };
+const listeners = {};
+window.held = null;  // a list, while answers are to be held back
+window.heard = (found) => {
+    Object.assign(state, found);
+    for (const name of Object.keys(found)) listeners[`change:${name}`]?.();
+};
+const model = {
+    get: (name) => state[name],
+    set: (name, value) => (state[name] = value),
+    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary })
+        .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
+    on: (event, listener) => (listeners[event] = listener),
+    off() {},
+};
+bundle.render({ model, el: document.body });
+"""
+
+
+def stated_policy():
+    """The policy that README says is enough."""
+    return re.search(r"`(default-src[^`]*)`", (NOTEBOOKS.parent / "README.md").read_text())[1]
+
+
+def opened(browser, lab, policy, answers=None, **options):
+    """A page with a lab and nothing else, served under a policy; a function of the page's messages `answers` them."""
+    told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
+    told["texts"] = base64.b64encode(lab.texts).decode()
+    files = {
+        "/": ("text/html", PAGE),
+        "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
+        "/lab.js": ("text/javascript", (FRONT / "lab.js").read_text()),
+    }
+    page = browser.new_page(**options)
+    headers = {"Content-Security-Policy": policy}
+
+    def answer(route):
+        kind, body = files[route.request.url.removeprefix("http://lab.test")]
+        route.fulfill(body=body, content_type=kind, headers=headers)
+
+    if answers:
+        page.expose_function("toPython", answers)
+    page.route("http://lab.test/**", answer)
+    page.goto("http://lab.test/")
+    return page
