@@ -14,6 +14,7 @@ from typing import Any
 
 import anywidget
 import traitlets
+from IPython.utils.capture import capture_output
 
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.schema import Schema, Settings
@@ -110,7 +111,8 @@ class Lab(anywidget.AnyWidget):
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Take the page's state; what goes wrong is shown in the lab and raised for the log."""
         try:
-            super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
+            with capture_output():  # progress bars have no cell to stand in, and would fill the log
+                super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
         except Exception as error:
             self.error = f"{type(error).__name__}: {error}"
             raise
