@@ -68,10 +68,16 @@ def test_the_landmarks_are_those_of_the_tracks():
     )
     np.testing.assert_allclose(recording.distance[at, point], 1 / first.truth[0, 2], rtol=1e-12)
     np.testing.assert_allclose(recording.distances["stereo"][at, point], first.distances["stereo"][0])
-    some = load_utias_points(utias_folder(), [17])
-    assert some.view.points == 1
-    with pytest.raises(ValueError, match="name some of"):
-        load_utias_points(utias_folder(), [999])
+
+
+def test_some_landmarks_are_chosen_once_each_among_those_that_have_tracks():
+    recording = load_utias_points(utias_folder(), [17])
+    assert recording.view.points == 1
+    ends = recording.time[recording.seen.any(axis=1)][[0, -1]]
+    np.testing.assert_array_equal(recording.time[[0, -1]], ends)
+    for wrong in ([999], [17, 999], [17, 17], []):
+        with pytest.raises(ValueError, match="name some of"):
+            load_utias_points(utias_folder(), wrong)
 
 
 @pytest.mark.slow

@@ -48,7 +48,10 @@ def as_array(numbers):
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
 def test_the_page_computes_what_python_does(answers, case):
-    settings, answer = answers[case]
+    assert_same(*answers[case])
+
+
+def assert_same(settings, answer):
     assert answer["problem"] is None
     assert_same_structure_runs(settings, answer["runs"])
     for name, run in structure_runs_of(settings).items():

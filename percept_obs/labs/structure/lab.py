@@ -13,7 +13,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import as_far_as_seen, within_reach
+from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
@@ -87,12 +87,20 @@ class StructureLab(Lab):
 
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
-        states = {name: len(observer_of(name).equations.state) for name in self.settings["observers"]}
-        told, beyond = within_reach(_steps(self.settings), states)
+        settings = self.settings
+        duration, fastest = settings["duration"], sum(sorted(map(abs, settings["w"]))[1:])
+        if _swings(settings):
+            moved = 4 * duration / settings["period"] + 16 * looks(duration, fastest, settings["rate"])
+        else:
+            moved = exact_path(duration, settings["period"], fastest)
+        if refusal := too_fast(moved):
+            return {"sentences": [refusal]}
+        states = {name: len(observer_of(name).equations.state) for name in settings["observers"]}
+        told, beyond = within_reach(_steps(settings), states, moved)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = runs({**self.settings, "observers": told})
+                found = runs({**settings, "observers": told}) if told else {}
         except (BehindCamera, ImpossibleChoice) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(OBSERVERS[name][0], run)]
@@ -130,6 +138,10 @@ def runs(settings: Settings) -> dict[str, Run]:
     return found
 
 
+def _swings(settings: Settings) -> bool:
+    return bool(settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES]))
+
+
 def motion_of(settings: Settings) -> Motion:
     """The true motion, constant unless a velocity swings."""
     around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
@@ -138,7 +150,7 @@ def motion_of(settings: Settings) -> Motion:
         swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
         return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
 
-    if settings["rate"] and swings.any():
+    if _swings(settings):
         return replace(rigid(), signal=Signal(OverTime(known)))
     (still,) = known(np.zeros(1))
     return rigid(still[:3], still[3:6], still[6:])

@@ -1,0 +1,114 @@
+// Laws of the page's engines: what Gramians, restarts, gaps, bands and limits must be, whatever Python makes of them.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Memory } from "../src/common/model/memory.js";
+import { Runner } from "../src/common/model/runner.js";
+import { verdict } from "../src/common/model/words.js";
+import { chartOf } from "../src/observer/page/pictures.js";
+import { ENTRIES } from "../src/points/model/flow.js";
+import { windowsOf } from "../src/points/model/gramian.js";
+import { Observer } from "../src/points/model/observer.js";
+import { StructureEngine } from "../src/structure/model/engine.js";
+import { quantityOf, rangeOf } from "../src/structure/model/quantities.js";
+
+/** A layout of so many points, each with three states of its own. */
+function apart(points) {
+  const all = Array.from({ length: 3 * points }, (_, k) => k);
+  return { begins: Array.from({ length: points + 1 }, (_, p) => 3 * p), axes: all.map((k) => k % 3), states: all, entries: all.map(() => 1) };
+}
+
+test("a Gramian weighs each direction by what the images would show of it", () => {
+  const [time, images] = [Float64Array.of(0, 0.5, 2), Float64Array.of(0.3, -0.2, 0.7, 0.1, 0.4, 0.6)];
+  const still = new Float64Array(ENTRIES * time.length);
+  const back = new Float64Array(9 * time.length);
+  for (let k = 0; k < time.length; k++) {
+    for (let i = 0; i < 3; i++) still[ENTRIES * k + 5 * i] = back[9 * k + 4 * i] = 1;
+  }
+  const model = { block: { N: [[1, 0, 0], [0, 1, 0]], l: [0, 0, 1] }, unseen: 1e-9 };
+  const given = { layout: apart(1), model, n: 3, time, images, kindOf: [0], flows: [still], back: [back], window: 2 };
+  const { matrix } = windowsOf({ ...given, memory: new Memory() });
+  const shown = (v, k) => (v[0] - images[2 * k] * v[2]) ** 2 + (v[1] - images[2 * k + 1] * v[2]) ** 2;
+  for (const v of [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, -2, 3], [0.5, 1, -1]]) {
+    const found = v.reduce((sum, a, i) => sum + v.reduce((part, b, j) => part + a * matrix[3 * i + j] * b, 0), 0);
+    const right = (0.5 * (shown(v, 0) + shown(v, 1)) + 1.5 * (shown(v, 1) + shown(v, 2))) / 2;
+    assert.ok(Math.abs(found - right) < 1e-14, `${v}: ${found} instead of ${right}`);
+  }
+});
+
+test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {
+  const settings = { state: "independent", depth: 2, size: 5 };
+  const functions = { locate: ([y1, y2, depth]) => [y1 * depth, y2 * depth, depth] };
+  const [x, P] = [new Float64Array(6).fill(9), new Float64Array(36).fill(7)];
+  const layout = { ...apart(2), names: ["a", "b", "c", "d", "e", "f"] };
+  const observer = new Observer({ memory: new Memory() });
+  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P);
+  [9, 9, 9, 1, -0.5, 2].forEach((value, i) => assert.ok(Math.abs(x[i] - value) < 1e-14));
+  P.forEach((value, at) => {
+    const [i, j] = [Math.floor(at / 6), at % 6];
+    assert.equal(value, i < 3 && j < 3 ? 7 : i === j ? 5 : 0);
+  });
+});
+
+/** What a runner makes of gaps that are numbered at the samples. */
+function followed(lacking) {
+  const time = Float64Array.from(lacking, (_, k) => k);
+  class Still extends Runner {
+    relativeError() {
+      return new Float64Array(time.length);
+    }
+  }
+  const lines = { grid: time, index: [...time.keys()], steps: new Float64Array(time.length - 1).fill(1) };
+  const functions = {
+    start: (_, out) => out,
+    run: () => -1,
+    estimate: (_, out) => out.fill(1),
+    gap: (x, out) => out.fill(lacking[x[2]]),
+  };
+  const result = { time, truth: null, width: 2, measured: [0], hidden: [1], tolerance: 0.1 };
+  const inputs = { ...lines, columns: [time], last: [time], held: [], arriving: [], own: false, known: { rows: new Float64Array(0), width: 0, varying: false } };
+  const kernel = { gains: [], states: 1, gapReasons: ["the first reason", "the second"] };
+  const run = new Still({ observers: { one: { title: "One" } } }).follow("one", {}, result, inputs, kernel, functions, []);
+  return { ...result, run };
+}
+
+test("gaps of two reasons stay two, and each is told with its own", () => {
+  const { run, time } = followed([0, 1, 1, 2, 2, 0, 1]);
+  assert.deepEqual(run.gaps, [[1, 2, 1], [3, 4, 2], [6, 6, 1]]);
+  const verdicts = { followed: "followed", gap: "; {begin}-{end} {reason}", "more gaps": " and {count} more" };
+  const told = verdict(run, { time, truth: null }, { verdicts, remedy: "" });
+  assert.equal(told, "followed; 1-2 the first reason and 1 more; 3-4 the second");
+  time.forEach((_, k) => assert.equal(Number.isNaN(run.estimate[2 * k + 1]), [1, 2, 3, 4, 6].includes(k)));
+});
+
+test("the band is as wide as its title says", () => {
+  const [estimate, deviation] = [Float64Array.of(0, 0, 1, 0, 0, 2), Float64Array.of(0, 0, 0.1, 0, 0, 0.3)];
+  const run = { title: "EKF", order: 0, name: "ekf", estimate, deviation, resets: [], divergedAt: null };
+  const time = Float64Array.of(0, 1);
+  const shown = { time, width: 3, names: ["y1", "y2", "y3"], runs: [run], truth: null, settings: { observers: ["ekf"] }, leavesAt: null };
+  const { band, title } = chartOf("inverse", shown, null, { lines: ["black"] });
+  const [, sigmas] = /±(\d)σ/.exec(title);
+  time.forEach((_, k) => {
+    assert.ok(Math.abs(band.high[k] - band.low[k] - 2 * sigmas * deviation[3 * k + 2]) < 1e-14);
+    assert.ok(Math.abs((band.high[k] + band.low[k]) / 2 - estimate[3 * k + 2]) < 1e-14);
+  });
+});
+
+test("where d_s is not positive there is neither a range nor a velocity", () => {
+  const result = { choice: { unknown: ["d_s", "v_p1"], scaled: [false, true] }, scale: 1, width: 5, time: Float64Array.of(0, 1, 2) };
+  const rows = Float64Array.of(0, 0, 0.5, 4, 2, 0, 0, 0.5, -4, 2, 0, 0, -0.5, -4, 2);
+  assert.deepEqual([...rangeOf(result, rows)], [0.5, NaN, NaN]);
+  assert.deepEqual([...quantityOf(result, rows, "v_p1")], [0.5, NaN, NaN]);
+  assert.deepEqual([...quantityOf(result, rows, "d_s")], [4, NaN, NaN]);
+});
+
+test("steps are judged by the fastest rate in them, and told from when they begin", () => {
+  const grid = Float64Array.of(5, 5.1, 5.2, 5.3, 5.4);
+  const steps = Float64Array.of(0.1, 0.1, 0.1, 0.1);
+  const model = { largestStepRate: 0.0299, forms: [{ observers: { ismo: { gains: ["gain"], remedy: "wait" } } }] };
+  const settings = { observers: ["ismo"], unknown: [], gains: { ismo: { gain: 1 } } };
+  const functions = { observers: { ismo: { fastest: ([time, gain], out) => out.fill(gain * time) } } };
+  const [found] = StructureEngine.prototype.limits.call({ model }, { settings }, { grid, steps }, functions);
+  for (const [name, value] of [["time", 0.2], ["rate", 0.3], ["step", 0.1], ["shorter", 0.0299 / 0.4]]) {
+    assert.ok(Math.abs(found[name] - value) < 1e-9, `${name} is ${found[name]}`);
+  }
+});
