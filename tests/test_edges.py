@@ -19,7 +19,10 @@ from percept_obs import (
     rigid,
     track,
 )
+from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed, function_source
+from percept_obs.compile.integrator import EACH
+from percept_obs.compile.kernels import Table, solve
 from percept_obs.labs.observer.texts import observer_of
 from percept_obs.labs.observer.words import run_in_words
 from percept_obs.observability.gramian import UNSEEN, Gramian, decay_bound, gramian
@@ -30,6 +33,7 @@ from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import scenarios
 from percept_obs.recording.path import lowest_between, varying_path
 from percept_obs.structure import COROLLARIES, LinearView, StructureAndMotion, competitors, linear_view
+from percept_obs.structure.pixels import homography
 from percept_obs.structure.scenarios import (
     chwa2019_crossing,
     chwa2019_experiment,
@@ -50,11 +54,11 @@ def system():
 # What is written.
 
 
-def test_powers_alone_are_printed_as_they_are():
+@pytest.mark.parametrize("power", [sp.Rational(1, 2), -sp.Rational(1, 2), -1, -2, 3])
+def test_a_power_alone_is_printed_as_it_is(power):
     x = sp.Symbol("x", positive=True)
-    powers = [sp.Rational(1, 2), -sp.Rational(1, 2), -1, -2, 2, 3]
-    evaluate = executed(function_source((x,), tuple(x**p for p in powers), "python"))
-    assert evaluate([2.5], [0.0] * len(powers)) == pytest.approx([2.5 ** float(p) for p in powers], rel=1e-15)
+    evaluate = executed(function_source((x,), (x**power,), "python"))
+    assert evaluate([2.5], [0.0]) == pytest.approx([2.5 ** float(power)], rel=1e-15)
 
 
 def test_entries_are_numbered_from_one(system):
@@ -87,6 +91,13 @@ def test_two_deviations_are_claimed_where_two_are_said():
 
 
 # Where a point moves.
+
+
+def test_a_first_sample_that_destroys_the_state_is_where_it_diverged():
+    x, y = sp.symbols("x y", real=True)
+    equations = Equations((x,), (-x,), (y,), update=((y / x,),))
+    table = Table(np.array([0.1]), np.ones((1, EACH + 1, 1)), np.zeros((1, 0)), np.ones((2, 1)))
+    assert solve(equations, np.array([0.0]), table, language="python").diverged == 0
 
 
 def test_a_motion_with_kinks_is_taken_apart_at_them():
@@ -192,6 +203,11 @@ def test_the_noise_that_many_samples_show_is_that_of_the_camera():
 
 
 # Structure and motion.
+
+
+def test_no_pictures_give_no_homographies():
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    assert homography(corners, np.empty((0, 4, 2))).shape == (0, 3, 3)
 
 
 def test_behind_the_camera_the_linear_view_shows_nothing():

@@ -24,6 +24,7 @@ OF_A_POINT = [
     {"observers": ["extended_kalman"], "noise": {"kind": "gaussian", "size": 0.005}, "dropout": 0.1, "seed": 9},
     {"start": {"mode": "chosen", "values": [0.2, 0.7, 1.0]}, "believed": {"A": [[0.1] * 3] * 3, "b": [0.1, 0.2, 0.3]}},
     {"start": {"mode": "zero", "values": [0.0] * 3}, "gains": {"identifier_based": {"bound": 2.0}}},
+    {"gains": {"identifier_based": {"lyapunov": 5, "bound": 1e200}}, "duration": 2.0},
     BEHIND,
 ]
 
@@ -35,6 +36,7 @@ def test_of_a_point(node):
         for name, run in runs(settings, {}).items():
             assert_same_recording(answer, run.recording)
             assert_same_run(answer["runs"][name], run, 1e-9)
+            assert answer["runs"][name]["divergedAt"] == run.diverged_at
             assert answer["summary"]["verdicts"][name] == run.verdict()
             excitation = windowed(run.observer.form, run.recording, settings["window"]).smallest
             assert answer["excitation"] == pytest.approx(list(excitation), rel=1e-6, abs=1e-12)

@@ -13,10 +13,11 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
-from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
+from percept_obs.labs.structure.texts import LARGEST, OBSERVERS, PHASES, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.recording import Recording
 from percept_obs.structure import (
@@ -95,7 +96,8 @@ class StructureLab(Lab):
             moved = exact_path(duration, settings["period"], fastest)
         if refusal := too_fast(moved):
             return {"sentences": [refusal]}
-        states = {name: len(observer_of(name).equations.state) for name in settings["observers"]}
+        printed = part("structure_lab", f"forms/{LARGEST}")["observers"]
+        states = {name: printed[name]["states"] for name in settings["observers"]}
         told, beyond = within_reach(_steps(settings), states, moved)
         try:
             with warnings.catch_warnings():

@@ -112,3 +112,10 @@ test("steps are judged by the fastest rate in them, and told from when they begi
     assert.ok(Math.abs(found[name] - value) < 1e-9, `${name} is ${found[name]}`);
   }
 });
+
+test("where nothing moves a velocity is right or infinitely wrong", () => {
+  const truth = Float64Array.of(0, 0, 0.5, 0, 0, 0, 0.5, 0);
+  const estimate = Float64Array.of(0, 0, 0.5, 0, 0, 0, 0.5, 1e-9);
+  const result = { truth, choice: { unknown: ["v_p1"], scaled: [false] }, width: 4, time: [0, 1], scale: 1, speed: 0 };
+  assert.deepEqual([...StructureEngine.prototype.relativeError(result, estimate)], [0, Infinity]);
+});
