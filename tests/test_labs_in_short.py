@@ -7,7 +7,7 @@ from structure_settings import GAUSSIAN, SWINGING, TURNED, structure_in_node
 from test_lab_engine import assert_same_recording, assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
-from test_structure_lab import assert_same
+from test_structure_lab import assert_same, assert_same_determinant
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.observer.lab import runs
@@ -55,6 +55,7 @@ def test_of_structure(node):
     ]
     for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
         assert_same(settings, answer)
+        assert_same_determinant(settings, answer)
 
 
 def test_of_points(node):

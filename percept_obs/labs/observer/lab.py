@@ -15,7 +15,7 @@ from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEM
 from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
 from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, too_fast, within_reach
 from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
@@ -89,7 +89,9 @@ class ObserverLab(Lab):
         recording = self._recordings.get(settings["scenario"])
         surface, outputs = settings["surface"], settings["outputs"]
         allowed = part("observer_lab")["surfaces"][surface]["outputs"]
-        if recording is not None:
+        if recording is None:
+            refuse_a_single_sample(settings)
+        else:
             allowed = [o for o in allowed if set(o) <= set(recording.names)]
             Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
         if outputs not in allowed:

@@ -12,7 +12,7 @@ import numpy as np
 from percept_obs.labs.points.settings import PICTURES, SCHEMA
 from percept_obs.labs.points.texts import form_of, state_of
 from percept_obs.labs.points.words import in_words
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
 from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.observability.gramian import UNSEEN
@@ -36,8 +36,8 @@ from percept_obs.recording import Camera, Recording, record
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
-STEP_WORK = 10
-"""Times that a state of many points takes Python longer than one of a single point."""
+STEP_WORK, STEP_WORK_WITH_P = 10, 20
+"""Times that a state of many points takes Python longer than one of a single point: alone, and with a P to compute."""
 
 LOOK_WORK = 26
 """What a look at a motion that varies costs Python, as `MOST_WORK` counts."""
@@ -96,10 +96,7 @@ class PointsLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
-        if settings["duration"] < settings["period"]:
-            raise ValueError(
-                f"a duration of {settings['duration']} s holds no two samples {settings['period']} s apart"
-            )
+        refuse_a_single_sample(settings)
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")
@@ -114,7 +111,8 @@ class PointsLab(Lab):
         A, _ = form_of_settings(settings).coefficients(np.linspace(0, settings["duration"], 50))
         paths = 2 if settings["hold"] == "exact" else 1
         moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()))
-        _, beyond = within_reach(steps, {"these points": STEP_WORK * 3 * len(settings["points"])}, moved)
+        each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
+        _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
         beyond = [refusal] if (refusal := too_fast(moved)) else beyond
         return {"sentences": beyond, "bound": None} if beyond else in_words(self.run(), settings["window"])
 

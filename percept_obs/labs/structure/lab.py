@@ -12,7 +12,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
@@ -38,6 +38,10 @@ from percept_obs.tracking.verdict import REMEDY, for_the_page
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
+
+
+LOOK_WORK = 16
+"""What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
 class StructureLab(Lab):
@@ -79,6 +83,7 @@ class StructureLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
+        refuse_a_single_sample(settings)
         settings["unknown"].sort(key=QUANTITIES.index)
         steps = _steps(settings)
         if steps > MOST_STEPS:
@@ -90,10 +95,9 @@ class StructureLab(Lab):
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
         duration, fastest = settings["duration"], sum(sorted(map(abs, settings["w"]))[1:])
+        moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings):
-            moved = 4 * duration / settings["period"] + 16 * looks(duration, fastest, settings["rate"])
-        else:
-            moved = exact_path(duration, settings["period"], fastest)
+            moved += LOOK_WORK * looks(duration, fastest, settings["rate"])
         if refusal := too_fast(moved):
             return {"sentences": [refusal]}
         printed = part("structure_lab", f"forms/{LARGEST}")["observers"]

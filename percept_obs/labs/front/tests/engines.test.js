@@ -7,6 +7,7 @@ import { verdict } from "../src/common/model/words.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
+import { decayRate } from "../src/points/model/measures.js";
 import { Observer } from "../src/points/model/observer.js";
 import { StructureEngine } from "../src/structure/model/engine.js";
 import { quantityOf, rangeOf } from "../src/structure/model/quantities.js";
@@ -118,4 +119,10 @@ test("where nothing moves a velocity is right or infinitely wrong", () => {
   const estimate = Float64Array.of(0, 0, 0.5, 0, 0, 0, 0.5, 1e-9);
   const result = { truth, choice: { unknown: ["v_p1"], scaled: [false] }, width: 4, time: [0, 1], scale: 1, speed: 0 };
   assert.deepEqual([...StructureEngine.prototype.relativeError(result, estimate)], [0, Infinity]);
+});
+
+test("two sizes in the last two thirds of a run are enough for a rate", () => {
+  const { rate, begin, level } = decayRate([0, 1.5, 3], [9, Math.exp(-0.75), Math.exp(-1.5)]);
+  assert.ok(Math.abs(rate - 0.5) < 1e-14 && begin === 1 && Math.abs(level) < 1e-14);
+  assert.equal(decayRate([0, 0.9, 3], [1, 1, 1]), null);
 });
