@@ -12,7 +12,7 @@ import numpy as np
 from percept_obs.labs.points.settings import PICTURES, SCHEMA
 from percept_obs.labs.points.texts import form_of, state_of
 from percept_obs.labs.points.words import in_words
-from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
+from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.observability.gramian import UNSEEN
@@ -96,7 +96,6 @@ class PointsLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
-        refuse_a_single_sample(settings)
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")

@@ -3,14 +3,16 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Memory } from "../src/common/model/memory.js";
 import { Runner } from "../src/common/model/runner.js";
+import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
+import { translationTowards } from "../src/observer/model/engine.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
 import { decayRate } from "../src/points/model/measures.js";
 import { Observer } from "../src/points/model/observer.js";
 import { StructureEngine } from "../src/structure/model/engine.js";
-import { quantityOf, rangeOf } from "../src/structure/model/quantities.js";
+import { innovationOf, quantityOf, rangeOf } from "../src/structure/model/quantities.js";
 
 /** A layout of so many points, each with three states of its own. */
 function apart(points) {
@@ -125,4 +127,20 @@ test("two sizes in the last two thirds of a run are enough for a rate", () => {
   const { rate, begin, level } = decayRate([0, 1.5, 3], [9, Math.exp(-0.75), Math.exp(-1.5)]);
   assert.ok(Math.abs(rate - 0.5) < 1e-14 && begin === 1 && Math.abs(level) < 1e-14);
   assert.equal(decayRate([0, 0.9, 3], [1, 1, 1]), null);
+});
+
+test("the innovation is the largest difference from the latest samples", () => {
+  const [outputs, estimate] = [Float64Array.of(1, -2, 3, 4, 5, NaN), Float64Array.of(0, 0, 0, 0, 0, 9, 8, 7)];
+  const rows = { outputs, width: 4 };
+  assert.deepEqual([...innovationOf(rows, { estimate })], [3, 5]);
+});
+
+test("the focus of expansion is put at a place without a change of the distance", () => {
+  const functions = { ray: ([y1, y2]) => [y1, y2, 1], project: ([b1, b2, b3]) => [b1 / b3, b2 / b3, b3] };
+  const settings = { b: [3, 1, 2], surface: "pinhole", normal: [0, 0, 1] };
+  assert.deepEqual(translationTowards([0.5, -1], settings, functions), [1, -2, 2]);
+});
+
+test("what is no number is told as Python tells it", () => {
+  assert.deepEqual([NaN, Infinity, -Infinity].map((value) => short(value)), ["nan", "inf", "-inf"]);
 });
