@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { settlingTime } from "../src/common/model/errors.js";
 import { Memory } from "../src/common/model/memory.js";
+import { knownAt } from "../src/common/model/tables.js";
 import { Runner } from "../src/common/model/runner.js";
 import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
@@ -149,4 +150,9 @@ test("what is no number is told as Python tells it", () => {
 test("an error that is as large as the tolerance is not yet within it", () => {
   assert.equal(settlingTime([5, 6, 7], [1, 0.04, 0.05], 0.05), Infinity);
   assert.equal(settlingTime([5, 6, 7], [1, 0.05, 0.04], 0.05), 2);
+});
+
+test("a motion that was sampled changes evenly between its samples", () => {
+  const motion = { times: [0, 2], rows: [[1], [3]], columns: [Float64Array.of(1, 3)] };
+  assert.deepEqual([...knownAt(motion, [7], [0, 1, 2]).rows], [1, 7, 2, 7, 3, 7]);
 });
