@@ -78,11 +78,11 @@ def test_the_determinant_is_the_choice_s(answers, case):
 def assert_same_determinant(settings, answer):
     (run, *_) = structure_runs_of(settings).values()
     choice, recording = run.recording.view, run.recording
-    for k in (0, -1):
+    for k, digits in ((0, 1e-9), (-1, 1e-5)):  # near the camera the last digits of a place are magnified
         known = recording.motion.known(recording.time[k])[0]
         at = dict(zip(choice.form.x1, recording.outputs[k], strict=True))
         at |= dict(zip(choice.form.parameters, [*known, *choice.values.values()], strict=True))
-        assert answer["determinant"][k] == pytest.approx(float(choice.determinant.subs(at)), rel=1e-9)
+        assert answer["determinant"][k] == pytest.approx(float(choice.determinant.subs(at)), rel=digits)
 
 
 @pytest.mark.node
