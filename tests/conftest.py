@@ -79,6 +79,17 @@ def chromium():
     )
 
 
+@pytest.fixture(scope="module")
+def browser(chromium):
+    """A browser without JupyterLab."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
 def playwright_chromium():
     from playwright.sync_api import sync_playwright
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Optional, Row, Several
+from percept_obs.labs.shared.schema import Choice, Entries, Flag, Group, Names, Number, Optional, Row, Several, Text
 
 CANARY = "percept_obs_canary"
 """A file that appears if any text is run as code or taken for a path."""
@@ -15,6 +15,11 @@ WRONG = [
     *([], [None], [[]], [1, 2, 3], [[0.0] * 3] * 3, ["y1"], ["y2", "y1"], ["y1", "y1"], [math.nan] * 3),
     *({}, {1: 2}, {"kind": "pink"}, {"mode": "own", "values": "abc"}, {"__class__": "x"}, {"seed": f"/{CANARY}"}),
 ]
+TYPED = [
+    *("", "a11 y1 + a12 (y2 +", "y1' = a13", "9^9^9^9", "((((", "</math><img src=x onerror=alert(1)>", "y1; y2", "1/0"),
+    *(f"__import__('os').mkdir('{CANARY}')", f"open('/{CANARY}', 'w')", "\\frac{y1}{", "\x00", "yⅠ + а11", "nan"),
+]
+NAMES = ["rate 1 X'", "rate 6 y1'", "rate 6", "form 1", "error 1 e1'", "rate 99 x", "", "__class__", "rate -1 y1'"]
 
 
 def messages(lab, count, seed, with_summary):
@@ -60,6 +65,10 @@ def _allowed(kind, draw):
         return [_allowed(kind.of, draw) for _ in range(draw.integers(0, kind.most + 2))]
     if isinstance(kind, Group):
         return {name: _allowed(of, draw) for name, of in kind.of.items() if draw.random() < 0.9}
+    if isinstance(kind, Text):
+        return _one_of([*TYPED, "y" * kind.most], draw)[: kind.most]
+    if isinstance(kind, Entries):
+        return {_one_of(NAMES, draw)[: kind.longest]: _allowed(kind.of, draw) for _ in range(draw.integers(0, 4))}
     if isinstance(kind, Optional):
         return None if draw.random() < 0.5 else _allowed(kind.of, draw)
     return {}  # settings to keep

@@ -1,4 +1,4 @@
-"""Labs alone on a page of their own, without Jupyter: served under a content policy, and drawn by a real browser."""
+"""A lab in a page of its own, without JupyterLab; Python answers it if it is asked to."""
 
 import base64
 import json
@@ -14,8 +14,19 @@ window.refused = [];
 document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
 const bytes = Uint8Array.from(atob(STATE.texts), (c) => c.charCodeAt(0));
 const state = { ...STATE, texts: new DataView(bytes.buffer) };
+const listeners = {};
+window.held = null;  // a list, while answers are to be held back
+window.heard = (found) => {
+    Object.assign(state, found);
+    for (const name of Object.keys(found)) listeners[`change:${name}`]?.();
+};
 const model = {
-    get: (name) => state[name], set: (name, value) => (state[name] = value), save_changes() {}, on() {}, off() {},
+    get: (name) => state[name],
+    set: (name, value) => (state[name] = value),
+    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary })
+        .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
+    on: (event, listener) => (listeners[event] = listener),
+    off() {},
 };
 bundle.render({ model, el: document.body });
 """
@@ -30,8 +41,8 @@ def stated_policy():
     return re.search(r"`(default-src[^`]*)`", (NOTEBOOKS.parent / "README.md").read_text())[1]
 
 
-def opened(browser, lab, policy=None, **context):
-    """A page with a lab and nothing else, served under a policy; by itself under the one that README states."""
+def opened(browser, lab, policy=None, answers=None, **options):
+    """A page with a lab and nothing else, served under a policy, or README's; a function of the page's messages `answers` them."""
     told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
     told["texts"] = base64.b64encode(lab.texts).decode()
     files = {
@@ -39,13 +50,15 @@ def opened(browser, lab, policy=None, **context):
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
         "/lab.js": ("text/javascript", (FRONT / "lab.js").read_text()),
     }
-    page = browser.new_page(**context)
+    page = browser.new_page(**options)
     headers = {"Content-Security-Policy": policy or stated_policy()}
 
     def answer(route):
         kind, body = files[route.request.url.removeprefix("http://lab.test")]
         route.fulfill(body=body, content_type=kind, headers=headers)
 
+    if answers:
+        page.expose_function("toPython", answers)
     page.route("http://lab.test/**", answer)
     page.goto("http://lab.test/")
     return page

@@ -90,3 +90,11 @@ def test_hats_matrices_and_cases_become_markup_that_browsers_know():
     assert '<mover accent="true"><mi>x</mi><mo>^</mo></mover>' in markup.markup(x)
     assert markup.markup(sp.Matrix([[x]])).count('<mtable class="matrix">') == 1
     assert "otherwise" in markup.markup(sp.Piecewise((x, x > 1), (0, True)))
+
+
+def test_what_python_prints_while_it_answers_the_page_does_not_fill_the_log(capsys, monkeypatch):
+    lab = observer_lab()
+    monkeypatch.setattr(type(lab), "analyse", lambda self: print("moving: 50 %") or {})
+    lab.set_state({"settings": lab.settings, "summary": {"serial": 7}})
+    assert lab.analysis["serial"] == 7
+    assert capsys.readouterr() == ("", "")

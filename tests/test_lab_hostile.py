@@ -7,9 +7,9 @@ import traitlets
 from hostile_messages import CANARY, messages
 from sample_sizes import sampled
 
-from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
-LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
+LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab, "desk": derivation_desk}
 
 
 @pytest.mark.parametrize("name", LABS)
@@ -33,3 +33,28 @@ def test_settings_stay_valid_under_hostile_messages(name, seed, tmp_path, monkey
     assert min(taken, refused) > 10
     assert {trait: getattr(lab, trait) for trait in kept} == kept
     assert not any(CANARY in path.name for path in tmp_path.iterdir())
+
+
+SPINNING = [[0.0, -1000.0, 1000.0], [1000.0, 0.0, -1000.0], [-1000.0, 1000.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("name", "fast"),
+    [
+        ("observer", {"A": SPINNING, "duration": 120.0}),
+        ("structure", {"duration": 60.0, "period": 0.01, "w": [0.0, 900.0, 0.0], "v_p_swing": [0.1, 0.0, 0.0]}),
+        ("structure", {"duration": 100.0, "w": [900.0, 900.0, 900.0]}),
+        ("points", {"spin": 10.0, "duration": 120.0}),
+    ],
+)
+def test_what_would_keep_the_kernel_busy_is_said_and_not_begun(name, fast, monkeypatch):
+    for solver in ("scipy.integrate.DOP853", "scipy.linalg.expm"):
+        monkeypatch.setattr(solver, None)
+    (sentence,) = LABS[name](**fast).analyse()["sentences"]
+    assert sentence.startswith("Python says nothing on so fast or long a motion")
+
+
+@pytest.mark.parametrize("name", ["observer", "structure"])  # those of many points are never so short
+def test_a_run_of_a_single_sample_is_refused_before_it_is_looked_at(name):
+    with pytest.raises(ValueError, match=r"a duration of 0\.5 s holds no two samples"):
+        LABS[name](duration=0.5, period=1.0)

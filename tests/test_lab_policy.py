@@ -3,18 +3,18 @@
 import pytest
 from lab_alone import DRAWN, opened, stated_policy
 
-from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
+LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab, "desk": derivation_desk}
 
 
 @pytest.mark.parametrize("name", LABS)
 def test_a_lab_works_under_the_policy_that_readme_states(browser, name):
     page = opened(browser, LABS[name]())
     page.wait_for_function(DRAWN)
-    assert page.locator("canvas").count() > 2
+    assert page.locator("canvas").count() + page.locator(".sheet input").count() > 2
     assert page.evaluate("window.refused") == []
     page.close()
 

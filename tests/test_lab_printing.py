@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 from lab_settings import whole_model
 
-from percept_obs.labs import observer_lab, points_lab, printing, structure_lab
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, printing, structure_lab
 from percept_obs.labs.shared.printed import file_of, packed, part, unpacked
 
-MAKERS = {"observer_lab": observer_lab, "structure_lab": structure_lab, "points_lab": points_lab}
+MAKERS = {
+    "observer_lab": observer_lab,
+    "structure_lab": structure_lab,
+    "points_lab": points_lab,
+    "desk_lab": derivation_desk,
+}
 
 
 @pytest.mark.slow

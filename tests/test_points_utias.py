@@ -14,7 +14,7 @@ from percept_obs.observability.gramian import gramian
 from percept_obs.points import riccati
 from percept_obs.points.ray import ray_error, ray_turning
 from percept_obs.points.utias import OUT_OF_SIGHT, load_utias_points
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import load_utias, utias_tables
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
 
 STARTS, FORGETTING = (0.001, 0.003, 0.01), (0.0, 0.3)
@@ -68,10 +68,18 @@ def test_the_landmarks_are_those_of_the_tracks():
     )
     np.testing.assert_allclose(recording.distance[at, point], 1 / first.truth[0, 2], rtol=1e-12)
     np.testing.assert_allclose(recording.distances["stereo"][at, point], first.distances["stereo"][0])
-    some = load_utias_points(utias_folder(), [17])
-    assert some.view.points == 1
-    with pytest.raises(ValueError, match="name some of"):
-        load_utias_points(utias_folder(), [999])
+
+
+def test_some_landmarks_are_chosen_once_each_among_those_that_have_tracks(monkeypatch):
+    tables = utias_tables(utias_folder())
+    monkeypatch.setattr("percept_obs.points.utias.utias_tables", lambda path: tables)
+    recording = load_utias_points(utias_folder(), [17])
+    assert recording.view.points == 1
+    ends = recording.time[recording.seen.any(axis=1)][[0, -1]]
+    np.testing.assert_array_equal(recording.time[[0, -1]], ends)
+    for wrong in ([999], [17, 999], [17, 17], []):
+        with pytest.raises(ValueError, match="name some of"):
+            load_utias_points(utias_folder(), wrong)
 
 
 @pytest.mark.slow

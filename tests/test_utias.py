@@ -46,6 +46,7 @@ def reported(settings, after, hold="zero"):
 
 def test_tracks_are_recordings():
     assert len(recordings()) == 44
+    assert sum(len(recording.time) for recording in recordings()) == 2739
     track0 = recordings()[0]
     assert track0.names == ("y1", "y2")
     np.testing.assert_allclose(1 / track0.truth[0, 2], 0.8366, atol=1e-4)

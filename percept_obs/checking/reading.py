@@ -10,6 +10,7 @@ primary  = number | name | function "(" sum ")" | "(" sum ")" | matrix | LaTeX's
 
 import difflib
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from math import prod
@@ -19,30 +20,13 @@ import sympy as sp
 
 from percept_obs.checking.deciding import degree
 from percept_obs.checking.points import key
-from percept_obs.checking.tokens import Cursor, Token
+from percept_obs.checking.tokens import CannotRead, Cursor, Token
 
 DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER = 40, 20, 60, 40
 
+_NAMED = "sin cos tan asin acos atan sinh cosh tanh sech exp log sqrt sign"
 FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
-    **{
-        name: getattr(sp, name)
-        for name in [
-            "sin",
-            "cos",
-            "tan",
-            "asin",
-            "acos",
-            "atan",
-            "sinh",
-            "cosh",
-            "tanh",
-            "sech",
-            "exp",
-            "log",
-            "sqrt",
-            "sign",
-        ]
-    },
+    **{name: getattr(sp, name) for name in _NAMED.split()},
     **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
 }
 _RELATIONS = {"<": sp.StrictLessThan, "<=": sp.LessThan, ">": sp.StrictGreaterThan, ">=": sp.GreaterThan, "!=": sp.Ne}
@@ -94,6 +78,14 @@ def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) 
             ^
     """
     return _Parser(text, letters, labels).lines()
+
+
+def words_of(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) -> list[Token]:
+    """The words of a text as `read` understands them, letters side by side apart, as far as it can be read."""
+    parser = _Parser(text, letters, labels)
+    with suppress(CannotRead):
+        parser.lines()
+    return parser.tokens
 
 
 class _Parser(Cursor):

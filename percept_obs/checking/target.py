@@ -15,8 +15,8 @@ from sympy.logic.boolalg import Boolean
 
 from percept_obs.checking.deciding import explicit
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS, Reading, read
-from percept_obs.checking.tokens import tokens
+from percept_obs.checking.reading import FUNCTIONS, Reading, read, words_of
+from percept_obs.checking.tokens import Token, tokens
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
@@ -142,8 +142,7 @@ class Target:
     def read(self, mine: Any) -> list[Reading]:
         """What somebody gives, as readings: text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
-            return read(mine, extra | self.letters, [*self.rows, *self.blocks, *_LABELS])
+            return read(mine, *self._known)
         if isinstance(mine, Mapping):
             return [
                 replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
@@ -167,6 +166,16 @@ class Target:
     @staticmethod
     def _named(name: object) -> str:
         return f"step{name}" if isinstance(name, int) else typed(str(name))
+
+    def words(self, text: str) -> list[Token]:
+        """The words of a text as they are understood here, as far as it can be read."""
+        return words_of(text, *self._known)
+
+    @property
+    def _known(self) -> tuple[dict[str, sp.Symbol], list[str]]:
+        """The letters that are read, and what may stand on the left of a line besides."""
+        extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
+        return extra | self.letters, [*self.rows, *self.blocks, *_LABELS]
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """A formula of sympy in the target's own letters, matched by name."""

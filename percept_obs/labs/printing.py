@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from percept_obs.compile.integrator import for_the_page
+from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.points import texts as points
 from percept_obs.labs.shared.printed import FRONT, Parts, file_of, packed, unpacked
@@ -15,6 +16,7 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
         "observer_lab": observer.texts_for_the_page,
         "structure_lab": structure.texts_for_the_page,
         "points_lab": points.texts_for_the_page,
+        "desk_lab": desk.texts_for_the_page,
     }
 )
 """For each lab, what is printed for its page."""

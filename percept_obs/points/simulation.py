@@ -89,5 +89,5 @@ class PointsScenario(Scene):
         return path
 
     def _rate(self, time: float, state: Array) -> Array:
-        A, v = self.form.coefficients(time)
+        A, v = self.form.coefficients(float(time))
         return A[0] @ state + v[0]

@@ -135,8 +135,13 @@ def lowest_between(values: Array, rates: Array, times: Array) -> tuple[float, fl
     dips = np.flatnonzero((rates[:-1] < 0) & (rates[1:] > 0))
     if not len(dips):
         return float(np.inf), 0.0
-    s, h = np.linspace(0, 1, 65)[:, None], np.diff(times)[dips]
-    cubic = (1 + 2 * s) * (1 - s) ** 2 * values[dips] + s**2 * (3 - 2 * s) * values[dips + 1]
-    cubic = cubic + h * s * (1 - s) * ((1 - s) * rates[dips] - s * rates[dips + 1])
-    where = np.unravel_index(int(np.argmin(cubic)), cubic.shape)
-    return float(cubic[where]), float(times[dips[where[1]]] + s[where[0], 0] * h[where[1]])
+    h, low, high = np.diff(times)[dips], values[dips], values[dips + 1]
+    begin, end = h * rates[dips], h * rates[dips + 1]
+    # the cubic is low + begin s + bend s^2 + turn s^3; its slope is negative at s = 0, positive at 1 and 0 once between
+    turn, bend = begin + end - 2 * (high - low), 3 * (high - low) - 2 * begin - end
+    root = np.sqrt(np.maximum(bend**2 - 3 * turn * begin, 0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = np.clip(np.where(bend < 0, (root - bend) / (3 * turn), -begin / (bend + root)), 0, 1)
+    cubic = low + s * (begin + s * (bend + s * turn))
+    least = int(np.argmin(cubic))
+    return float(cubic[least]), float(times[dips[least]] + s[least] * h[least])

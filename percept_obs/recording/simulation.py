@@ -93,7 +93,7 @@ class Scenario(Scene):
             return constant_path(A[0], b[0], start, times)
         breaks = () if motion.signal.times is None else motion.signal.times
         flow = _flow(point_in_motion(motion.A, motion.b, motion.parameters))
-        return varying_path(lambda t, x: flow(x, (), motion.known(t)[0]), start, times, breaks)
+        return varying_path(lambda t, x: flow(x, (), motion.known(float(t))[0]), start, times, breaks)
 
     @property
     def view(self) -> View:

@@ -113,8 +113,7 @@ class StructureAndMotion(OnePoint):
 
     def __post_init__(self) -> None:
         for group in ("unknown", "zero", "earlier"):
-            names = getattr(self, group)
-            names = (names,) if isinstance(names, str) else tuple(names)
+            names = tuple(getattr(self, group))
             strange = [name for name in names if name not in QUANTITIES]
             if strange:
                 raise ImpossibleChoice(

@@ -13,7 +13,7 @@ from percept_obs.labs.points.settings import PICTURES, SCHEMA
 from percept_obs.labs.points.texts import form_of, state_of
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import within_reach
+from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
@@ -29,15 +29,18 @@ from percept_obs.points import (
     riccati,
     scheduled,
 )
-from percept_obs.points.form import JUDGED, points_form
+from percept_obs.points.form import JUDGED, PointsForm, points_form
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
-STEP_WORK = 10
-"""Times that a state of many points takes Python longer than one of a single point."""
+STEP_WORK, STEP_WORK_WITH_P = 10, 20
+"""Times that a state of many points takes Python longer than one of a single point: alone, and with a P to compute."""
+
+LOOK_WORK = 26
+"""What a look at a motion that varies costs Python, as `MOST_WORK` counts."""
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
@@ -93,10 +96,6 @@ class PointsLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
-        if settings["duration"] < settings["period"]:
-            raise ValueError(
-                f"a duration of {settings['duration']} s holds no two samples {settings['period']} s apart"
-            )
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")
@@ -108,19 +107,29 @@ class PointsLab(Lab):
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
         settings = self.settings
         steps = settings["duration"] / min(settings["period"], settings["step"])
-        _, beyond = within_reach(steps, {"these points": STEP_WORK * 3 * len(settings["points"])})
+        A, _ = form_of_settings(settings).coefficients(np.linspace(0, settings["duration"], 50))
+        paths = 2 if settings["hold"] == "exact" else 1
+        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()))
+        each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
+        _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
+        beyond = [refusal] if (refusal := too_fast(moved)) else beyond
         return {"sentences": beyond, "bound": None} if beyond else in_words(self.run(), settings["window"])
 
 
 points_lab = PointsLab
 
 
-def recording_of(settings: Settings) -> Recording:
-    """What the camera records of the settings' points."""
+def form_of_settings(settings: Settings) -> PointsForm:
+    """The form of the settings' points."""
     manoeuvre = Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnseenDirection)  # the lab says so in its own place
-        form = form_of(settings["state"], len(settings["points"]), manoeuvre)
+        return form_of(settings["state"], len(settings["points"]), manoeuvre)
+
+
+def recording_of(settings: Settings) -> Recording:
+    """What the camera records of the settings' points."""
+    form = form_of_settings(settings)
     state = state_of(form, settings["points"]).tolist()
     scenario = PointsScenario("from the lab", form, state, settings["duration"])
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])

@@ -14,6 +14,7 @@ from typing import Any
 
 import anywidget
 import traitlets
+from IPython.utils.capture import capture_output
 
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.schema import Schema, Settings
@@ -48,6 +49,12 @@ class _Checked(traitlets.TraitType[Settings, Settings]):
             return dict(lab.check(value))
         except ValueError as error:
             raise BadSettings(str(error)) from None
+
+
+def refuse_a_single_sample(settings: Settings) -> None:
+    """Raise a ValueError for a duration that is shorter than the period."""
+    if settings["duration"] < settings["period"]:
+        raise ValueError(f"a duration of {settings['duration']} s holds no two samples {settings['period']} s apart")
 
 
 class Lab(anywidget.AnyWidget):
@@ -96,7 +103,7 @@ class Lab(anywidget.AnyWidget):
         """Complete settings, or a ValueError that says what is wrong."""
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
-        if whole["kept"] is not None:
+        if whole.get("kept") is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})
         return whole
 
@@ -110,7 +117,8 @@ class Lab(anywidget.AnyWidget):
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Take the page's state; what goes wrong is shown in the lab and raised for the log."""
         try:
-            super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
+            with capture_output():  # progress bars have no cell to stand in, and would fill the log
+                super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
         except Exception as error:
             self.error = f"{type(error).__name__}: {error}"
             raise

@@ -30,15 +30,43 @@ MOST_WORK = 300_000
 """Steps times states that are followed in about a second, so that the kernel answers."""
 
 
-def within_reach(steps: float, states: Mapping[str, float]) -> tuple[list[str], list[str]]:
+def exact_path(duration: float, period: float, fastest: float) -> float:
+    """What it takes to move a point exactly, as `MOST_WORK` counts; see `looks`."""
+    return 0.4 * duration * (1 / period + 4 * fastest)
+
+
+def looks(duration: float, fastest: float, swings_at: float = 0.0) -> float:
+    """How often a solver looks at a motion that varies, about.
+
+    Parameters
+    ----------
+    duration : float
+        In seconds.
+    fastest : float
+        Largest sum of a row of A without signs, in 1/s.
+    swings_at : float
+        In rad/s.
+    """
+    return duration * (60 + 47 * fastest + 18 * swings_at)
+
+
+def too_fast(work: float) -> str:
+    """What Python says of a motion that takes it so much to simulate; nothing if it does simulate it."""
+    slower = "slow it down, lengthen the period or shorten the duration"
+    return f"Python says nothing on so fast or long a motion; {slower}." if work > MOST_WORK else ""
+
+
+def within_reach(steps: float, states: Mapping[str, float], before: float = 0.0) -> tuple[list[str], list[str]]:
     """Names of the observers that Python follows for its words, and what it says of the others.
 
     Parameters
     ----------
     steps : float
     states : mapping of names to numbers of states
+    before : float
+        Work that is done before any is followed.
     """
-    names, work = [], 0.0
+    names, work = [], before
     for name, count in states.items():
         if work + steps * count <= MOST_WORK:
             names.append(name)

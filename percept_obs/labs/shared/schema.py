@@ -143,6 +143,20 @@ class Names(Kind):
 
 
 @dataclass(frozen=True)
+class Text(Kind):
+    """A text of at most so many characters, which is read and never run."""
+
+    opening: str = ""
+    most: int = 100
+
+    def _expected(self) -> str:
+        return f"a text of at most {self.most} characters"
+
+    def _allows(self, value: Any) -> bool:
+        return isinstance(value, str) and len(value) <= self.most
+
+
+@dataclass(frozen=True)
 class Flag(Kind):
     """Yes or no."""
 
@@ -216,6 +230,29 @@ class Group(Kind):
             raise ValueError(f"{name} has no {unknown}; there are {', '.join(self.of)}")
         left = self.opening if self.partial else {}
         return {key: kind.read(f"{name} {key}", value.get(key, left.get(key))) for key, kind in self.of.items()}
+
+
+@dataclass(frozen=True)
+class Entries(Kind):
+    """Values of one kind under names that are not known before, at most so many."""
+
+    of: Kind
+    most: int = 1
+    longest: int = 100
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "opening", {})
+
+    def _expected(self) -> str:
+        return f"a mapping of at most {self.most} names, each to {self.of.expected}"
+
+    def _allows(self, value: Any) -> bool:
+        if not isinstance(value, Mapping) or len(value) > self.most:
+            return False
+        return all(isinstance(name, str) and len(name) <= self.longest for name in value)
+
+    def _read(self, name: str, value: Any) -> Settings:
+        return {key: self.of.read(f"{name} {reprlib.repr(key)}", entry) for key, entry in value.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,11 +12,12 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import as_far_as_seen, within_reach
+from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
+from percept_obs.labs.shared.printed import part
+from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
-from percept_obs.labs.structure.texts import OBSERVERS, PHASES, observer_of, swinging
+from percept_obs.labs.structure.texts import LARGEST, OBSERVERS, PHASES, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.recording import Recording
 from percept_obs.structure import (
@@ -37,6 +38,10 @@ from percept_obs.tracking.verdict import REMEDY, for_the_page
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
+
+
+LOOK_WORK = 16
+"""What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
 class StructureLab(Lab):
@@ -78,6 +83,7 @@ class StructureLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
+        refuse_a_single_sample(settings)
         settings["unknown"].sort(key=QUANTITIES.index)
         steps = _steps(settings)
         if steps > MOST_STEPS:
@@ -87,12 +93,20 @@ class StructureLab(Lab):
 
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
-        states = {name: len(observer_of(name).equations.state) for name in self.settings["observers"]}
-        told, beyond = within_reach(_steps(self.settings), states)
+        settings = self.settings
+        duration, fastest = settings["duration"], sum(sorted(map(abs, settings["w"]))[1:])
+        moved = exact_path(duration, settings["period"], fastest)
+        if _swings(settings):
+            moved += LOOK_WORK * looks(duration, fastest, settings["rate"])
+        if refusal := too_fast(moved):
+            return {"sentences": [refusal]}
+        printed = part("structure_lab", f"forms/{LARGEST}")["observers"]
+        states = {name: printed[name]["states"] for name in settings["observers"]}
+        told, beyond = within_reach(_steps(settings), states, moved)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = runs({**self.settings, "observers": told})
+                found = runs({**settings, "observers": told}) if told else {}
         except (BehindCamera, ImpossibleChoice) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(OBSERVERS[name][0], run)]
@@ -130,6 +144,10 @@ def runs(settings: Settings) -> dict[str, Run]:
     return found
 
 
+def _swings(settings: Settings) -> bool:
+    return bool(settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES]))
+
+
 def motion_of(settings: Settings) -> Motion:
     """The true motion, constant unless a velocity swings."""
     around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
@@ -138,7 +156,7 @@ def motion_of(settings: Settings) -> Motion:
         swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
         return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
 
-    if settings["rate"] and swings.any():
+    if _swings(settings):
         return replace(rigid(), signal=Signal(OverTime(known)))
     (still,) = known(np.zeros(1))
     return rigid(still[:3], still[3:6], still[6:])

@@ -7,11 +7,12 @@
 import { modelOf } from "./common/model/texts.js";
 import { element } from "./common/page/controls.js";
 import style from "./common/page/style.css";
+import { DeskLab } from "./desk/lab.js";
 import { ObserverLab } from "./observer/lab.js";
 import { PointsLab } from "./points/lab.js";
 import { StructureLab } from "./structure/lab.js";
 
-const LABS = { observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
+const LABS = { desk_lab: DeskLab, observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 export default {
   async render({ model, el }) {

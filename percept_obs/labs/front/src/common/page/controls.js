@@ -90,6 +90,16 @@ export function select({ name, label, choices, possible = (_value) => true, get,
   return { row, show, parts: [box], name };
 }
 
+/** A short text, taken when it is complete. */
+export function field({ name, label, most, get, set }) {
+  const id = `percept-${++count}`;
+  const box = element("input", { type: "text", id, maxlength: most, "data-control": name, autocomplete: "off" });
+  box.addEventListener("change", () => set(box.value));
+  const row = element("div", { class: "control" }, element("label", { for: id }, label), box);
+  const show = () => (box.value = get());
+  return { row, show, parts: [box], name };
+}
+
 /** A choice of one among a few, all in sight. */
 export function radios({ name, label, choices, possible = (_value) => true, get, set }) {
   const group = `percept-${++count}`;

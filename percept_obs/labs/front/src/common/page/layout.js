@@ -12,11 +12,8 @@ const CHIP = { class: "chip", "aria-expanded": "false" };
 
 export function build(lab, place, presets) {
   const { planes, charts, panel, formulas } = lab;
-  const paragraph = (className, role) => element("p", { class: className, role, hidden: true });
-  const problem = paragraph("problem", "alert");
-  const pythonError = paragraph("problem percept-obs-error", "alert");
-  const silence = paragraph("silence", "status");
-  const notice = paragraph("notice", "status");
+  const { problem, pythonError, silence, notice, said, functions } = sayings();
+  const history = ways(lab);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
   const verdicts = element("ul", { class: "verdicts" });
   const why = element("ul", { class: "why" });
@@ -27,8 +24,6 @@ export function build(lab, place, presets) {
   const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
   const keep = button("Keep this run", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false" });
   const back = button("Back", () => lab.goBack(), { "data-control": "back", hidden: true });
-  const undo = button("Undo", () => lab.undo(), { "data-control": "undo", title: "Ctrl+Z" });
-  const redo = button("Redo", () => lab.redo(), { "data-control": "redo", title: "Ctrl+Shift+Z" });
   const player = new Player(lab);
 
   /** Show the preset that is open, with its answer once it was asked for. */
@@ -74,11 +69,10 @@ export function build(lab, place, presets) {
     }
   }
 
-  const said = element("span", { class: "said", role: "status" });
   const actions = element(
     "div",
     { class: "actions" },
-    ...[undo, redo, back, keep],
+    ...[history.undo, history.redo, back, keep],
     button("Copy as code", copy, { "data-control": "copy" }),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
     said,
@@ -104,14 +98,7 @@ export function build(lab, place, presets) {
   );
   place.append(root);
 
-  root.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
-    event.preventDefault();
-    if (event.shiftKey) lab.redo();
-    else lab.undo();
-  });
-  // JupyterLab would take arrows, letters and Enter for commands of its own.
-  for (const type of ["keydown", "keyup", "keypress"]) root.addEventListener(type, (event) => event.stopPropagation());
+  keys(root, lab);
   root.addEventListener("keydown", (event) => {
     if (event.key !== " " || event.defaultPrevented || event.target.closest(OWN_SPACE)) return;
     event.preventDefault();
@@ -126,11 +113,7 @@ export function build(lab, place, presets) {
   const view = {
     root,
     preset,
-    steps({ past, future }) {
-      // Not disabled, which would take the focus away from the last step.
-      undo.setAttribute("aria-disabled", String(!past.length));
-      redo.setAttribute("aria-disabled", String(!future.length));
-    },
+    steps: history.show,
     words(found) {
       const verdictOf = ({ which, title, text }) => [which, title, text];
       beside(verdicts, found.verdicts.map(verdictOf), (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
@@ -147,28 +130,65 @@ export function build(lab, place, presets) {
     time: (cursor) => player.show(cursor),
     playing: () => player.playing,
     close: () => player.close(),
+    ...functions,
+    analysis: (sentences) => fill(analysis, sentences),
+    answered: (answer) => analysis.classList.toggle("of-others", !answer),
+  };
+  return view;
+}
+
+/** The keys of undo and redo; JupyterLab would take arrows, letters and Enter for commands of its own. */
+export function keys(root, lab) {
+  root.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
+    event.preventDefault();
+    if (event.shiftKey) lab.redo();
+    else lab.undo();
+  });
+  for (const type of ["keydown", "keyup", "keypress"]) root.addEventListener(type, (event) => event.stopPropagation());
+}
+
+/** The buttons of undo and redo, and what brings them to the history. */
+export function ways(lab) {
+  const undo = button("Undo", () => lab.undo(), { "data-control": "undo", title: "Ctrl+Z" });
+  const redo = button("Redo", () => lab.redo(), { "data-control": "redo", title: "Ctrl+Shift+Z" });
+  const show = ({ past, future }) => {
+    // Not disabled, which would take the focus away from the last step.
+    undo.setAttribute("aria-disabled", String(!past.length));
+    redo.setAttribute("aria-disabled", String(!future.length));
+  };
+  return { undo, redo, show };
+}
+
+/** What the page says of Python and of itself, with the functions that say it. */
+export function sayings() {
+  const paragraph = (className, role) => element("p", { class: className, role, hidden: true });
+  const problem = paragraph("problem", "alert");
+  const pythonError = paragraph("problem percept-obs-error", "alert");
+  const silence = paragraph("silence", "status");
+  const notice = paragraph("notice", "status");
+  const said = element("span", { class: "said", role: "status" });
+  const functions = {
     notice: (text) => show(notice, text),
     problem: (text) => show(problem, text),
     pythonError: (text) => show(pythonError, text && `Python says: ${text}`),
     silence: (error) =>
       show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it."),
-    analysis: (sentences) => fill(analysis, sentences),
-    answered: (answer) => analysis.classList.toggle("of-others", !answer),
     say(text) {
       put(said, text);
       clearTimeout(said.timer);
       said.timer = setTimeout(() => put(said, ""), 5000);
     },
   };
-  return view;
+  return { problem, pythonError, silence, notice, said, functions };
 }
 
-function put(node, text) {
+export function put(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
 /** Put in a text that is there only if it says something. */
-function show(node, text) {
+export function show(node, text) {
   put(node, text);
   node.hidden = !text;
 }

@@ -1,16 +1,11 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
 import { Results } from "../model/results.js";
-import { schemaOf } from "../model/schema.js";
-import { same } from "../model/settings.js";
-import { State } from "../model/state.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
 import { LINE } from "./lines.js";
-import { Link } from "./link.js";
 import { Showing } from "./showing.js";
-import { surround } from "./surroundings.js";
 import { TimeCharts } from "./time_charts.js";
 
 const REST = 150;
@@ -28,23 +23,13 @@ const BETWEEN_WORDS = 250;
  */
 export class Live extends Showing {
   constructor(widget, model, { Kernels, Engine, ...parts }) {
-    super(model, new State(structuredClone(widget.get("settings"))), parts);
-    this.widget = widget;
-    this.schema = schemaOf(model.schema, parts.words);
+    super(widget, model, parts);
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
     /** @type {any} */
-    this.panel = this.formulas = null;
-    /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
-    this.answer = null;
-    /** @type {Link | null} */
-    this.link = null;
-    this.serial = 0;
+    this.formulas = null;
     this.pictures = 0;
     this.spoken = 0;
-    this.frame = 0;
-    this.pending = this.closed = false;
-    this.leave = () => {};
   }
 
   open(place) {
@@ -53,48 +38,12 @@ export class Live extends Showing {
     this.follow(build(this, place, presets));
   }
 
-  /** Begin to follow, once the page is built: the hand, the page's size and theme, Python. */
-  follow(view) {
-    this.view = view;
-    this.link = new Link(this.widget, {
-      onSettings: (settings) => same(settings, this.settings) || this.replace(settings),
-      onAnalysis: (analysis, settings) => this.analysed({ ...analysis, settings }),
-      onError: (text) => this.view.pythonError(text),
-      onSilence: (silence) => this.view.silence(silence),
-    });
-    this.leave = surround(this.view.root, {
-      figures: this.figures.map(({ figure }) => figure),
-      onSize: (node, size) => this.resized(node, size),
-      onTheme: () => this.retheme(),
-    });
-    this.panel.show();
-    this.schedule();
-    this.rest();
-  }
-
   close() {
-    this.closed = true;
-    cancelAnimationFrame(this.frame);
-    clearTimeout(this.resting);
-    this.link?.close();
+    super.close();
     this.view.close();
-    this.leave();
   }
 
   // What the hand does.
-
-  /** Take changed settings; what is chosen rather than moved is a step of its own, and told to Python at once. */
-  change(changes, chosen = false) {
-    if (chosen) this.state.step({ settings: { ...this.settings, ...changes } });
-    else this.state.move(changes);
-    this.touched(chosen);
-  }
-
-  /** Take whole settings, which Python has set. */
-  replace(settings) {
-    this.state.step({ settings: structuredClone(settings) });
-    this.touched(true);
-  }
 
   touched(chosen) {
     if (chosen) this.choices += 1;
@@ -128,17 +77,8 @@ export class Live extends Showing {
   }
 
   reset() {
-    this.state.reset(structuredClone(this.model.opening));
     this.time.timeline.forget();
-    this.touched(true);
-  }
-
-  undo() {
-    if (this.state.undo()) this.touched(true);
-  }
-
-  redo() {
-    if (this.state.redo()) this.touched(true);
+    super.reset();
   }
 
   keep() {
@@ -186,13 +126,6 @@ export class Live extends Showing {
     this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
     this.describe();
     this.view.rested();
-  }
-
-  /** Draw what was computed, at another time or from elsewhere; the time charts only if they have changed. */
-  redraw() {
-    if (this.pending || this.closed) return;
-    this.pending = true;
-    this.frame = requestAnimationFrame(() => this.pending && this.paint());
   }
 
   /** Draw what is shown of the settings, which is computed only when they have changed. */
@@ -282,13 +215,5 @@ export class Live extends Showing {
   /** Python's answer, if it is about what is shown. */
   answered() {
     return this.answer?.settings === this.shown?.settings ? this.answer : null;
-  }
-
-  say(text) {
-    this.view.say(text);
-  }
-
-  fail(error) {
-    this.view.problem(error.message);
   }
 }

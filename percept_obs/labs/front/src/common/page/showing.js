@@ -1,6 +1,7 @@
 // What a lab shows: its pictures of a result, at one time, over the part of the time that is in sight.
 
 import { within } from "../model/playback.js";
+import { Following } from "./following.js";
 import { LINE, MOVING_LINE } from "./lines.js";
 import { TimeCharts } from "./time_charts.js";
 
@@ -10,36 +11,24 @@ import { TimeCharts } from "./time_charts.js";
 const BETWEEN_READINGS = 250;
 
 /** Pictures of what was computed.  Another time, another look, or another part of the time computes nothing again. */
-export class Showing {
-  constructor(model, state, parts) {
-    this.model = model;
-    this.state = state;
+export class Showing extends Following {
+  constructor(widget, model, parts) {
+    super(widget, model, parts.words);
     this.parts = parts;
-    /** @type {any} */
-    this.view = null;
     /** @type {Plane[]} */
     this.planes = [];
     /** @type {TimeCharts} */
     this.time = new TimeCharts({});
-    /** @type {any} the result that is shown, and that of the kept run */
-    this.shown = this.ghost = null;
-    /** @type {any} the colours of the page's theme, and the one that is picked out */
-    this.theme = null;
+    /** @type {any} the result of the kept run */
+    this.ghost = null;
     /** @type {number | null} the time under the pointer */
     this.peeked = null;
     this.choices = 0;
     /** @type {Settings | null} those at which the hand took hold */
     this.taken = null;
-    this.width = 800;
-    /** @type {any} the timer that runs while the hand may go on */
-    this.resting = null;
     this.read = 0;
     this.down = false;
     this.stale = true;
-  }
-
-  get settings() {
-    return this.state.settings;
   }
 
   get charts() {
@@ -57,18 +46,6 @@ export class Showing {
 
   get figures() {
     return [...this.planes, ...Object.values(this.charts)];
-  }
-
-  resized(node, size) {
-    const picture = this.figures.find(({ figure }) => figure === node);
-    if (picture) picture.size = size;
-    else this.width = size.width;
-    this.schedule();
-  }
-
-  retheme() {
-    this.theme = null;
-    this.schedule();
   }
 
   /** Show a time: nothing is computed again. */
@@ -120,7 +97,9 @@ export class Showing {
   }
 
   /** Draw once more, soon: the charts only if they have changed. */
-  redraw() {}
+  redraw() {
+    super.schedule();
+  }
 
   chosen() {
     const { problem, settings } = this.shown;

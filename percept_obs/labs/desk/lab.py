@@ -1,0 +1,105 @@
+"""The derivation desk: a derivation filled in line by line, and checked while it is typed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from percept_obs.labs.desk.answering import said_of
+from percept_obs.labs.desk.settings import SCHEMA
+from percept_obs.labs.desk.sheets import Sheet, sheet_of
+from percept_obs.labs.desk.systems import system_of, system_of_student
+from percept_obs.labs.shared.lab import Lab
+from percept_obs.labs.shared.printed import part
+from percept_obs.labs.shared.schema import Settings
+from percept_obs.system.perspective import PerspectiveSystem
+
+
+class DerivationDesk(Lab):
+    """The desk at which a derivation is filled in; `settings` define everything, and may be set from Python as well.
+
+    What is typed is read as `percept_obs.check` reads it, and compared with what the package derives.
+
+    Parameters
+    ----------
+    system : PerspectiveSystem, optional
+        What is derived, if it is none of those that can be chosen.
+    **settings
+        Those to open with, such as ``student="Ada"``, from which a system of her own follows:
+
+    {settings}
+
+    Examples
+    --------
+    >>> desk = derivation_desk(student="Ada")
+    >>> desk.sheet().goal.lines[-1].name
+    'y2'
+    """
+
+    schema = SCHEMA
+
+    def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
+        if system is not None and not isinstance(system, PerspectiveSystem):
+            raise ValueError(
+                f"the desk takes a PerspectiveSystem, not {system!r}; pass PerspectiveSystem(motion, surface), or "
+                "settings by their names"
+            )
+        self._given = system
+        opening = SCHEMA.opening
+        if system is not None:
+            opening["outputs"] = list(system.output_choices[0])
+        super().__init__("desk_lab", settings, opening, opening, given=self._given_for_the_page())
+        self.analysis = self.analyse()
+
+    def _given_for_the_page(self) -> Settings | None:
+        if self._given is None:
+            return None
+        return {"outputs": [list(names) for names in self._given.output_choices]}
+
+    def refuse(self, settings: Settings) -> None:
+        """Raise a ValueError for settings that do not go together."""
+        settings["outputs"].sort()
+        surface = settings["surface"]
+        choices = self._given.output_choices if self._given else part("desk_lab")["surfaces"][surface]
+        if settings["outputs"] not in [list(names) for names in choices]:
+            told = " or ".join(" and ".join(names) for names in choices)
+            seen = self._given.surface.name if self._given else surface
+            raise ValueError(
+                f"outputs are {settings['outputs']!r}; on the {seen} surface what is hidden can be separated if {told} "
+                "is measured"
+            )
+
+    def system(self) -> tuple[PerspectiveSystem, tuple[str, ...]]:
+        """The system that the settings stand for, and its measured outputs."""
+        settings = self.settings
+        if self._given is not None:
+            return self._given, tuple(settings["outputs"])
+        if settings["student"].strip():
+            return system_of_student(settings["student"])
+        return system_of(settings["motion"], settings["surface"]), tuple(settings["outputs"])
+
+    def sheet(self) -> Sheet:
+        """What is asked for.
+
+        Raises
+        ------
+        ValueError
+            If there is no such observer for these outputs.
+        """
+        return sheet_of(*self.system(), self.settings["observer"], self.settings["part"])
+
+    def analyse(self) -> Settings:
+        """The sheet, and what is found of the lines of the step that is shown."""
+        settings = self.settings
+        try:
+            sheet = self.sheet()
+        except ValueError as error:
+            return {"problem": str(error)}
+        system, outputs = self.system()
+        return {"title": _title(system, outputs), **said_of(sheet, settings, system)}
+
+
+derivation_desk = DerivationDesk
+
+
+def _title(system: PerspectiveSystem, outputs: tuple[str, ...]) -> str:
+    return f"{system.motion.name} motion on the {system.surface.name} surface, {' and '.join(outputs)} measured"

@@ -1,0 +1,32 @@
+"""What may be set at the desk."""
+
+from typing import Any
+
+from percept_obs.checking.review import HINTS
+from percept_obs.labs.desk.sheets import PARTS
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, SURFACES
+from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
+
+MOST_LINES, LONGEST_LINE = 200, 2000
+_PLACE: dict[str, Any] = {"low": -1, "high": 1, "usual": (-1, 1), "step": 0.01}
+
+SCHEMA = Schema(
+    student=Text(most=60, label="Name or number", about="whose system it is; empty for the one chosen"),
+    motion=Choice("affine", tuple(MOTIONS)),
+    surface=Choice("pinhole", tuple(SURFACES)),
+    outputs=Names(["y1", "y2"], ("y1", "y2", "y3"), label="Measured"),
+    observer=Choice("identifier_based", tuple(OBSERVERS)),
+    part=Choice("rate", tuple(PARTS), label="Derive", about=f"what is derived: {', '.join(PARTS)}"),
+    step=Number(1, 1, 20, whole=True, about="the step that is shown, counted from 1"),
+    typed=Entries(Text(most=LONGEST_LINE), MOST_LINES, about='what is typed, by part, step and line, "rate 5 y1\'"'),
+    hints=Entries(
+        Number(0, 0, len(HINTS), whole=True), MOST_LINES, about='how many hints are open, by part and step, "rate 5"'
+    ),
+    point=Row(
+        [
+            *(Number(value, label=label, **_PLACE) for label, value in (("y1", 0.4), ("y2", 0.3))),
+            Number(0.5, 0.01, 100, (0.05, 2), label="inverse distance", unit="1/m"),
+        ],
+        about="where numbers are put in: y1, y2 and the inverse distance",
+    ),
+)

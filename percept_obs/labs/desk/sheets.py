@@ -1,0 +1,147 @@
+"""What is asked for at the desk: the steps of a derivation, a line for each formula, and the goal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import pairwise
+
+import sympy as sp
+
+from percept_obs.checking import Target, target_of
+from percept_obs.checking.deciding import explicit
+from percept_obs.checking.target import Line
+from percept_obs.labs.desk.systems import OBSERVERS, observer_of
+from percept_obs.labs.shared.equations import equations_of
+from percept_obs.labs.shared.markup import dotted, formula, markup, row, words
+from percept_obs.system.derivation import Derivation, Step, rates
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import POINT
+
+PARTS = {
+    "rate": "the image's motion",
+    "form": "w, φ and g",
+    "observer": "an observer",
+    "error": "its error dynamics",
+}
+"""What can be derived, in the order in which one thing needs the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A derivation to fill in.
+
+    Parameters
+    ----------
+    given : list of str
+        What is known, as MathML.
+    derivation : Derivation
+        Its steps with their values are what is asked for.
+    goal : Target
+        What lines are read with and compared with, a line for each value.
+    image : tuple of str
+        The lines whose numbers are the image's motion.
+    """
+
+    given: list[str]
+    derivation: Derivation
+    goal: Target
+    image: tuple[str, ...] = ()
+
+    @cached_property
+    def numbered(self) -> Target:
+        """The same goal with a name for each line that no other has."""
+        lines = (replace(line, name=f"line{k}") for k, line in enumerate(self.goal.lines))
+        return replace(self.goal, lines=tuple(lines))
+
+    @cached_property
+    def letters(self) -> list[str]:
+        """The letters that occur in the lines, as MathML."""
+        used = {s for line in self.goal.lines for s in line.formula.free_symbols}
+        return [markup(s) for s in sorted(used, key=str)]
+
+    def rows(self, step: int) -> range:
+        """The lines of a step, which is counted from 1."""
+        start = sum(len(before.values) for before in self.derivation[: step - 1])
+        return range(start, start + len(self.derivation[step - 1].values))
+
+
+@lru_cache(maxsize=64)
+def sheet_of(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str, part: str) -> Sheet:
+    """What is asked for.
+
+    Raises
+    ------
+    ValueError
+        If there is no such observer for these outputs.
+    """
+    return _MAKE[part](system, outputs, observer)
+
+
+def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
+    surface = system.surface
+    seen = {s.name: e for s, e in zip(surface.coordinates, (*surface.image, 1 / surface.distance), strict=True)}
+    steps = [step for step in system.derivation() if step.values]
+    # what is only written in another form is asked for once
+    kept = [step for before, step in pairwise([None, *steps]) if step and not _again(step, before)]
+    given = [
+        formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(system.motion.A, sp.Matrix(POINT)), system.motion.b)),
+        row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
+    ]
+    image = tuple(f"{s.name}'" for s in surface.image_coordinates)
+    return _sheet(given, kept, target_of(system), image)
+
+
+def _again(step: Step, before: Step | None) -> bool:
+    return before is not None and list(step.values) == list(before.values)
+
+
+def _form(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
+    form = system.measure(*outputs)
+    return _sheet(_known(system, outputs), [step for step in form.derivation() if step.values], target_of(form))
+
+
+def _observer(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
+    made = observer_of(system, outputs, observer)
+    step = Step(
+        f"The {made.name} observer, written out for this system:", "", _flow(made.equations.state, made.equations.flow)
+    )
+    return _sheet([*_known(system, outputs), *_in_letters(observer)], [step], target_of(made))
+
+
+def _error(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
+    made = observer_of(system, outputs, observer)
+    step = Step("The error e, the truth less the estimate:", "", _flow(made.error, made.error_dynamics()))
+    return _sheet([*_known(system, outputs), *_in_letters(observer)], [step], target_of(made))
+
+
+_MAKE = {"rate": _rate, "form": _form, "observer": _observer, "error": _error}
+
+
+def _flow(symbols: Iterable[sp.Symbol], values: Iterable[sp.Expr]) -> Mapping[str, sp.Expr]:
+    return rates(symbols, map(explicit, values))
+
+
+def _sheet(given: list[str], steps: list[Step], letters: Target, image: tuple[str, ...] = ()) -> Sheet:
+    derivation = Derivation(tuple(steps))
+    lines = tuple(Line(name, value) for step in steps for name, value in step.values.items())
+    goal = replace(target_of(derivation), lines=lines, pool=letters.pool | set(letters.letters.values()))
+    return Sheet(given, derivation, goal, image)
+
+
+def _known(system: PerspectiveSystem, outputs: tuple[str, ...]) -> list[str]:
+    measured = [markup(s) for s in system.coordinates if s.name in outputs]
+    hidden = [markup(s) for s in system.coordinates if s.name not in outputs]
+    return [
+        *(formula(dotted(s), rate) for s, rate in zip(system.coordinates, system.rate, strict=True)),
+        row("measured", *_listed(measured), "; hidden", *_listed(hidden)),
+    ]
+
+
+def _in_letters(observer: str) -> list[str]:
+    return list(equations_of(OBSERVERS[observer])[-1]["lines"])
+
+
+def _listed(formulas: Iterable[str]) -> list[str]:
+    return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]

@@ -1,0 +1,172 @@
+// The lines of a step: what is typed, the same as mathematics, and what is found of it.
+
+import { button, element } from "../../common/page/controls.js";
+import { put } from "../../common/page/layout.js";
+
+const MARKS = { right: "✓", wrong: "✗", carried: "↳", unknown: "?" };
+const SAID = { right: "right", wrong: "not right", carried: "right from there on", unknown: "cannot be told" };
+const UNFINISHED = "not complete yet";
+
+let count = 0;
+
+export class Sheet {
+  constructor(lab) {
+    this.lab = lab;
+    /** @type {Line[]} */
+    this.lines = [];
+    this.key = "";
+    this.list = element("div", { class: "sheet-lines" });
+    this.words = element("p", { class: "sheet-words" });
+    this.hint = button("", () => lab.openHint(Number(this.hint.dataset.number)), { "data-control": "hint", hidden: true });
+    this.body = element("div", { class: "sheet" }, this.list, element("div", { class: "found" }, this.words, this.hint));
+  }
+
+  /** Show what Python has found; of a line whose text is newer only that it is being looked at. */
+  show(answer, current) {
+    const key = JSON.stringify(answer.lines.map((line) => line.key));
+    if (key !== this.key) {
+      this.key = key;
+      this.lines = answer.lines.map((line) => new Line(this.lab, line));
+      this.list.replaceChildren(...this.lines.map(({ row }) => row));
+    }
+    const { calm } = this.lab;
+    this.lines.forEach((line, k) => line.show(answer.lines[k], calm));
+    const said = current && (calm || answer.right);
+    put(this.words, said ? answer.words : "");
+    this.words.className = `sheet-words ${said && answer.right ? "right" : ""}`;
+    this.body.classList.toggle("waiting", !current);
+    // It stays where it is while somebody types, or the focus and the lines below would jump.
+    if (!calm || !current) return;
+    const focused = this.hint === document.activeElement;
+    this.hint.hidden = !answer.hint;
+    this.hint.dataset.number = answer.hint;
+    put(this.hint, `Hint: ${answer.says}`);
+    if (focused && !answer.hint) this.lines.at(-1)?.field.focus({ preventScroll: true });
+  }
+
+  /** What is found, for those who hear it. */
+  told(answer) {
+    const lines = this.lines.map((line, k) => line.told(answer.lines[k])).filter(Boolean);
+    return [answer.words, ...lines].filter(Boolean).join(" ");
+  }
+}
+
+class Line {
+  constructor(lab, { key, name, label }) {
+    this.lab = lab;
+    this.key = key;
+    this.name = name;
+    const id = `percept-line-${++count}`;
+    this.field = element("input", {
+      ...{ type: "text", id, maxlength: lab.schema.typed.of.most, "data-control": `line ${key}` },
+      ...{ spellcheck: "false", autocapitalize: "off", autocomplete: "off", autocorrect: "off" },
+      "aria-describedby": `${id}-found`,
+    });
+    this.field.addEventListener("input", () => lab.type(key, this.field.value));
+    this.field.addEventListener("blur", () => lab.rest());
+    const words = label ? [element("span", { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)] : [name];
+    if (label) words[0].innerHTML = `<math>${label}</math>`;
+    this.mark = element("span", { class: "mark", role: "img" });
+    this.formula = element("div", { class: "as-typed", role: "group", "aria-label": `${name} as mathematics` });
+    this.state = element("p", { class: "state", id: `${id}-found` });
+    this.hints = element("ul", { class: "told" });
+    this.row = element(
+      "div",
+      { class: label ? "typed" : "typed wordy" },
+      element("label", { for: id }, ...words),
+      element("div", { class: "entry" }, this.field, this.mark),
+      element("div", { class: "beneath" }, this.formula, this.state, this.hints),
+    );
+    this.markup = this.hinted = this.measured = "";
+  }
+
+  show(found, calm) {
+    const text = this.lab.settings.typed[this.key] ?? "";
+    if (this.field.value !== text) this.field.value = text;
+    const mine = this.lab.isOf(this.key);
+    this.row.classList.toggle("late", !mine);
+    if (mine && this.markup !== found.markup) {
+      this.markup = found.markup;
+      this.formula.replaceChildren(...inPieces(found.markup));
+    }
+    this.letScroll(found.markup);
+    const mark = mine && (calm || found.mark === "right") ? found.mark : "";
+    put(this.mark, MARKS[mark] ?? "");
+    this.mark.className = `mark ${mark}`;
+    if (mark) this.mark.setAttribute("aria-label", SAID[mark]);
+    else this.mark.removeAttribute("aria-label");
+    this.mark.hidden = !mark;
+    const refused = Boolean(mine && found.refusal);
+    this.field.setAttribute("aria-invalid", String(calm && refused));
+    if (calm && refused) this.refuse(found, text);
+    else put(this.state, refused ? UNFINISHED : "");
+    this.tell(mine ? found.told : []);
+  }
+
+  /** What is wider than its place scrolls, which a keyboard must reach. */
+  letScroll(markup) {
+    const seen = `${this.lab.width} ${markup}`;
+    if (seen === this.measured) return;
+    this.measured = seen;
+    const { scrollWidth, clientWidth } = this.formula;
+    if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
+    else this.formula.removeAttribute("tabindex");
+  }
+
+  /** Say why a text cannot be read, with the place in it. */
+  refuse({ refusal, position }, text) {
+    const at = Math.min(position, text.length);
+    const place = element("mark", {}, text.slice(at, at + 1) || " ");
+    const quoted = element("code", {}, text.slice(Math.max(0, at - 30), at), place, text.slice(at + 1, at + 20));
+    const said = `${quoted.textContent} ${refusal}`;
+    if (this.state.textContent !== said) this.state.replaceChildren(quoted, ` ${refusal}`);
+  }
+
+  /** Hints, in words and mathematics. */
+  tell(sentences) {
+    const key = JSON.stringify(sentences);
+    if (key === this.hinted) return;
+    this.hinted = key;
+    this.hints.replaceChildren(...sentences.map((pieces) => element("li", {}, ...pieces.map(pieceOf))));
+  }
+
+  told(found) {
+    if (found.refusal) return `${this.name}: ${found.refusal}.`;
+    if (!found.mark) return "";
+    return [`${this.name}: ${SAID[found.mark]}.`, ...[...this.hints.children].map((item) => `${item.textContent}.`)].join(" ");
+  }
+}
+
+function pieceOf({ text, math }) {
+  if (math === undefined) return text;
+  const node = element("span", {});
+  node.innerHTML = `<math>${math}</math>`;
+  return node;
+}
+
+/** A sum in pieces, a formula for each term, so that it goes on in the next line where its place is narrow. */
+function inPieces(markup) {
+  if (!markup) return [];
+  const whole = element("div", {});
+  whole.innerHTML = `<math>${markup}</math>`;
+  /** @type {Element[][]} */
+  const pieces = [[]];
+  for (const node of [...whole.querySelectorAll("math > mrow > *")]) {
+    const before = pieces.at(-1) ?? [];
+    if (isSign(node) && before.length && !isSign(before[before.length - 1])) {
+      node.setAttribute("form", "infix");
+      pieces.push([]);
+    }
+    pieces.at(-1)?.push(node);
+  }
+  return pieces.map((nodes) => {
+    const piece = element("span", {});
+    piece.innerHTML = '<math displaystyle="true"></math>';
+    piece.firstElementChild?.append(...nodes);
+    return piece;
+  });
+}
+
+function isSign(node) {
+  return node.localName === "mo" && "+−=".includes(node.textContent);
+}

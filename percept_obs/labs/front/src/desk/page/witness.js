@@ -1,0 +1,98 @@
+// A numeric witness: the image's motion at a point, as the typed lines have it and as it is.
+
+import { readable } from "../../common/model/scales.js";
+import { squareAround, stroke } from "../../common/page/image_frame.js";
+import { FramedImage } from "../../common/page/image_plane.js";
+import { element } from "../../common/page/controls.js";
+import { DASHES, SOLID, swatch } from "../../common/page/lines.js";
+import { pointMark } from "../../common/page/marks.js";
+import { put } from "../../common/page/layout.js";
+
+const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
+/** How long the longer arrow is drawn, in units of the image. */
+const LENGTH = 0.55;
+const HEAD = 9;
+const MINE = 1;
+
+export class Witness extends FramedImage {
+  constructor(lab) {
+    super(lab, [
+      {
+        ...{ name: "point", label: "Point of the image: drag it, or use the arrow keys", className: "diamond" },
+        onMove: (place) => this.move(place),
+        onRest: () => lab.rest(),
+      },
+    ]);
+    this.handles[0].node.dataset.tag = "y";
+    this.words = element("p", { class: "reading" });
+    const entry = (which, text) => element("li", {}, swatch(which), text);
+    this.legend = element("ul", { class: "legend", "aria-label": "Arrows" }, entry("truth", "the true motion"), entry(MINE, "yours"));
+    this.body = element("div", { class: "witness" }, this.legend, this.figure, this.words);
+  }
+
+  move([y1, y2]) {
+    const inside = (value) => Number(Math.min(Math.max(value, -1), 1).toFixed(3));
+    this.lab.change({ point: [inside(y1), inside(y2), this.lab.settings.point[2]] });
+  }
+
+  /** Draw the arrows of an answer; without one those of before stay away. */
+  show(answer, theme) {
+    if (answer) this.body.hidden = !answer.witness;
+    if (this.body.hidden) return;
+    const { point } = this.lab.settings;
+    const found = answer?.witness;
+    const mine = found && typedPart(found);
+    const inside = (pen, frame) => {
+      if (!found) return;
+      const scale = LENGTH / Math.max(length(found.true), mine ? length(mine) : 0, 1e-9);
+      arrow(pen, frame, point, found.true, scale, theme.ink, SOLID, 2.5);
+      if (mine) arrow(pen, frame, point, mine, scale, theme.lines[MINE], DASHES[MINE], 2.5);
+      pointMark(pen, frame.x(point[0]), frame.y(point[1]), theme.ink, theme);
+    };
+    this.paint(() => SQUARE, theme, inside, () => [point.slice(0, 2)]);
+    if (!found) return;
+    const told = inWords(found, point);
+    put(this.words, told);
+    this.tell(told);
+    this.handles[0].describe();
+  }
+}
+
+/** The motion by the typed lines; what is not typed is taken from the truth. */
+function typedPart({ mine, true: known }) {
+  return mine.every((value) => value === null) ? null : mine.map((value, k) => value ?? known[k]);
+}
+
+function inWords({ names, mine, true: known }, [y1, y2, inverse]) {
+  const place = `At y1 = ${readable(y1)}, y2 = ${readable(y2)}, inverse distance ${readable(inverse)}/m: `;
+  const each = names.map((name, k) => {
+    const yours = mine[k] === null ? "" : `yours ${readable(mine[k])}, `;
+    return `${name}: ${yours}true ${readable(known[k])}`;
+  });
+  return `${place}${each.join("; ")}.`;
+}
+
+function length([y1, y2]) {
+  return Math.hypot(y1, y2);
+}
+
+/** An arrow from a place, with a head of a fixed size. */
+function arrow(pen, { x, y }, [y1, y2], [d1, d2], scale, colour, dash, width) {
+  const from = [x(y1), y(y2)];
+  const to = [x(y1 + scale * d1), y(y2 + scale * d2)];
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const size = Math.hypot(dx, dy);
+  if (!(size > 1)) return;
+  pen.save();
+  pen.strokeStyle = pen.fillStyle = colour;
+  pen.lineWidth = width;
+  pen.setLineDash(dash);
+  stroke(pen, from, to);
+  const [u, v] = [dx / size, dy / size];
+  pen.beginPath();
+  pen.moveTo(to[0] + 2 * u, to[1] + 2 * v);
+  pen.lineTo(to[0] - HEAD * u + (HEAD / 2) * v, to[1] - HEAD * v - (HEAD / 2) * u);
+  pen.lineTo(to[0] - HEAD * u - (HEAD / 2) * v, to[1] - HEAD * v + (HEAD / 2) * u);
+  pen.fill();
+  pen.restore();
+}

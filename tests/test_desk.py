@@ -1,0 +1,259 @@
+"""The derivation desk reads and judges what is typed, line by line, and every student has a system of her own."""
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+import sympy as sp
+from test_checking_reading import CANARY, HOSTILE
+
+from percept_obs import PerspectiveSystem, affine, plane, rigid
+from percept_obs.checking.explaining import plain
+from percept_obs.checking.tokens import tokens
+from percept_obs.labs import derivation_desk
+from percept_obs.labs.desk.settings import LONGEST_LINE, SCHEMA
+from percept_obs.labs.desk.sheets import PARTS, sheet_of
+from percept_obs.labs.desk.systems import OBSERVERS, SURFACES, number_of, system_of, system_of_student
+from percept_obs.labs.desk.typed import typed_markup
+
+TAIL = "a12 y2 - a31 y1^2 - a32 y1 y2 + b1 y3"
+RIGHT = f"a13 + (a11 - a33) y1 + {TAIL} - b3 y1 y3"
+MISTAKES = {
+    "wrong sign": (RIGHT.replace("- b3", "+ b3"), "the sign of b3 y1 y3 is wrong", "in step 6"),
+    "swapped index": (RIGHT.replace("a12 y2", "a21 y2"), "a21 stands where a12 belongs", "in step 5"),
+    "forgotten": (
+        "a13 + a11 y1 + a12 y2 + b1 y3",
+        "y1 y3: you have 0, it is -1",
+        "in step 4 “Derivatives of the image coordinates, and of the distance l, taken on the ray”, the derivative of "
+        "y1 = X/Z with respect to Z was left out",
+    ),
+}
+
+
+def answer(typed, hints=0, step=6, part="rate", **settings):
+    """What the desk says of lines of a step by their names."""
+    lines = {f"{part} {step} {name}": text for name, text in typed.items()}
+    desk = derivation_desk(part=part, step=step, typed=lines, hints={f"{part} {step}": hints}, **settings)
+    return desk.analysis
+
+
+def told(line):
+    """The hints on a line as one text, with formulas as they are typed."""
+    return "; ".join("".join(p.get("text", "") or in_text(p["math"]) for p in sentence) for sentence in line["told"])
+
+
+def in_text(mathml):
+    """The letters of a simple product."""
+    tree = as_tree(mathml)
+    return " ".join("".join(node.itertext()) for node in tree.iter() if node.tag == "msub")
+
+
+def as_tree(mathml):
+    """MathML as a tree; it fails where it is not well formed."""
+    return ElementTree.fromstring(f"<math>{mathml.replace('&InvisibleTimes;', '').replace('&nbsp;', ' ')}</math>")
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_three_mistakes_are_named_with_their_step_hint_by_hint(name):
+    text, slip, step = MISTAKES[name]
+    first = answer({"y1'": text})
+    assert (first["words"], first["lines"][0]["mark"], first["lines"][0]["told"]) == ("Not right yet.", "", [])
+    assert (first["hint"], first["says"]) == (2, "which term")
+    second = answer({"y1'": text}, 2)
+    assert second["lines"][0]["mark"] == "wrong"
+    assert slip not in told(second["lines"][0])
+    assert "in step" not in told(second["lines"][0])
+    third = answer({"y1'": text}, 3)
+    assert slip in told(third["lines"][0])
+    assert step in told(third["lines"][0])
+    assert third["hint"] == 0
+
+
+def test_the_first_hint_says_which_of_several_lines():
+    lines = {"y1'": MISTAKES["wrong sign"][0], "y3'": "-y3 (a31 y1 + a32 y2 + a33 + b3 y3)"}
+    closed = answer(lines)
+    assert closed["words"] == "1 of 2 lines is not right yet."
+    assert [line["mark"] for line in closed["lines"]] == ["", "", ""]
+    assert [line["mark"] for line in answer(lines, 1)["lines"]] == ["wrong", "", "right"]
+
+
+def test_a_right_line_is_said_to_be_right_at_once():
+    found = answer({"y1'": f"y1' = {RIGHT}"})
+    assert (found["words"], found["right"], found["lines"][0]["mark"]) == ("Right so far, 1 of 3 lines.", True, "right")
+    assert found["steps"][5] == {"reason": found["steps"][5]["reason"], "mark": "right", "given": 1, "asked": 3}
+
+
+def test_an_error_is_carried_from_step_to_step():
+    lines = {"rate 5 the velocity along Z": "a31 y1 + a32 y2 + a33 - b3 y3"}
+    lines["rate 6 y3'"] = "-y3 (a31 y1 + a32 y2 + a33 - b3 y3)"
+    found = derivation_desk(step=6, typed=lines).analysis
+    assert found["words"].startswith("Right from there on: this follows from your “The velocity")
+    assert derivation_desk(step=6, typed={"rate 6 y3'": lines["rate 6 y3'"]}).analysis["words"] == "Not right yet."
+
+
+def test_the_numbers_of_steps_are_those_of_the_derivation():
+    steps = derivation_desk().analysis["steps"]
+    derivation = [step.reason.rstrip(":") for step in system_of("affine", "pinhole").derivation()]
+    assert [step["reason"] for step in steps[:6]] == derivation[:6]
+    assert steps[6]["reason"] == derivation[7]  # what is only multiplied out is not asked for again
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize(
+    "surface", ["chained", *(pytest.param(s, marks=pytest.mark.slow) for s in ("plane", "sphere"))]
+)
+def test_every_line_takes_its_own_formula(part, surface):
+    system = system_of("affine", surface)
+    outputs = system.output_choices[-1]
+    for observer in OBSERVERS if part in ("observer", "error") else ["identifier_based"]:
+        sheet = sheet_of(system, outputs, observer, part)
+        for number, step in enumerate(sheet.derivation, 1):
+            lines = {name: plain(value) for name, value in step.values.items()}
+            lines = {name: text for name, text in lines.items() if len(text) < LONGEST_LINE}
+            found = answer(lines, step=number, part=part, surface=surface, outputs=outputs, observer=observer)
+            assert found["right"], (observer, found)
+            for line in found["lines"]:
+                as_tree(line["markup"])
+
+
+def test_a_formula_stands_as_it_was_typed():
+    shown = as_tree(
+        derivation_desk(step=6, typed={"rate 6 y1'": "b1y3 + a11 y1^2/(2 y2)"}).analysis["lines"][0]["markup"]
+    )
+    assert "".join(shown.itertext()) == "b1\u2062y3+a11\u2062y122\u2062y2"  # the fraction needs no brackets
+    assert [len(list(shown.iter(tag))) for tag in ("mfrac", "msubsup", "msub")] == [1, 1, 4]
+
+
+@pytest.mark.parametrize(
+    "text", ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^"]
+)
+def test_what_is_not_complete_is_shown_all_the_same(text):
+    (line,) = answer({"y1'": text})["lines"][:1]
+    assert line["refusal"]
+    as_tree(line["markup"])
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_nothing_that_is_typed_is_run_or_becomes_a_part_of_the_page(text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    desk = derivation_desk()
+    message = {"settings": {**desk.settings, "step": 6, "typed": {"rate 6 y1'": text}}, "summary": {"serial": 1}}
+    if len(text) > LONGEST_LINE:
+        with pytest.raises(ValueError, match="at most 2000 characters"):
+            desk.set_state(message)
+        return
+    desk.set_state(message)
+    assert desk.analysis["serial"] == 1
+    line = desk.analysis["lines"][0]
+    known = {"math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mover", "mfrac", "msqrt"}
+    assert {node.tag for node in as_tree(line["markup"]).iter()} <= known
+    assert line.get("refusal") or not text.strip()
+    assert not any(CANARY in path.name for path in tmp_path.iterdir())
+
+
+def test_signs_of_the_page_s_own_language_are_written_as_text():
+    assert typed_markup(tokens("x < y1")) == "<mrow><mi>x</mi><mo>&lt;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
+
+
+@pytest.mark.parametrize(
+    ("text", "refusal"),
+    [
+        ("y2' = a21", "this is the line for y1'; type its right side only"),
+        ("y1; y2", "one formula is asked for here, without other equations or relations"),
+        ("y1 + 0 = y2 + 1", "one formula is asked for here"),
+        ("[y1, y2]", "one formula is asked for here"),
+        ("y1 + q", '"q" is no letter here'),
+    ],
+)
+def test_a_line_that_does_not_fit_is_refused(text, refusal):
+    line = answer({"y1'": text})["lines"][0]
+    assert line["refusal"].startswith(refusal)
+    assert line["mark"] == ""
+
+
+def test_the_witness_has_the_numbers_of_the_formulas():
+    desk = derivation_desk(step=6, point=[0.2, -0.1, 0.7], typed={"rate 6 y1'": MISTAKES["wrong sign"][0]})
+    system = system_of("affine", "pinhole")
+    numbers = {s: number_of(s, system) for s in system.parameters}
+    numbers |= dict(zip(system.coordinates, (0.2, -0.1, 0.7), strict=True))
+    true = [float(rate.subs(numbers)) for rate in system.rate[:2]]
+    b3, y1, y3 = (numbers[sp.Symbol(name, real=True)] for name in ("b3", "y1", "y3"))
+    witness = desk.analysis["witness"]
+    np.testing.assert_allclose(witness["true"], true)
+    np.testing.assert_allclose(witness["mine"][0], true[0] + 2 * b3 * y1 * y3)
+    assert witness["mine"][1] is None
+    assert derivation_desk(step=5).analysis["witness"] is None
+
+
+def test_a_line_without_a_value_has_no_arrow():
+    desk = derivation_desk(step=6, point=[0.0, 0.1, 0.7], typed={"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"})
+    assert desk.analysis["witness"]["mine"] == [None, None]
+
+
+def test_a_system_follows_from_a_name_on_every_machine():
+    system, outputs = system_of_student("Ada")
+    assert (str(system.rate[0]), outputs) == PINNED
+    assert system_of_student(" ada ")[0].rate == system.rate
+    desk = derivation_desk(student="Ada", surface="sphere")
+    assert desk.sheet().goal.lines[-3].name == derivation_desk().sheet().goal.lines[-3].name
+    assert "sphere" not in desk.analysis["title"]
+
+
+PINNED = ("a11*y1 + a13*y2 - a22*y1 - a23*y1*y2 + b1*y3 - b2*y1*y3", ("y2",))
+
+
+def test_neighbours_have_different_systems():
+    rates = {(system.rate, outputs) for system, outputs in map(system_of_student, map(str, range(16)))}
+    assert len(rates) > 14
+    for rate, _ in rates:
+        assert rate[2] != 0
+        assert max(len(str(entry)) for entry in rate) < 120
+
+
+def test_a_system_of_ones_own_can_be_given():
+    system = PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3))
+    desk = derivation_desk(system, step=6)
+    assert desk.analysis["title"] == "rigid motion on the plane surface, y1 and y2 and y3 measured"
+    assert desk.analysis["witness"] is None  # three outputs are no picture
+    assert derivation_desk(PerspectiveSystem(affine(), SURFACES["chained"]())).system()[0].surface.name == "chained"
+    with pytest.raises(ValueError, match="the desk takes a PerspectiveSystem, not 5"):
+        derivation_desk(5)
+
+
+def test_outputs_that_leave_what_is_hidden_inseparable_are_refused():
+    with pytest.raises(
+        ValueError, match="on the sphere surface what is hidden can be separated if y1 and y2 is measured"
+    ):
+        derivation_desk(surface="sphere", outputs=["y1"])
+
+
+def test_answers_carry_the_serial_of_their_settings():
+    desk = derivation_desk()
+    for serial in (3, 4):
+        typed = {"rate 1 X'": "a11 X"[: serial + 1]}
+        desk.set_state({"settings": {**desk.settings, "typed": typed}, "summary": {"serial": serial}})
+        assert desk.analysis["serial"] == serial
+        assert as_tree(desk.analysis["lines"][0]["markup"]) is not None
+
+
+def test_every_setting_opens_with_what_is_of_its_kind_and_is_in_the_docstring():
+    for name, kind in SCHEMA.items():
+        assert kind.read(name, derivation_desk().settings[name]) == kind.opening
+        assert f"\n{name} : " in derivation_desk.__doc__
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "refusal"),
+    [
+        ("student", "x" * 61, "student is .*; it must be a text of at most 60 characters"),
+        ("student", 7, "student is 7; it must be a text"),
+        ("typed", {"rate 1 X'": 5}, "typed .*rate 1 X'.* is 5; it must be a text of at most 2000 characters"),
+        ("typed", {k * "x": "" for k in range(201)}, "it must be a mapping of at most 200 names"),
+        ("typed", {"x" * 101: ""}, "it must be a mapping of at most 200 names"),
+        ("hints", {"rate 1": 4}, "it must be a whole number from 0 to 3"),
+        ("step", 0, "it must be a whole number from 1 to 20"),
+    ],
+)
+def test_settings_of_another_kind_are_refused(name, value, refusal):
+    with pytest.raises(ValueError, match=refusal):
+        derivation_desk(**{name: value})

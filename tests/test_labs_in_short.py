@@ -1,0 +1,76 @@
+"""The pages' engines and Python agree over a second or less of every lab; longer runs are compared where labs are."""
+
+import pytest
+from lab_settings import NOISY, run_in_node
+from points_settings import run_in_node as points_in_node
+from structure_settings import GAUSSIAN, SWINGING, TURNED, structure_in_node
+from test_lab_engine import assert_same_recording, assert_same_run
+from test_points_lab import assert_same_gramian
+from test_points_lab import assert_same_run as assert_same_points
+from test_structure_lab import assert_same, assert_same_determinant
+
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs.observer.lab import runs
+from percept_obs.labs.points.lab import run_of
+from percept_obs.observability import windowed
+
+pytestmark = pytest.mark.node
+
+SHORT = {"duration": 0.5, "period": 0.04, "window": 0.2}
+BEHIND = {"duration": 3.0, "b": [0.5, 0.25, -2.9]}
+OF_A_POINT = [
+    {"noise": NOISY, "dropout": 0.2, "seed": 4, "hold": "first"},
+    {"observers": ["extended_kalman"], "hold": "exact"},
+    {"observers": ["extended_kalman"], "noise": {"kind": "gaussian", "size": 0.005}, "dropout": 0.1, "seed": 9},
+    {"start": {"mode": "chosen", "values": [0.2, 0.7, 1.0]}, "believed": {"A": [[0.1] * 3] * 3, "b": [0.1, 0.2, 0.3]}},
+    {"start": {"mode": "zero", "values": [0.0] * 3}, "gains": {"identifier_based": {"bound": 2.0}}},
+    {"gains": {"identifier_based": {"lyapunov": 5, "bound": 1e200}}, "duration": 2.0},
+    BEHIND,
+]
+
+
+def test_of_a_point(node):
+    lab = observer_lab()
+    tasks = [lab.check({**SHORT, **task}) for task in OF_A_POINT]
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        for name, run in runs(settings, {}).items():
+            assert_same_recording(answer, run.recording)
+            assert_same_run(answer["runs"][name], run, 1e-9)
+            assert answer["runs"][name]["divergedAt"] == run.diverged_at
+            assert answer["summary"]["verdicts"][name] == run.verdict()
+            excitation = windowed(run.observer.form, run.recording, settings["window"]).smallest
+            assert answer["excitation"] == pytest.approx(list(excitation), rel=1e-6, abs=1e-12)
+
+
+def test_of_structure(node):
+    lab = structure_lab()
+    tasks = [
+        lab.check({"duration": 0.2, "period": 0.004, "step": 0.002, **task})
+        for task in (
+            {"observers": ["ideal", "identifier_based"], **SWINGING, "hold": "exact", "start": "own"},
+            {"noise": GAUSSIAN, "bias": 1e-4, "drift": 1e-5, "seed": 3, "hold": "zero", "w": TURNED},
+            {"v_c": [-0.22, -0.23, 1.5], "unknown": ["d_s", "v_p1"], "duration": 0.1},
+            {"unknown": ["v_c1", "v_p2"], "earlier": True, "w": TURNED, **SWINGING},
+        )
+    ]
+    for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+        assert_same(settings, answer)
+        assert_same_determinant(settings, answer)
+
+
+def test_of_points(node):
+    lab = points_lab()
+    short = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
+    tasks = [
+        lab.check({**short, **task})
+        for task in (
+            {"weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4], None], "noise": NOISY, "hold": "zero"},
+            {"state": "independent", "dropout": 0.2, "hold": "first", "seed": 4, "step": 0.04},
+            {"state": "origin", "spin": 0.7, "weight": "lyapunov", "size": 2.0, "decrease": 0.02, "start": "error"},
+            {"weight": "scheduled", "size": 0.3, "final": 3.0, "view": 0.6, "velocity": [0.2, -0.1, 0.3]},
+        )
+    ]
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of(settings)
+        assert_same_points(answer, run)
+        assert_same_gramian(answer, settings, run.recording)
