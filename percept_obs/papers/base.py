@@ -15,12 +15,37 @@ from sympy.matrices.exceptions import ShapeError
 
 from percept_obs.checking.deciding import POINTS, points, rational
 from percept_obs.checking.points import key
+from percept_obs.checking.reading import Reading, read
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
 
 
 def column(*entries: Any) -> sp.ImmutableMatrix:
     """A column of numbers."""
     return sp.ImmutableMatrix(entries)
+
+
+def reader(*letters: Any) -> Callable[[str], Printed]:
+    """What reads prints that are typed as text, from the letters of numbers, vectors and matrices that may stand there.
+
+    Equations are separated by semicolons and may go on over several lines.  A letter with a prime is a rate; of vectors there are
+    ``norm(e)``, ``norm1(e)``, ``inner(e, x)`` and ``signs(e)``.
+
+    Examples
+    --------
+    >>> reader(*sp.symbols("y1 y2 b1", real=True))("y1' = b1 y2; y1^2 < b1")
+    (Eq(ydot1, b1*y2), y1**2 < b1)
+    """
+    known = {key(each.name): each for letter in letters for each in (dot(letter), letter)}
+
+    def relation(line: Reading) -> sp.Basic:
+        return equal(known[line.name], line.formula) if line.name else line.formula
+
+    def read_all(text: str) -> Printed:
+        parts = " ".join(text.split()).split(";")
+        lines = (line for part in parts for line in read(part, known, list(known), FUNCTIONS))
+        return tuple(map(relation, lines))
+
+    return read_all
 
 
 def vectors(names: str, size: sp.Symbol) -> tuple[sp.MatrixSymbol, ...]:
@@ -141,6 +166,16 @@ class SmallestEigenvalue(_Scalar):
         # The trace stays as a sum of squares, from which sympy sees that it is not negative.
         trace, determinant = matrix.trace(), sp.expand(matrix.det())
         return (trace - sp.sqrt(trace**2 - 4 * determinant)) / 2
+
+
+FUNCTIONS = {
+    "norm": Norm,
+    "norm1": SumNorm,
+    "inner": Inner,
+    "signs": lambda vector: vector.applyfunc(sp.sign),
+    "min_eigenvalue": SmallestEigenvalue,
+}
+"""What `reader` reads besides the usual functions."""
 
 
 def explicit(expression: sp.Basic, values: Values | None = None) -> Any:

@@ -76,7 +76,7 @@ class Entry:
     place : str
         Number of the equation, such as "(4)", or a few words that name the statement.
     page, section : str
-        Where it stands.
+        Where it stands; empty if that is not known.
     says : str
         What it says, in a few words.
     printed : tuple of sympy relations
@@ -154,7 +154,7 @@ class Entry:
         """All that there is to say of the entry, by what it is: texts, and formulas."""
         correction = self.corrected if self.correction else ()
         return {
-            "says": f"{self.says} (page {self.page}, section {self.section})",
+            "says": self.says + (f" (page {self.page}, section {self.section})" if self.page else ""),
             "print": self.printed,
             "derivation": tuple(sp.Eq(*sides, evaluate=False) for sides in self.finding.derived),
             "correction": correction,

@@ -43,7 +43,7 @@ class Ledger:
     def __post_init__(self) -> None:
         if len({entry.place for entry in self.entries}) != len(self.entries):
             raise ValueError(f"two entries of {self.paper} have the same place")
-        ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page)))
+        ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page or 0)))
         object.__setattr__(self, "entries", tuple(ordered))
 
     def __getitem__(self, place: str | int) -> Entry:
