@@ -23,14 +23,14 @@ def explicit(formula: sp.Basic) -> sp.Basic:
     that size.
     """
     if isinstance(formula, Relational):
-        sizes, sides = _sizes(formula), formula.args
+        sizes, sides = sizes_of(*formula.atoms(sp.MatrixSymbol)), formula.args
         return formula.func(*(_explicit(side, sizes) for side in sides), evaluate=False)
-    return _explicit(formula, _sizes(formula))
+    return _explicit(formula, sizes_of(*formula.atoms(sp.MatrixSymbol)))
 
 
-def _sizes(formula: sp.Basic) -> dict[sp.Symbol, sp.Integer]:
+def sizes_of(*matrices: sp.MatrixSymbol) -> dict[sp.Symbol, sp.Integer]:
     """Numbers for the letters that are sizes of matrices."""
-    letters = {s for m in formula.atoms(sp.MatrixSymbol) for size in m.shape for s in size.free_symbols}
+    letters = {s for m in matrices for size in m.shape for s in size.free_symbols}
     return {size: sp.Integer(2 + k % 2) for k, size in enumerate(sorted(letters, key=str, reverse=True))}
 
 

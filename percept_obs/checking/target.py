@@ -13,7 +13,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.checking.deciding import explicit
+from percept_obs.checking.deciding import explicit, sizes_of
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import FUNCTIONS, Reading, read, words_of
 from percept_obs.checking.tokens import Token, tokens
@@ -96,6 +96,8 @@ class Target:
         Letters that are known not to be zero.
     blocks : mapping of names to rows
         Several lines that can be given together: those of step 5 as "step5".
+    matrices : mapping of letters to matrices
+        What letters of matrices that may be typed stand for.
     """
 
     lines: tuple[Line, ...]
@@ -103,6 +105,7 @@ class Target:
     derivation: Callable[[], Derivation] | None = None
     nonzero: frozenset[sp.Symbol] = frozenset()
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix] = field(default_factory=dict)
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
@@ -142,7 +145,8 @@ class Target:
     def read(self, mine: Any) -> list[Reading]:
         """What somebody gives, as readings: text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            return read(mine, *self._known)
+            found = read(mine, *self._known)
+            return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
         if isinstance(mine, Mapping):
             return [
                 replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
@@ -172,18 +176,29 @@ class Target:
         return words_of(text, *self._known)
 
     @property
-    def _known(self) -> tuple[dict[str, sp.Symbol], list[str]]:
+    def _known(self) -> tuple[dict[str, Any], list[str]]:
         """The letters that are read, and what may stand on the left of a line besides."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
-        return extra | self.letters, [*self.rows, *self.blocks, *_LABELS]
+        matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
+        return extra | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """A formula of sympy in the target's own letters, matched by name."""
-        formula = explicit(formula)
+        formula = explicit(written_out(formula, self.matrices))
         own = {s: self.letters.get(key(s.name), s) for s in formula.free_symbols}
         if isinstance(formula, Relational):
             return formula.func(*(side.xreplace(own) for side in formula.args), evaluate=False)
         return formula.xreplace(own)
+
+
+def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
+    """A formula, or a relation, with matrices in the place of their letters."""
+    if not matrices or not formula.atoms(sp.MatrixSymbol):
+        return formula
+    if isinstance(formula, Relational):
+        return formula.func(*(written_out(side, matrices) for side in formula.args), evaluate=False)
+    formula = formula.xreplace(matrices).doit(integrals=False)
+    return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula
 
 
 _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
@@ -216,6 +231,8 @@ def target_of(thing: Any) -> Target:
         return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
     if isinstance(thing, Sequence) and not isinstance(thing, Derivation):
         return _joined(map(target_of, thing))
+    if isinstance(getattr(thing, "target", None), Target):
+        return thing.target
     if hasattr(thing, "derivation") and callable(thing.derivation):
         return target_of(thing.derivation())
     raise ValueError(
@@ -333,6 +350,43 @@ def relation_lines(relation: Relational) -> list[Line]:
         name = re.sub(r"dot(\d*)$", r"\1'", left.name) if named else ""
         return [Line(name, right) if named else Line("", left - right, EQUATION)]
     return [Line("", relation.gts - relation.lts, INEQUALITY)]
+
+
+def in_letters_of_matrices(relations: Iterable[Relational]) -> Target:
+    """Relations whose matrices can be typed by their letters, "xi' = G A xi"; they are compared entry by entry.
+
+    The inverse of a letter has entries of its own, for written out it is too long.
+
+    Raises
+    ------
+    ValueError
+        If a matrix is given in several forms, or is an integral: entries do not tell whether those are the same.
+    """
+    relations = tuple(relations)
+    named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]
+    integrals = sp.Tuple(*relations).atoms(sp.Integral)
+    if len(set(named)) < len(named) or any(isinstance(i.function, sp.MatrixExpr) for i in integrals):
+        raise ValueError("matrices in several forms, or integrals of them, are not compared; name one of the formulas")
+    given = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
+    sizes = sizes_of(*given)
+    names = {m: m.name for m in given} | {m.inv(): f"{m.name}inv" for m in given if m.is_square}
+    shapes = {m: [size.xreplace(sizes) for size in m.shape] for m in names}
+    matrices = {m: sp.ImmutableMatrix(*shapes[m], _entry(name)) for m, name in names.items()}
+    lines: list[Line] = []
+    blocks = {}
+    for relation in relations:
+        left, right = relation.args
+        if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
+            rows = [Line(f"{left.name}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
+            blocks[key(left.name)] = tuple(range(len(lines), len(lines) + len(rows)))
+            lines += rows
+        else:
+            lines += relation_lines(written_out(relation, matrices))
+    return Target(tuple(lines), blocks=blocks, matrices=matrices)
+
+
+def _entry(name: str) -> Callable[[int, int], sp.Symbol]:
+    return lambda i, j: sp.Symbol(f"{name}_{i + 1}{j + 1}", real=True)
 
 
 def condition(formula: Boolean) -> sp.Expr:

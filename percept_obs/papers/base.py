@@ -27,8 +27,8 @@ def column(*entries: Any) -> sp.ImmutableMatrix:
 def reader(*letters: Any) -> Callable[[str], Printed]:
     """What reads prints that are typed as text, from the letters of numbers, vectors and matrices that may stand there.
 
-    Equations are separated by semicolons and may go on over several lines.  A letter with a prime is a rate; of vectors there are
-    ``norm(e)``, ``norm1(e)``, ``inner(e, x)`` and ``signs(e)``.
+    Equations are separated by semicolons and may go on over several lines.  A letter with a prime is a rate; of vectors
+    there are ``norm(e)``, ``norm1(e)``, ``inner(e, x)`` and ``signs(e)``.
 
     Examples
     --------

@@ -10,6 +10,7 @@ from functools import cached_property, partial
 
 import sympy as sp
 
+from percept_obs.checking.target import Target, in_letters_of_matrices
 from percept_obs.papers.mathml import shown
 
 Printed = tuple[sp.Basic, ...]
@@ -131,6 +132,20 @@ class Entry:
             return False
         mended = (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
         return self.expected != Verdict.MISPRINT or self.check(self.corrected).verdict in mended
+
+    @property
+    def target(self) -> Target:
+        """What `percept_obs.check` compares a formula of your own with: the print, or its correction.
+
+        Raises
+        ------
+        ValueError
+            If there is no formula, or none that is true.
+        """
+        if not self.printed or self.expected in (Verdict.FALSE, Verdict.DEPENDS):
+            why = f"it {self.expected}" if self.printed else "it has no formula"
+            raise ValueError(f"nothing can be compared with {self.place}: {why.replace('it false', 'it is false')}")
+        return in_letters_of_matrices(self.corrected)
 
     @property
     def verdict(self) -> str:
