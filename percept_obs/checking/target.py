@@ -347,7 +347,7 @@ def relation_lines(relation: Relational) -> list[Line]:
         named = isinstance(relation, sp.Eq) and left.is_Symbol
         if right == 0 and not named:
             return [Line("", left, ZEROS)]
-        name = re.sub(r"dot(\d*)$", r"\1'", left.name) if named else ""
+        name = _primed(left.name) if named else ""
         return [Line(name, right) if named else Line("", left - right, EQUATION)]
     return [Line("", relation.gts - relation.lts, INEQUALITY)]
 
@@ -377,12 +377,17 @@ def in_letters_of_matrices(relations: Iterable[Relational]) -> Target:
     for relation in relations:
         left, right = relation.args
         if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
-            rows = [Line(f"{left.name}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
+            rows = [Line(f"{_primed(left.name)}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
             blocks[key(left.name)] = tuple(range(len(lines), len(lines) + len(rows)))
             lines += rows
         else:
             lines += relation_lines(written_out(relation, matrices))
     return Target(tuple(lines), blocks=blocks, matrices=matrices)
+
+
+def _primed(name: str) -> str:
+    """The name of a rate as it is typed: y1' for ydot1."""
+    return re.sub(r"dot(\d*)$", r"\1'", name)
 
 
 def _entry(name: str) -> Callable[[int, int], sp.Symbol]:
