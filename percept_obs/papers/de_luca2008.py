@@ -19,7 +19,6 @@ import sympy as sp
 
 from percept_obs.observers import de_luca, identifier_based
 from percept_obs.observers.de_luca import H, Lam
-from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.parts import sigma2
 from percept_obs.papers.base import dot, identities, is_identity, reader, vanishes
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
@@ -41,7 +40,7 @@ OMEGA = Omega1, Omega2 = sp.symbols("Omega1 Omega2", real=True)
 PIXELS = x_p, y_p = sp.symbols("x_p y_p", real=True)
 f = sp.Symbol("f", positive=True)
 gamma, t, T = sp.symbols("gamma t T", positive=True)
-reads = reader(*STATE, *ESTIMATE, *ERROR, *VELOCITY, *TURNING, *OMEGA, *PIXELS, f, H, Lam, G, A, P)
+reads = reader(f)
 
 # The package's w turns the world, and its point may move as well.
 LETTERS: Values = dict(

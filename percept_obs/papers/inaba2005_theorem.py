@@ -10,7 +10,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from percept_obs.observability.gramian import Gramian, gramian
-from percept_obs.papers.base import Norm, at_most, less, separates, vectors
+from percept_obs.papers.base import Norm, less, reader, separates, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
 from percept_obs.points import (
     LyapunovMatrix,
@@ -39,17 +39,13 @@ DURATION = 40.0
 """Seconds that each example lasts."""
 
 # Numbers
-t, t0, s, T = sp.symbols("t t0 s T", real=True)
-epsilon, gamma, gamma1, gamma2 = sp.symbols("epsilon gamma gamma1 gamma2", positive=True)
+t, t0 = sp.symbols("t t0", real=True)
 alpha, beta = sp.symbols("alpha beta", positive=True)
-Q1, Q2 = sp.symbols("Q1 Q2", real=True)
 
 # Vectors and matrices
 n, p = sp.symbols("n p", integer=True, positive=True)
 rho, rho0 = vectors("rho rho0", n)
 y = sp.MatrixSymbol("y", 2 * p, 1)
-P0, Phi = sp.MatrixSymbol("P0", n, n), sp.MatrixSymbol("Phi", n, n)
-B, C = sp.MatrixSymbol("B", 2 * p, 3 * p), sp.MatrixSymbol("C", 3 * p, n)
 
 
 SIDEWAYS = sp.Matrix([2 * sp.sin(TIME), 2])
@@ -149,6 +145,8 @@ def not_exponential(printed: Printed) -> Finding:
 
 BOUNDED = less(Norm(y), sp.oo)
 
+reads = reader(alpha, beta, rho, rho0)
+
 ENTRIES = (
     at("(13)", "3", "3", "images are continuous and bounded")(
         (BOUNDED,),
@@ -163,7 +161,7 @@ ENTRIES = (
         known=Known.RUNS,
     ),
     at("Theorem 3.4 (ii)", "5", "3", "the error converges exponentially")(
-        (at_most(Norm(rho), beta * sp.exp(-alpha * (t - t0)) * Norm(rho0)),),
+        reads("norm(rho) <= beta exp(-alpha (t - t0)) norm(rho0)"),
         exponential,
         "with (i) as printed: a bound on Phi backwards bounds P above; runs of two examples, P = I",
         known=Known.RUNS,
