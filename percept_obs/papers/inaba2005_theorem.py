@@ -50,17 +50,17 @@ y = sp.MatrixSymbol("y", 2 * p, 1)
 
 SIDEWAYS = sp.Matrix([2 * sp.sin(TIME), 2])
 WEAKENING = sp.ImmutableMatrix(-sp.eye(2) / (2 * (1 + TIME)))
-FADING = PointsScenario(
-    "fading",
-    PointsForm(linear(WEAKENING, SIDEWAYS.diff(TIME) - WEAKENING * SIDEWAYS), [[[1, 0], [0, 0], [0, 1]]]),
-    (0.0, 2.0),
-    DURATION,
-)
-"""A point that is kept at (2 sin t, 0, 2) while A = -I / (2 (1 + t)), and P = (1 + t) I meets (15)."""
-
-ONE_POINT, TWO_POINTS = moving_body(1), moving_body(2)
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """rho at the start, as far as there are states."""
+
+body = cache(moving_body)
+
+
+@cache
+def fading() -> PointsScenario:
+    """A point that is kept at (2 sin t, 0, 2) while A = -I / (2 (1 + t)), and P = (1 + t) I meets (15)."""
+    motion = linear(WEAKENING, SIDEWAYS.diff(TIME) - WEAKENING * SIDEWAYS)
+    return PointsScenario("fading", PointsForm(motion, [[[1, 0], [0, 0], [0, 1]]]), (0.0, 2.0), DURATION)
 
 
 @cache
@@ -91,7 +91,7 @@ def transition(A: sp.ImmutableMatrix) -> Array:
 def on_both_examples(printed: Printed) -> Finding:
     """(13): the largest image coordinates of both examples."""
     (line,) = printed
-    images = [record(scenario, 20.0, Camera(PERIOD)).outputs for scenario in (ONE_POINT, TWO_POINTS)]
+    images = [record(scenario, 20.0, Camera(PERIOD)).outputs for scenario in map(body, (1, 2))]
     largest = [float(np.linalg.norm(of_one, axis=-1).max()) for of_one in images]
     holds = all(separates(line, Norm(y), size, math.inf, {}) for size in largest)
     return judged(holds, Verdict.FALSE, {"largest |y(k)|, one point": largest[0], "two points": largest[1]})
@@ -100,7 +100,7 @@ def on_both_examples(printed: Printed) -> Finding:
 def converges_without(printed: Printed) -> Finding:
     """A P from a Riccati equation: the largest eigenvalue of the left side of (15) with it, and the decay."""
     matrix = riccati(1.0)
-    run = followed(ONE_POINT, matrix)
+    run = followed(body(1), matrix)
     conditions = run.conditions()
     numbers = {"largest eigenvalue of (15)": float(conditions.printed.max()), "decay in 1/s": run.decay_rate(0, 40)}
     serves = conditions.weaker_holds and not conditions.printed_holds and run.decay_rate(0, 40) > 0.1
@@ -112,7 +112,7 @@ def exponential(printed: Printed) -> Finding:
     (line,) = printed
     numbers: dict[str, float] = {}
     outcomes = []
-    for name, scenario in (("one point", ONE_POINT), ("two points", TWO_POINTS)):
+    for name, scenario in (("one point", body(1)), ("two points", body(2))):
         run = followed(scenario)
         sizes, fitted = run.deviation, run.decay_rate(10, 40)
         numbers |= {f"least of (14), {name}": gathered(scenario).least, f"decay from 10 s on in 1/s, {name}": fitted}
@@ -132,8 +132,8 @@ def exponential(printed: Printed) -> Finding:
 
 def not_exponential(printed: Printed) -> Finding:
     """A = -I / (2 (1 + t)), P = (1 + t) I: all is met but the bound on Phi backwards, and the rate halves."""
-    run, forwards = followed(FADING, scheduled(lambda t: 1 + t)), transition(WEAKENING)
-    least = gathered(FADING).least
+    run, forwards = followed(fading(), scheduled(lambda t: 1 + t)), transition(WEAKENING)
+    least = gathered(fading()).least
     rates = {f"decay from {k} to {2 * k} s in 1/s": run.decay_rate(k, 2 * k) for k in (10, 20)}
     early, late = rates.values()
     halves = 0.4 < late / early < 0.6

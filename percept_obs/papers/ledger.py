@@ -6,12 +6,15 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-import pandas as pd
 import sympy as sp
 
 from percept_obs.papers.entries import Entry, Known, Verdict
 from percept_obs.papers.mathml import shown
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 HEAD = ("equation", "page", "says", "verdict", "note")
 WIDTHS = (16, 5, 30, 16, 49)
@@ -72,6 +75,8 @@ class Ledger:
     @property
     def table(self) -> pd.DataFrame:
         """A row for each entry, with the verdict that is recorded; `percept-obs check` computes all of them again."""
+        import pandas as pd  # takes as long to load as an equation to judge
+
         rows = [(e.place, e.page, e.says, e.printed, str(e.expected), str(e.known), e.note) for e in self.entries]
         return pd.DataFrame(rows, columns=COLUMNS)
 
