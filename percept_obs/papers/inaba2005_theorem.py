@@ -82,10 +82,11 @@ def gathered(scenario: PointsScenario) -> Gramian:
 @cache
 def transition(A: sp.ImmutableMatrix) -> Array:
     """Phi(t, 0) at the samples, shape (K, n, n): states that nothing drives, from unit starts."""
-    alone = PointsForm(linear(A, sp.zeros(A.rows, 1)), np.eye(3)[:, -A.rows :])
-    time = np.arange(0, DURATION + PERIOD / 2, PERIOD)
-    units = (PointsScenario("alone", alone, unit.tolist(), DURATION) for unit in np.eye(A.rows))
-    return np.stack([unit.coordinates(time) for unit in units], axis=-1)
+    n, time = A.rows, np.arange(0, DURATION + PERIOD / 2, PERIOD)
+    side_by_side = linear(sp.diag(*[A] * n), sp.zeros(n * n, 1))
+    form = PointsForm(side_by_side, [np.kron(unit, np.eye(3)[:, -n:]) for unit in np.eye(n)])
+    columns = PointsScenario("unit starts", form, np.eye(n).ravel().tolist(), DURATION).coordinates(time)
+    return columns.reshape(-1, n, n).transpose(0, 2, 1)
 
 
 def on_both_examples(printed: Printed) -> Finding:
