@@ -365,3 +365,20 @@ def test_an_entry_of_a_ledger_is_a_target_whose_matrices_are_typed_by_their_lett
 def test_what_is_not_true_or_has_no_formula_is_no_target(entry, message):
     with pytest.raises(ValueError, match=message):
         check("y1 = 1", entry)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("dxi1 = " + "A " * 4000 + "xi1", "more than 8 letters of matrices stand in a row"),
+        ("dxi1 = " + "(A + P)" * 40 + " xi1", "more than 8 letters of matrices stand in a row"),
+        ("dxi1 = (A + P)^-1 xi1", "of a matrix only the transpose is read"),
+        ("dxi1 = A^9999 xi1", "of a matrix only the transpose is read"),
+        ("dxi1 = sin(A) xi1", "a matrix cannot stand here"),
+    ],
+)
+def test_matrices_that_would_take_long_are_refused_at_once(text, message):
+    began = time.process_time()
+    with pytest.raises(CannotRead, match=message):
+        check(text, MA2005[38])
+    assert time.process_time() - began < 0.5

@@ -217,3 +217,11 @@ def size(e: sp.Basic) -> int:
             product *= size(factor)
         return product
     return size(e.base) ** abs(int(e.exp)) if e.is_Pow and e.exp.is_Integer else 1
+
+
+def letters_in_a_row(value: sp.Basic) -> int:
+    """How many letters of matrices are multiplied in a value; those of a sum are as many as in its longest term."""
+    if not isinstance(value, sp.MatrixExpr):
+        return 0
+    parts = [letters_in_a_row(part) for part in value.args]
+    return 1 if value.is_symbol else sum(parts) if isinstance(value, sp.MatMul) else max(parts, default=0)

@@ -18,11 +18,11 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.checking.deciding import degree
+from percept_obs.checking.deciding import degree, letters_in_a_row
 from percept_obs.checking.points import key
 from percept_obs.checking.tokens import CannotRead, Cursor, Token
 
-DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER = 40, 20, 60, 40
+DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 40, 20, 60, 40, 8
 
 _NAMES = "sin cos tan asin acos atan sinh cosh tanh sech exp log sqrt sign"
 Functions = Mapping[str, Callable[..., Any]]
@@ -206,6 +206,8 @@ class _Parser(Cursor):
         shapes = [factor.shape for factor in factors if isinstance(factor, MATRICES)]
         if any(left[1] != right[0] for left, right in pairwise(shapes)):
             raise self.refusal("the sizes of these matrices do not fit", start)
+        if sum(map(letters_in_a_row, factors)) > LONGEST_PRODUCT:
+            raise self.refusal(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", start)
 
     def power(self) -> sp.Expr:
         start = self.now
@@ -231,7 +233,7 @@ class _Parser(Cursor):
         return -value if negative else value
 
     def raised(self, base: sp.Expr, exponent: sp.Expr, start: Token) -> sp.Expr:
-        if isinstance(base, sp.MatrixExpr) and exponent == -1:
+        if isinstance(base, sp.MatrixExpr) and exponent == -1 and not base.has(sp.MatAdd):
             return base.inv()
         if isinstance(base, MATRICES):
             raise self.refusal("of a matrix only the transpose is read, ^T", start)
