@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from itertools import islice
+from typing import Any
 
 import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
@@ -13,6 +14,7 @@ from sympy.core.relational import Relational
 from percept_obs.checking.points import PRIME, ModularPoint, NoValue, RealPoint
 
 POINTS, TRIALS = 3, 60
+MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 KINKED = (sp.Abs, sp.sign, sp.Piecewise, sp.Max, sp.Min, sp.floor, sp.ceiling)
 
 
@@ -225,3 +227,13 @@ def letters_in_a_row(value: sp.Basic) -> int:
         return 0
     parts = [letters_in_a_row(part) for part in value.args]
     return 1 if value.is_symbol else sum(parts) if isinstance(value, sp.MatMul) else max(parts, default=0)
+
+
+def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
+    """A formula, or a relation, with matrices in the place of their letters."""
+    if not matrices or not formula.atoms(sp.MatrixSymbol):
+        return formula
+    if isinstance(formula, Relational):
+        return formula.func(*(written_out(side, matrices) for side in formula.args), evaluate=False)
+    formula = formula.xreplace(matrices).doit(integrals=False)
+    return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula

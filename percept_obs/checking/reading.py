@@ -9,7 +9,7 @@ primary  = number | name | function "(" sum ")" | "(" sum ")" | matrix | LaTeX's
 """
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,19 +18,11 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.checking.deciding import degree, letters_in_a_row
+from percept_obs.checking.deciding import MATRICES, degree, letters_in_a_row
 from percept_obs.checking.points import key
-from percept_obs.checking.tokens import CannotRead, Cursor, Token
+from percept_obs.checking.tokens import FUNCTIONS, CannotRead, Cursor, Functions, Token
 
 DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 40, 20, 60, 40, 8
-
-_NAMES = "sin cos tan asin acos atan sinh cosh tanh sech exp log sqrt sign"
-Functions = Mapping[str, Callable[..., Any]]
-FUNCTIONS: Functions = {
-    **{name: getattr(sp, name) for name in _NAMES.split()},
-    **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
-}
-MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 _RELATIONS = {"<": sp.StrictLessThan, "<=": sp.LessThan, ">": sp.StrictGreaterThan, ">=": sp.GreaterThan, "!=": sp.Ne}
 _BEGINS = {"name", "(", "{", "[", "command", "function", "|left", "begin matrix", "begin cases"}
 
@@ -304,9 +296,9 @@ class _Parser(Cursor):
     def own_function(self, token: Token) -> Any:
         self.needs("(", f"what {token.text} is taken of stands in brackets: {token.text}(...)")
         parts = [self.sum()]
-        while self.takes(","):
+        while not self.takes(")"):
+            self.needs(",", "the bracket ( is not closed")
             parts.append(self.sum())
-        self.needs(")", "the bracket ( is not closed")
         return self.functions[token.text](*parts)
 
     def function(self, token: Token) -> sp.Expr:

@@ -13,10 +13,10 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.checking.deciding import explicit, sizes_of
+from percept_obs.checking.deciding import explicit, written_out
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS, Reading, read, words_of
-from percept_obs.checking.tokens import Token, tokens
+from percept_obs.checking.reading import Reading, read, words_of
+from percept_obs.checking.tokens import FUNCTIONS, Token, tokens
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
@@ -191,16 +191,6 @@ class Target:
         return formula.xreplace(own)
 
 
-def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
-    """A formula, or a relation, with matrices in the place of their letters."""
-    if not matrices or not formula.atoms(sp.MatrixSymbol):
-        return formula
-    if isinstance(formula, Relational):
-        return formula.func(*(written_out(side, matrices) for side in formula.args), evaluate=False)
-    formula = formula.xreplace(matrices).doit(integrals=False)
-    return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula
-
-
 _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
 
 
@@ -347,51 +337,14 @@ def relation_lines(relation: Relational) -> list[Line]:
         named = isinstance(relation, sp.Eq) and left.is_Symbol
         if right == 0 and not named:
             return [Line("", left, ZEROS)]
-        name = _primed(left.name) if named else ""
+        name = primed(left.name) if named else ""
         return [Line(name, right) if named else Line("", left - right, EQUATION)]
     return [Line("", relation.gts - relation.lts, INEQUALITY)]
 
 
-def in_letters_of_matrices(relations: Iterable[Relational]) -> Target:
-    """Relations whose matrices can be typed by their letters, "xi' = G A xi"; they are compared entry by entry.
-
-    The inverse of a letter has entries of its own, for written out it is too long.
-
-    Raises
-    ------
-    ValueError
-        If a matrix is given in several forms, or is an integral: entries do not tell whether those are the same.
-    """
-    relations = tuple(relations)
-    named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]
-    integrals = sp.Tuple(*relations).atoms(sp.Integral)
-    if len(set(named)) < len(named) or any(isinstance(i.function, sp.MatrixExpr) for i in integrals):
-        raise ValueError("matrices in several forms, or integrals of them, are not compared; name one of the formulas")
-    given = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
-    sizes = sizes_of(*given)
-    names = {m: m.name for m in given} | {m.inv(): f"{m.name}inv" for m in given if m.is_square}
-    shapes = {m: [size.xreplace(sizes) for size in m.shape] for m in names}
-    matrices = {m: sp.ImmutableMatrix(*shapes[m], _entry(name)) for m, name in names.items()}
-    lines: list[Line] = []
-    blocks = {}
-    for relation in relations:
-        left, right = relation.args
-        if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
-            rows = [Line(f"{_primed(left.name)}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
-            blocks[key(left.name)] = tuple(range(len(lines), len(lines) + len(rows)))
-            lines += rows
-        else:
-            lines += relation_lines(written_out(relation, matrices))
-    return Target(tuple(lines), blocks=blocks, matrices=matrices)
-
-
-def _primed(name: str) -> str:
+def primed(name: str) -> str:
     """The name of a rate as it is typed: y1' for ydot1."""
     return re.sub(r"dot(\d*)$", r"\1'", name)
-
-
-def _entry(name: str) -> Callable[[int, int], sp.Symbol]:
-    return lambda i, j: sp.Symbol(f"{name}_{i + 1}{j + 1}", real=True)
 
 
 def condition(formula: Boolean) -> sp.Expr:

@@ -16,8 +16,8 @@ from sympy.matrices.exceptions import ShapeError
 
 from percept_obs.checking.deciding import POINTS, points, rational
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.checking.reading import read
+from percept_obs.checking.tokens import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
 
 

@@ -10,7 +10,8 @@ from functools import cached_property, partial
 
 import sympy as sp
 
-from percept_obs.checking.target import Target, in_letters_of_matrices
+from percept_obs.checking.matrices import in_letters_of_matrices
+from percept_obs.checking.target import Target
 from percept_obs.papers.mathml import shown
 
 Printed = tuple[sp.Basic, ...]
