@@ -92,4 +92,20 @@ MISTAKES = {
         "which-step": ["a", "b", "d"],
         "derived-gain": [3, 5, 30],
     },
+    "09_reading_papers": {
+        "xi": [
+            "xi2' = G w P xi1 + (g - ghat) / G^2",  # as it is printed
+            "xi2' = -G^2 w P xi1 + (g - ghat) / G^2",
+            "xi2' = -G w P xi1 + g - ghat",
+            "xi2' = -w P xi1 + (g - ghat) / G^3",  # in the time s
+        ],
+        "window": ["a", "b", "d"],
+        "plan": [10, 28, 60],
+        "enter": [
+            "chi' = -v_z chi^2 + (y omega_x - x omega_y) chi",
+            "chi' = v_z chi^2 - (y omega_x - x omega_y) chi",  # the world turns, not the camera
+            "chi' = v_z chi + (y omega_x - x omega_y) chi",
+            "chi' = v_z chi^2",
+        ],
+    },
 }

@@ -14,9 +14,9 @@ from examples import AFFINE, BOTH, MOTIONS, ONE
 from sample_sizes import sampled
 
 from percept_obs import PerspectiveSystem, check, ekf, ibo, instantaneous, pinhole, plane
-from percept_obs.checking import Verdict, deciding, reading, review
+from percept_obs.checking import CannotRead, Verdict, deciding, reading, review
 from percept_obs.checking.target import target_of
-from percept_obs.papers import MA2005
+from percept_obs.papers import INABA2005, MA2005
 from percept_obs.structure import StructureAndMotion
 from percept_obs.system.derivation import Derivation
 
@@ -338,3 +338,47 @@ def _flow(observer):
 def test_what_does_not_fit_is_refused(mine, target, message):
     with pytest.raises(ValueError, match=message):
         check(mine, target)
+
+
+def test_an_entry_of_a_ledger_is_a_target_whose_matrices_are_typed_by_their_letters():
+    assert check(RATE, MA2005[4]).right
+    assert check("dxi1 = A xi1 + wbar^T xi2; dxi2 = -wbar P xi1", MA2005[38]).right
+    assert check("dxi1 = A xi1 + wbar^T xi2; dxi2 = wbar P xi1", MA2005[38]).right is False
+    assert check(list(MA2005[38].corrected), MA2005[38]).right
+    assert check(list(MA2005[38].printed), MA2005[38]).right is False
+    assert check("K = P^-1 C^T B^T E^-1", INABA2005[10]).right
+    assert check("K = P^-1 C^T B^T E", INABA2005[10]).right is False
+    with pytest.raises(CannotRead, match="the sizes of these matrices do not fit"):
+        check("dxi2 = -P wbar xi1", MA2005[38])
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        (MA2005[28], r"nothing can be compared with \(28\): it is false as stated"),
+        (MA2005["c3 > c4 alpha0"], "nothing can be compared with c3 > c4 alpha0: it depends"),
+        (MA2005["figure 3"], "it has no formula"),
+        (INABA2005["S(y)"], "matrices in several forms"),
+        (INABA2005[14], "integrals of them, are not compared"),
+    ],
+)
+def test_what_is_not_true_or_has_no_formula_is_no_target(entry, message):
+    with pytest.raises(ValueError, match=message):
+        check("y1 = 1", entry)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("dxi1 = " + "A " * 4000 + "xi1", "more than 8 letters of matrices stand in a row"),
+        ("dxi1 = " + "(A + P)" * 40 + " xi1", "more than 8 letters of matrices stand in a row"),
+        ("dxi1 = (A + P)^-1 xi1", "of a matrix only the transpose is read"),
+        ("dxi1 = A^9999 xi1", "of a matrix only the transpose is read"),
+        ("dxi1 = sin(A) xi1", "a matrix cannot stand here"),
+    ],
+)
+def test_matrices_that_would_take_long_are_refused_at_once(text, message):
+    began = time.process_time()
+    with pytest.raises(CannotRead, match=message):
+        check(text, MA2005[38])
+    assert time.process_time() - began < 0.5

@@ -32,6 +32,7 @@ from percept_obs import (
     track,
     windowed,
 )
+from percept_obs.figures import axis
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.tracking.verdict import TOLERANCE
 
@@ -680,3 +681,8 @@ def test_an_image_of_one_output_alone_is_refused(runs):
     recording = runs("without truth").recording
     with pytest.raises(ValueError, match="only y1 was recorded"):
         figures.image_plane(replace(recording, outputs=recording.outputs[:, :1], names=("y1",)))
+
+
+def test_an_axis_around_what_stays_shows_what_comes_near_it():
+    low, high = axis.limits([0.375] * 3, [0.25, 0.7, 40])
+    assert low < 0.25 < 0.7 < high < 1

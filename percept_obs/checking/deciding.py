@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from itertools import islice
+from typing import Any
 
 import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
@@ -13,6 +14,7 @@ from sympy.core.relational import Relational
 from percept_obs.checking.points import PRIME, ModularPoint, NoValue, RealPoint
 
 POINTS, TRIALS = 3, 60
+MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 KINKED = (sp.Abs, sp.sign, sp.Piecewise, sp.Max, sp.Min, sp.floor, sp.ceiling)
 
 
@@ -23,14 +25,14 @@ def explicit(formula: sp.Basic) -> sp.Basic:
     that size.
     """
     if isinstance(formula, Relational):
-        sizes, sides = _sizes(formula), formula.args
+        sizes, sides = sizes_of(*formula.atoms(sp.MatrixSymbol)), formula.args
         return formula.func(*(_explicit(side, sizes) for side in sides), evaluate=False)
-    return _explicit(formula, _sizes(formula))
+    return _explicit(formula, sizes_of(*formula.atoms(sp.MatrixSymbol)))
 
 
-def _sizes(formula: sp.Basic) -> dict[sp.Symbol, sp.Integer]:
+def sizes_of(*matrices: sp.MatrixSymbol) -> dict[sp.Symbol, sp.Integer]:
     """Numbers for the letters that are sizes of matrices."""
-    letters = {s for m in formula.atoms(sp.MatrixSymbol) for size in m.shape for s in size.free_symbols}
+    letters = {s for m in matrices for size in m.shape for s in size.free_symbols}
     return {size: sp.Integer(2 + k % 2) for k, size in enumerate(sorted(letters, key=str, reverse=True))}
 
 
@@ -217,3 +219,21 @@ def size(e: sp.Basic) -> int:
             product *= size(factor)
         return product
     return size(e.base) ** abs(int(e.exp)) if e.is_Pow and e.exp.is_Integer else 1
+
+
+def letters_in_a_row(value: sp.Basic) -> int:
+    """How many letters of matrices are multiplied in a value; those of a sum are as many as in its longest term."""
+    if not isinstance(value, sp.MatrixExpr):
+        return 0
+    parts = [letters_in_a_row(part) for part in value.args]
+    return 1 if value.is_symbol else sum(parts) if isinstance(value, sp.MatMul) else max(parts, default=0)
+
+
+def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
+    """A formula, or a relation, with matrices in the place of their letters."""
+    if not matrices or not formula.atoms(sp.MatrixSymbol):
+        return formula
+    if isinstance(formula, Relational):
+        return formula.func(*(written_out(side, matrices) for side in formula.args), evaluate=False)
+    formula = formula.xreplace(matrices).doit(integrals=False)
+    return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula

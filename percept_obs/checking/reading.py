@@ -9,7 +9,7 @@ primary  = number | name | function "(" sum ")" | "(" sum ")" | matrix | LaTeX's
 """
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,17 +18,11 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.checking.deciding import degree
+from percept_obs.checking.deciding import MATRICES, degree, letters_in_a_row
 from percept_obs.checking.points import key
-from percept_obs.checking.tokens import CannotRead, Cursor, Token
+from percept_obs.checking.tokens import FUNCTIONS, CannotRead, Cursor, Functions, Token
 
-DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER = 40, 20, 60, 40
-
-_NAMED = "sin cos tan asin acos atan sinh cosh tanh sech exp log sqrt sign"
-FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
-    **{name: getattr(sp, name) for name in _NAMED.split()},
-    **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
-}
+DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 40, 20, 60, 40, 8
 _RELATIONS = {"<": sp.StrictLessThan, "<=": sp.LessThan, ">": sp.StrictGreaterThan, ">=": sp.GreaterThan, "!=": sp.Ne}
 _BEGINS = {"name", "(", "{", "[", "command", "function", "|left", "begin matrix", "begin cases"}
 
@@ -48,7 +42,9 @@ class Reading:
     formula: sp.Basic
 
 
-def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) -> list[Reading]:
+def read(
+    text: str, letters: Mapping[str, Any], labels: Sequence[str] = (), functions: Functions | None = None
+) -> list[Reading]:
     """The lines of a text.
 
     Parameters
@@ -57,8 +53,11 @@ def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) 
         As typed, "y1' = a13 + (a11 - a33) y1 + ...", or LaTeX as sympy prints it.  A line that gives a new letter a
         meaning, "q = a31 y1 + a32 y2 + a33", is not returned; the letter means that from there on.
     letters : mapping of names without underscores to symbols
+        Symbols of matrices as well; the inverse of one is ``P^-1``.
     labels : sequence of str
         What may stand on the left besides letters.
+    functions : mapping of names to functions, optional
+        What may be taken besides the usual functions, of numbers or matrices: ``norm(e1)``, ``inner(e1, e2)``.
 
     Raises
     ------
@@ -77,21 +76,21 @@ def read(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) 
         x + z
             ^
     """
-    return _Parser(text, letters, labels).lines()
+    return _Parser(text, letters, labels, functions or {}).lines()
 
 
 def words_of(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) -> list[Token]:
     """The words of a text as `read` understands them, letters side by side apart, as far as it can be read."""
-    parser = _Parser(text, letters, labels)
+    parser = _Parser(text, letters, labels, {})
     with suppress(CannotRead):
         parser.lines()
     return parser.tokens
 
 
 class _Parser(Cursor):
-    def __init__(self, text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str]) -> None:
+    def __init__(self, text: str, letters: Mapping[str, Any], labels: Sequence[str], functions: Functions) -> None:
         super().__init__(text)
-        self.letters, self.labels, self.depth = dict(letters), set(labels), 0
+        self.letters, self.labels, self.functions, self.depth = dict(letters), set(labels), functions, 0
 
     def lines(self) -> list[Reading]:
         found: list[Reading] = []
@@ -165,7 +164,7 @@ class _Parser(Cursor):
                 raise self.refusal("matrices of different shapes, or a matrix and a number, have no sum", start)
             sign = self.takes("+", "-")
             if sign is None:
-                return sum(terms[1:], terms[0]) if isinstance(terms[0], sp.MatrixBase) else sp.Add(*terms)
+                return sum(terms[1:], terms[0]) if isinstance(terms[0], MATRICES) else sp.Add(*terms)
 
     def product(self) -> Any:
         factors, divided = [self.power()], False
@@ -181,24 +180,26 @@ class _Parser(Cursor):
             divided = operator is not None and operator.kind == "/"
             factors.append(1 / self.divisor(factor, start) if divided else factor)
             self.refuse_sizes(factors, start)
-        if any(isinstance(factor, sp.MatrixBase) for factor in factors):
+        if any(isinstance(factor, MATRICES) for factor in factors):
             return prod(factors[1:], start=factors[0])
         return sp.Mul(*factors)
 
     def divisor(self, value: Any, start: Token) -> sp.Expr:
-        if isinstance(value, sp.MatrixBase) or value == 0:
+        if isinstance(value, MATRICES) or value == 0:
             raise self.refusal("a matrix or zero cannot stand below a fraction", start)
         return value
 
     def scalar(self, value: Any, start: Token) -> sp.Expr:
-        if isinstance(value, sp.MatrixBase):
+        if isinstance(value, MATRICES):
             raise self.refusal("a matrix cannot stand here", start)
         return value
 
     def refuse_sizes(self, factors: Sequence[Any], start: Token) -> None:
-        shapes = [factor.shape for factor in factors if isinstance(factor, sp.MatrixBase)]
+        shapes = [factor.shape for factor in factors if isinstance(factor, MATRICES)]
         if any(left[1] != right[0] for left, right in pairwise(shapes)):
             raise self.refusal("the sizes of these matrices do not fit", start)
+        if sum(map(letters_in_a_row, factors)) > LONGEST_PRODUCT:
+            raise self.refusal(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", start)
 
     def power(self) -> sp.Expr:
         start = self.now
@@ -209,7 +210,7 @@ class _Parser(Cursor):
             return base
         if start.kind == "name" and start.text == "e" and "e" not in self.letters:
             return sp.exp(self.exponent())
-        if self.now.kind in ("name", "{") and isinstance(base, sp.MatrixBase):
+        if self.now.kind in ("name", "{") and isinstance(base, MATRICES):
             braces, letter = self.takes("{"), self.takes("name")
             if letter and letter.text == "T" and (not braces or self.takes("}")):
                 return base.T
@@ -224,7 +225,9 @@ class _Parser(Cursor):
         return -value if negative else value
 
     def raised(self, base: sp.Expr, exponent: sp.Expr, start: Token) -> sp.Expr:
-        if isinstance(base, sp.MatrixBase):
+        if isinstance(base, sp.MatrixExpr) and exponent == -1 and not base.has(sp.MatAdd):
+            return base.inv()
+        if isinstance(base, MATRICES):
             raise self.refusal("of a matrix only the transpose is read, ^T", start)
         if not exponent.is_Rational or exponent.q not in (1, 2) or abs(exponent) > LARGEST_POWER:
             raise self.refusal(f"exponents are whole or half numbers up to {LARGEST_POWER}", start)
@@ -290,6 +293,14 @@ class _Parser(Cursor):
         self.needs("}", "the brace { is not closed")
         return inner
 
+    def own_function(self, token: Token) -> Any:
+        self.needs("(", f"what {token.text} is taken of stands in brackets: {token.text}(...)")
+        parts = [self.sum()]
+        while not self.takes(")"):
+            self.needs(",", "the bracket ( is not closed")
+            parts.append(self.sum())
+        return self.functions[token.text](*parts)
+
     def function(self, token: Token) -> sp.Expr:
         exponent = self.exponent() if self.takes("^") else sp.S.One
         if self.now.kind not in ("(", "{"):
@@ -299,10 +310,12 @@ class _Parser(Cursor):
             raise self.refusal(f"{token.text} has no value there", token)
         return value if exponent == 1 else self.raised(value, exponent, token)
 
-    def letter(self, token: Token) -> sp.Expr:
+    def letter(self, token: Token) -> Any:
         name = token.text
         if key(name) in self.letters:
             return self.letters[key(name)]
+        if name in self.functions:
+            return self.own_function(token)
         if name in FUNCTIONS and self.now.kind in ("(", "{", "^"):
             return self.function(token)
         if name == "pi" or (name == "e" and self.now.kind == "^"):
@@ -352,7 +365,7 @@ class _Parser(Cursor):
         return self.matrix(rows, opened)
 
     def matrix(self, rows: list[list[sp.Expr]], opened: Token) -> sp.ImmutableMatrix:
-        if len({len(row) for row in rows}) != 1 or any(isinstance(e, sp.MatrixBase) for row in rows for e in row):
+        if len({len(row) for row in rows}) != 1 or any(isinstance(e, MATRICES) for row in rows for e in row):
             raise self.refusal("the rows of a matrix have the same number of entries, all of them numbers", opened)
         return sp.ImmutableMatrix(rows)
 

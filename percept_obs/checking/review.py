@@ -142,7 +142,8 @@ def check(mine: Any, target: Any) -> Review:
     target : anything that the package derives
         A system or a form (their rates), an observer (its flow; its updates are ``observer.equations.update``), a
         matrix such as ``form.w``, a step of a derivation or all of it, a condition of observability (where it fails
-        counts, not its form), relations as the papers print them, or a formula of one's own, in sympy or as text.
+        counts, not its form), an entry of a paper's ledger (its correction, if it is a misprint), or a formula of
+        one's own, in sympy or as text.
 
     Returns
     -------

@@ -13,10 +13,10 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.checking.deciding import explicit
+from percept_obs.checking.deciding import explicit, written_out
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS, Reading, read, words_of
-from percept_obs.checking.tokens import Token, tokens
+from percept_obs.checking.reading import Reading, read, words_of
+from percept_obs.checking.tokens import FUNCTIONS, Token, tokens
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
@@ -96,6 +96,8 @@ class Target:
         Letters that are known not to be zero.
     blocks : mapping of names to rows
         Several lines that can be given together: those of step 5 as "step5".
+    matrices : mapping of letters to matrices
+        What letters of matrices that may be typed stand for.
     """
 
     lines: tuple[Line, ...]
@@ -103,6 +105,7 @@ class Target:
     derivation: Callable[[], Derivation] | None = None
     nonzero: frozenset[sp.Symbol] = frozenset()
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix] = field(default_factory=dict)
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
@@ -142,7 +145,8 @@ class Target:
     def read(self, mine: Any) -> list[Reading]:
         """What somebody gives, as readings: text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            return read(mine, *self._known)
+            found = read(mine, *self._known)
+            return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
         if isinstance(mine, Mapping):
             return [
                 replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
@@ -172,14 +176,15 @@ class Target:
         return words_of(text, *self._known)
 
     @property
-    def _known(self) -> tuple[dict[str, sp.Symbol], list[str]]:
+    def _known(self) -> tuple[dict[str, Any], list[str]]:
         """The letters that are read, and what may stand on the left of a line besides."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
-        return extra | self.letters, [*self.rows, *self.blocks, *_LABELS]
+        matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
+        return extra | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """A formula of sympy in the target's own letters, matched by name."""
-        formula = explicit(formula)
+        formula = explicit(written_out(formula, self.matrices))
         own = {s: self.letters.get(key(s.name), s) for s in formula.free_symbols}
         if isinstance(formula, Relational):
             return formula.func(*(side.xreplace(own) for side in formula.args), evaluate=False)
@@ -216,6 +221,8 @@ def target_of(thing: Any) -> Target:
         return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
     if isinstance(thing, Sequence) and not isinstance(thing, Derivation):
         return _joined(map(target_of, thing))
+    if isinstance(getattr(thing, "target", None), Target):
+        return thing.target
     if hasattr(thing, "derivation") and callable(thing.derivation):
         return target_of(thing.derivation())
     raise ValueError(
@@ -330,9 +337,14 @@ def relation_lines(relation: Relational) -> list[Line]:
         named = isinstance(relation, sp.Eq) and left.is_Symbol
         if right == 0 and not named:
             return [Line("", left, ZEROS)]
-        name = re.sub(r"dot(\d*)$", r"\1'", left.name) if named else ""
+        name = primed(left.name) if named else ""
         return [Line(name, right) if named else Line("", left - right, EQUATION)]
     return [Line("", relation.gts - relation.lts, INEQUALITY)]
+
+
+def primed(name: str) -> str:
+    """The name of a rate as it is typed: y1' for ydot1."""
+    return re.sub(r"dot(\d*)$", r"\1'", name)
 
 
 def condition(formula: Boolean) -> sp.Expr:

@@ -2,8 +2,11 @@
 
 import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
 
 from percept_obs.checking.points import key
 
@@ -19,6 +22,13 @@ _RAISED = {c: str(k) for k, c in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
 _RELATIONS = {"neq": "!=", "ne": "!=", "leq": "<=", "le": "<=", "geq": ">=", "ge": ">=", "lt": "<", "gt": ">"}
 _SPACE = {",", ";", "!", " ", ":", "displaystyle", "left", "right", "big", "Big", "limits", "{", "}"}
 _INVISIBLE = ("aligned", "align", "align*", "gathered", "equation")
+
+_FUNCTIONS = "sin cos tan asin acos atan sinh cosh tanh sech exp log sqrt sign"
+Functions = Mapping[str, Callable[..., Any]]
+FUNCTIONS: Functions = {
+    **{name: getattr(sp, name) for name in _FUNCTIONS.split()},
+    **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
+}
 
 
 class CannotRead(ValueError):

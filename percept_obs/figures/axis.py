@@ -18,7 +18,8 @@ def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[
     """Ends of an axis that holds all firm values, and those loose ones that are at most some spans away from them."""
     firm, loose = finite(firm), finite(loose)
     low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
-    span = max(high - low, 1e-3 * abs(high), 1e-12)
+    constant = high - low <= 1e-3 * abs(high)
+    span = max(abs(high) / 2 if constant else high - low, 1e-12)  # of what stays, its size
     near = loose[(loose >= low - reach * span) & (loose <= high + reach * span)]
     low, high = near.min(initial=low), near.max(initial=high)
     margin = 0.06 * max(high - low, span)

@@ -1,5 +1,8 @@
 """The papers' equations as they are printed, each with a verdict that is computed.
 
+A paper is a module with its name, ``PAPER``, and its entries in ``PARTS`` that share what they run.  Its ledger has
+the module's name in capitals.
+
 Examples
 --------
 >>> from percept_obs.papers import MA2005
@@ -14,55 +17,31 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from difflib import get_close_matches
+from importlib import import_module
+from itertools import chain
+from pkgutil import iter_modules
 
-from percept_obs.papers import (
-    chwa2019_cases,
-    chwa2019_model,
-    chwa2019_observer,
-    chwa2019_results,
-    chwa2019_statements,
-    inaba2005_bounds,
-    inaba2005_conditions,
-    inaba2005_observer,
-    inaba2005_proof,
-    inaba2005_theorem,
-    ma2005_appendix,
-    ma2005_examples,
-    ma2005_observability,
-    ma2005_observers,
-    ma2005_perspective,
-    ma2005_proofs,
-)
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
 
 __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", "judge", "page", "report"]
 
-PAPERS = {
-    "Ma, Chen and Moore 2005": (
-        (ma2005_perspective, ma2005_observers, ma2005_appendix),
-        (ma2005_observability, ma2005_proofs, ma2005_examples),
-    ),
-    "Inaba, Abdursul and Ghosh 2005 (pages counted from the first)": (
-        (inaba2005_theorem, inaba2005_bounds),
-        (inaba2005_observer, inaba2005_conditions, inaba2005_proof),
-    ),
-    "Chwa 2019 (pages counted from the first)": (
-        (chwa2019_results, chwa2019_statements),
-        (chwa2019_model, chwa2019_observer, chwa2019_cases),
-    ),
-}
-"""The modules of each paper, in groups that share what they run."""
+_MODULES = [import_module(f"{__name__}.{module.name}") for module in iter_modules(__path__)]
+_PAPERS = {module.__name__.split(".")[-1]: module for module in _MODULES if hasattr(module, "PAPER")}
+_NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name, paper in _PAPERS.items()}
 
-LEDGERS = tuple(
-    Ledger(paper, tuple(entry for group in groups for module in group for entry in module.ENTRIES))
-    for paper, groups in PAPERS.items()
-)
-"""One ledger a paper."""
+LEDGERS = tuple(ledger for _, ledger in sorted(_NAMED.items(), key=lambda named: named[0][-4:]))
+"""One ledger a paper, the oldest first."""
 
-MA2005, INABA2005, CHWA2019 = LEDGERS
-GROUPS = [[entry for module in group for entry in module.ENTRIES] for groups in PAPERS.values() for group in groups]
+GROUPS = [part for paper in _PAPERS.values() for part in paper.PARTS]
 FEW = 20
+
+
+def __getattr__(name: str) -> Ledger:
+    """The ledger of a paper, such as ``MA2005``."""
+    if name in _NAMED:
+        return _NAMED[name]
+    raise AttributeError(f"there is no {name!r} among the papers; there are {', '.join(_NAMED)}")
 
 
 def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...]:

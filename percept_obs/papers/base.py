@@ -10,17 +10,55 @@ from typing import Any, ClassVar
 from xml.dom.minidom import Element
 
 import sympy as sp
+from sympy.core.function import UndefinedFunction
 from sympy.core.relational import Relational
 from sympy.matrices.exceptions import ShapeError
 
 from percept_obs.checking.deciding import POINTS, points, rational
 from percept_obs.checking.points import key
+from percept_obs.checking.reading import read
+from percept_obs.checking.tokens import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
 
 
 def column(*entries: Any) -> sp.ImmutableMatrix:
     """A column of numbers."""
     return sp.ImmutableMatrix(entries)
+
+
+def reader(*letters: Any, **terms: Any) -> Callable[[str], Printed]:
+    """What reads prints that are typed as text.
+
+    Equations are separated by semicolons and may go on over several lines.  A letter with a prime is a rate; of vectors
+    there are ``norm(e)``, ``norm1(e)``, ``inner(e, x)`` and ``signs(e)``, of matrices ``lambda_min(P)``.
+
+    Parameters
+    ----------
+    *letters : symbols and functions, or tuples of them
+        Vectors, matrices and positive numbers; every other word is a real number.
+    **terms
+        Expressions that stand in several prints, by the name that stands there.
+
+    Examples
+    --------
+    >>> reader(vectors("e x", sp.Integer(2)))("y1' = b1 y2 + norm(e); y1^2 < b1")
+    (Eq(ydot1, b1*y2 + Norm(e)), y1**2 < b1)
+    """
+    flat = [each for group in letters for each in (group if isinstance(group, tuple) else (group,))]
+    functions = FUNCTIONS | {each.__name__: each for each in flat if isinstance(each, UndefinedFunction)}
+    given = {each.name: each for each in flat if not isinstance(each, UndefinedFunction)}
+
+    def read_all(text: str) -> Printed:
+        numbers = {word: sp.Symbol(word, real=True) for word in re.findall(r"[A-Za-z]\w*", text)}
+        words = {word: number for word, number in numbers.items() if word not in functions and word not in WORDS}
+        known = {key(name): term for name, term in terms.items()}
+        letters = (words | given).values()
+        known = {key(each.name): each for letter in letters for each in (dot(letter), letter)} | known
+        parts = " ".join(text.split()).split(";")
+        lines = (line for part in parts for line in read(part, known, list(known), functions))
+        return tuple(equal(known[line.name], line.formula) if line.name else line.formula for line in lines)
+
+    return read_all
 
 
 def vectors(names: str, size: sp.Symbol) -> tuple[sp.MatrixSymbol, ...]:
@@ -141,6 +179,19 @@ class SmallestEigenvalue(_Scalar):
         # The trace stays as a sum of squares, from which sympy sees that it is not negative.
         trace, determinant = matrix.trace(), sp.expand(matrix.det())
         return (trace - sp.sqrt(trace**2 - 4 * determinant)) / 2
+
+
+WORDS = {*READ_FUNCTIONS, "lambda_min", "pi"}
+"""What stands for no number."""
+
+FUNCTIONS = {
+    "norm": Norm,
+    "norm1": SumNorm,
+    "inner": Inner,
+    "signs": lambda vector: vector.applyfunc(sp.sign),
+    "lambdamin": SmallestEigenvalue,
+}
+"""What `reader` reads besides the usual functions."""
 
 
 def explicit(expression: sp.Basic, values: Values | None = None) -> Any:

@@ -7,7 +7,7 @@ from itertools import permutations
 
 import sympy as sp
 
-from percept_obs.papers.base import column, equal, identities, is_identity, vanishes, vectors
+from percept_obs.papers.base import column, equal, identities, is_identity, reader, vanishes, vectors
 from percept_obs.papers.entries import Check, Entry, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
 from percept_obs.structure.choice import OUTPUTS, d_s
@@ -165,73 +165,70 @@ def solvable(number: int, page: str, note: str, *needed: str) -> Entry:
 INVERSE_G = Omega_g.inv() * ghat
 AXES = "for any order of the axes"
 
+reads = reader(
+    (Omega, Omega2, g, ghat, v_c, v_p, vhat_c, vhat_p, e_i, Omega1i, Omega1j, Omega1, Omega3, Omega_g),
+    INVERSE_G=INVERSE_G,
+)
+
 ENTRIES = (
     at("Table 1", "5", "III", "which section is for which motions")(
         (), cells, "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A"
     ),
-    at("(22)", "6", "IV.A", "static object")((equal(Omega, Omega2), equal(g, Omega1 * v_c * d_s)), holds_in(1)),
+    at("(22)", "6", "IV.A", "static object")(reads("Omega = Omega2; g = Omega1 v_c d_s"), holds_in(1)),
     at("(23)", "6", "IV.A", "d_s from one known component of v_c")(
-        (
-            equal(column(dhat_s), (e_i.T * v_c).inv() * e_i.T * Omega1.inv() * ghat),
-            equal(column(dhat_s), e_i.T * Omega1.inv() * ghat / v_ci),
-        ),
+        reads("[dhat_s] = (e_i^T v_c)^-1 e_i^T Omega1^-1 ghat; [dhat_s] = e_i^T Omega1^-1 ghat / v_ci"),
         scale_from_what_is_known,
         AXES,
     ),
-    at("(24)", "6", "IV.A", "inverse depth")((equal(yhat3, dhat_s * ybar3),), holds_in(1)),
-    at("(25)", "7", "IV.A", "the camera's velocity")((equal(vhat_c, Omega1.inv() * ghat / dhat_s),), holds_in(1)),
+    at("(24)", "6", "IV.A", "inverse depth")(reads("yhat3 = dhat_s ybar3"), holds_in(1)),
+    at("(25)", "7", "IV.A", "the camera's velocity")(reads("vhat_c = Omega1^-1 ghat / dhat_s"), holds_in(1)),
     solvable(1, "6", f"determinant +-ybar3^4 v_ci, {AXES}", "v_ci"),
     at("(26)", "7", "IV.B", "object in general motion")(
-        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * v_p * d_s)), holds_in(2)
+        reads("Omega = Omega1 v_c d_s + Omega2; g = Omega3 v_p d_s"), holds_in(2)
     ),
-    at("(27)", "7", "IV.B", "the object's velocity")((equal(vhat_p, Omega3.inv() * ghat / dhat_s),), holds_in(2)),
+    at("(27)", "7", "IV.B", "the object's velocity")(reads("vhat_p = Omega3^-1 ghat / dhat_s"), holds_in(2)),
     solvable(2, "7", "determinant -ybar3^4; it takes d_s > 0 and the camera's velocity of now"),
     at("(28)", "7", "V.A", "object on a plane, camera known")(
         (
-            equal(Omega, Omega2),
-            equal(g, Omega_g * column(d_s, v_pi * d_s, v_pj * d_s)),
+            *reads("Omega = Omega2; g = Omega_g [d_s, v_pi d_s, v_pj d_s]"),
             equal(Omega_g, side_by_side(Omega1 * v_c, Omega3i, Omega3j)),
         ),
         holds_in(3),
         AXES,
     ),
     at("(29)", "7", "V.A", "d_s and the object's velocity")(
-        (equal(column(dhat_s, vhat_pi * dhat_s, vhat_pj * dhat_s), INVERSE_G),), holds_in(3)
+        reads("[dhat_s, vhat_pi dhat_s, vhat_pj dhat_s] = INVERSE_G"), holds_in(3)
     ),
     solvable(3, "7", f"determinant +-ybar3^4 v_ck, {AXES}", "v_ck"),
     at("(30)", "8", "V.B", "object on a line, camera partly known")(
         (
-            equal(Omega, Omega2),
-            equal(g, Omega_g * column(d_s, v_ck * d_s, v_pi * d_s)),
+            *reads("Omega = Omega2; g = Omega_g [d_s, v_ck d_s, v_pi d_s]"),
             equal(Omega_g, side_by_side(Omega1i * v_ci + Omega1j * v_cj, Omega1k, Omega3i)),
         ),
         holds_in(4),
         AXES,
     ),
     at("(31)", "8", "V.B", "d_s and both unknown velocities")(
-        (equal(column(dhat_s, vhat_ck * dhat_s, vhat_pi * dhat_s), INVERSE_G),), holds_in(4)
+        reads("[dhat_s, vhat_ck dhat_s, vhat_pi dhat_s] = INVERSE_G"), holds_in(4)
     ),
     solvable(4, "8", f"determinant +-ybar3^4 v_cj, {AXES}; v_ci drops out of it", "v_cj"),
     at("(32)", "9", "VI.A", "range and camera known")(
-        (equal(Omega, Omega1 * v_c * d_s + Omega2), equal(g, Omega3 * d_s * v_p)), holds_in(5)
+        reads("Omega = Omega1 v_c d_s + Omega2; g = Omega3 d_s v_p"), holds_in(5)
     ),
-    at("(33)", "9", "VI.A", "the object's velocity")((equal(vhat_p, Omega3.inv() * ghat / d_s),), holds_in(5)),
+    at("(33)", "9", "VI.A", "the object's velocity")(reads("vhat_p = Omega3^-1 ghat / d_s"), holds_in(5)),
     solvable(5, "9", "determinant -d_s^3 ybar3^4"),
     at("(34)", "10", "VI.B", "range known, object on a plane")(
         (
-            equal(Omega, Omega1i * v_ci * d_s + Omega1j * v_cj * d_s + Omega2),
-            equal(g, Omega_g * column(v_ck, v_pi, v_pj)),
+            *reads("Omega = Omega1i v_ci d_s + Omega1j v_cj d_s + Omega2; g = Omega_g [v_ck, v_pi, v_pj]"),
             equal(Omega_g, side_by_side(Omega1k * d_s, Omega3i * d_s, Omega3j * d_s)),
         ),
         holds_in(6),
         AXES,
     ),
-    at("(35)", "10", "VI.B", "the unknown velocities")(
-        (equal(column(vhat_ck, vhat_pi, vhat_pj), INVERSE_G),), holds_in(6)
-    ),
+    at("(35)", "10", "VI.B", "the unknown velocities")(reads("[vhat_ck, vhat_pi, vhat_pj] = INVERSE_G"), holds_in(6)),
     solvable(6, "10", f"determinant +-d_s^3 ybar3^4, {AXES}"),
     at("Assumption 11", "10", "VI.C", "which of v_c are unknown")(
-        (equal(column(first_unknown, second_unknown), column(v_ci, v_ck)),),
+        reads("[first_unknown, second_unknown] = [v_ci, v_ck]"),
         holds_in(7),
         "v_cj in place of v_ci, which is known and along the object's line (as scanned)",
         Verdict.MISPRINT,
@@ -239,16 +236,13 @@ ENTRIES = (
     ),
     at("(36)", "11", "VI.C", "range known, object on a line")(
         (
-            equal(Omega, Omega1i * v_ci * d_s + Omega2),
-            equal(g, Omega_g * column(v_cj, v_ck, v_pi)),
+            *reads("Omega = Omega1i v_ci d_s + Omega2; g = Omega_g [v_cj, v_ck, v_pi]"),
             equal(Omega_g, side_by_side(Omega1j * d_s, Omega1k * d_s, Omega3i * d_s)),
         ),
         holds_in(7),
         AXES,
     ),
-    at("(37)", "11", "VI.C", "the unknown velocities")(
-        (equal(column(vhat_cj, vhat_ck, vhat_pi), INVERSE_G),), holds_in(7)
-    ),
+    at("(37)", "11", "VI.C", "the unknown velocities")(reads("[vhat_cj, vhat_ck, vhat_pi] = INVERSE_G"), holds_in(7)),
     solvable(7, "11", f"determinant +-d_s^3 ybar3^4, {AXES}"),
     at("Remark 2", "11", "VI.C", "a known range frees one more component of v_p")((), one_more_dimension),
 )

@@ -7,14 +7,14 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.papers.base import column, dot, equal, identities, less, vectors
+from percept_obs.papers.base import column, dot, identities, reader, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, scaled_dynamics
 from percept_obs.structure.choice import OUTPUTS, d_s
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.system.surfaces.base import POINT, X, Y, Z
+from percept_obs.system.surfaces.base import POINT, Z
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
 
@@ -176,65 +176,73 @@ MOTION = sp.ImmutableMatrix(
 OMEGA2 = sp.ImmutableMatrix([[-y1 * y2, 1 + y1**2, -y2], [-(1 + y2**2), y1 * y2, -y2], [-y2 * ybar3, y1 * ybar3, 0]])
 OMEGA2_MENDED = sp.ImmutableMatrix([*OMEGA2[:5], y1, *OMEGA2[6:]]).reshape(3, 3)
 
+reads = reader(
+    (gamma, p, m, mbar, x_f, x_O, v_r, v_c, v_p, w, w_camera, y, ybar, Omega, g, Omega2, A_c, R, w_cross),
+    (Omega1, Omega3),
+    W_MATRIX=W_MATRIX,
+    MOTION=MOTION,
+    OMEGA2=OMEGA2,
+)
+
 ENTRIES = (
-    at("(1)", "3", "II", "pixels of a point")((equal(p, A_c * m),), identities(in_pixels)),
+    at("(1)", "3", "II", "pixels of a point")(reads("p = A_c m"), identities(in_pixels)),
     at("m", "3", "II", "normalised coordinates")(
-        (equal(m, column(X / Z, Y / Z, 1)),), identities(in_pixels), known=Known.DEFINITION
+        reads("m = [X / Z, Y / Z, 1]"), identities(in_pixels), known=Known.DEFINITION
     ),
     at("(2)", "3", "II", "the point in the camera's frame")(
-        (equal(mbar, x_f + R * x_O),),
+        reads("mbar = x_f + R x_O"),
         identities(from_the_pose),
         "R is the transpose of the camera's attitude, x_f is not where the camera is",
     ),
     at("(3)", "3", "II", "relative motion")(
-        (equal(dot(mbar), w_cross * mbar + v_r),),
+        reads("mbar' = w_cross mbar + v_r"),
         identities(in_motion, from_the_pose),
         "also from (2), with R' = [w] R",
     ),
     at("(4)", "3", "II", "matrix of the cross product")(
-        (equal(w_cross, W_MATRIX),), identities(in_motion), known=Known.DEFINITION
+        reads("w_cross = W_MATRIX"), identities(in_motion), known=Known.DEFINITION
     ),
     at("v_r", "3", "II", "relative velocity")(
-        (equal(v_r, v_p - v_c),), identities(in_motion, from_the_pose), known=Known.DEFINITION
+        reads("v_r = v_p - v_c"), identities(in_motion, from_the_pose), known=Known.DEFINITION
     ),
     at("w", "3", "II", "w is the camera's angular velocity")(
-        (equal(w, w_camera),),
+        reads("w = w_camera"),
         identities(from_the_pose),
         "with (3) it is the negative of it, as seen from a camera that turns",
         Verdict.MISPRINT,
         correction={w_camera: -w_camera},
     ),
     at("y", "3", "II", "coordinates")(
-        (equal(y, column(X / Z, Y / Z, 1 / Z)),), identities(coordinates), known=Known.DEFINITION
+        reads("y = [X / Z, Y / Z, 1 / Z]"), identities(coordinates), known=Known.DEFINITION
     ),
     at("(5)", "3", "II", "rate of the coordinates")(
-        (equal(dot(y), MOTION * column(v_c1, v_c2, v_c3, w1, w2, w3, v_p1, v_p2, v_p3)),),
+        reads("y' = MOTION [v_c1, v_c2, v_c3, w1, w2, w3, v_p1, v_p2, v_p3]"),
         identities(rates),
         "columns 6 to 9 merged by the scan",
     ),
     at("(6)", "4", "II", "scaled inverse depth")(
-        (equal(ybar3, y3 / d_s),),
+        reads("ybar3 = y3 / d_s"),
         identities(from_a_patch),
         "it takes several image points: here those of a planar patch, which give its homography",
     ),
     at("(7)", "4", "II", "rate of the scaled coordinates")(
-        (equal(dot(ybar), Omega + g), equal(Omega + g, Omega1 * v_c * d_s + Omega2 + Omega3 * v_p * d_s)),
+        reads("ybar' = Omega + g; Omega + g = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s"),
         identities(*map(split_as, range(1, 8))),
         "split as in each of the seven corollaries",
     ),
     at("Omega1", "4", "II", "what multiplies the camera's velocity")(
-        (equal(Omega1, sp.ImmutableMatrix([[-ybar3, 0, y1 * ybar3], [0, -ybar3, y2 * ybar3], [0, 0, ybar3**2]])),),
+        reads("Omega1 = [[-ybar3, 0, y1 ybar3], [0, -ybar3, y2 ybar3], [0, 0, ybar3^2]]"),
         identities(omegas),
     ),
     at("Omega2", "4", "II", "what the camera's turning adds")(
-        (equal(Omega2, OMEGA2 * w),),
+        reads("Omega2 = OMEGA2 w"),
         identities(omegas),
         "second row: y1 in place of the last -y2, as in (5) (as scanned)",
         Verdict.MISPRINT,
         correction={OMEGA2: OMEGA2_MENDED},
     ),
     at("Omega3", "4", "II", "what multiplies the object's velocity")(
-        (equal(Omega3, sp.ImmutableMatrix([[ybar3, 0, -y1 * ybar3], [0, ybar3, -y2 * ybar3], [0, 0, -(ybar3**2)]])),),
+        reads("Omega3 = [[ybar3, 0, -y1 ybar3], [0, ybar3, -y2 ybar3], [0, 0, -ybar3^2]]"),
         identities(omegas),
     ),
     at("Omega1 to Omega3", "4", "II", "all three are nonsingular")(
@@ -244,7 +252,7 @@ ENTRIES = (
         Verdict.FALSE,
     ),
     at("bound on g", "4", "III", "g is bounded, since the velocities are")(
-        (less(g_norm, gamma),),
+        reads("g_norm < gamma"),
         bounded_by_velocities,
         "it grows as ybar3^2: a point that comes near breaks any gamma",
         Verdict.FALSE,

@@ -14,7 +14,7 @@ import sympy as sp
 from percept_obs.compile import vectorised
 from percept_obs.observers import Observer
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
-from percept_obs.papers.base import at_most, column, dot, equal, identities, vanishes
+from percept_obs.papers.base import at_most, column, dot, equal, identities, reader, vanishes
 from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.system.forms import CanonicalForm
 
@@ -207,64 +207,56 @@ OF_SE = gamma * alpha * sp.Abs(s_e) - s_e * g
 OF_S = gamma * SLOPE * (1 - sp.tanh(SLOPE * s_e) ** 2) * (gamma * sp.Abs(s) - s * g)
 ONE_ENTRY = "for one entry; alpha is the bound of |g| over gamma"
 
+reads = reader(SLOPE=SLOPE, PUSH=PUSH, PULL=PULL, SECH2=SECH2, LEFT_OVER=LEFT_OVER)
+
 ENTRIES = (
     at("(8)", "4", "III", "estimate of ybar")(
-        (equal(dot(yhat), Omega + ghat),), follow(equations), known=Known.IMPLEMENTED
+        reads("yhat' = Omega + ghat"), follow(equations), known=Known.IMPLEMENTED
     ),
-    at("e_s", "4", "III", "estimation error")((equal(e_s, ybar - yhat),), follow(equations), known=Known.DEFINITION),
+    at("e_s", "4", "III", "estimation error")(reads("e_s = ybar - yhat"), follow(equations), known=Known.DEFINITION),
     at("(9)", "4", "III", "integral sliding surface")(
-        (equal(s_e, e_s + e_sI),), follow(equations), known=Known.IMPLEMENTED
+        reads("s_e = e_s + e_sI"), follow(equations), known=Known.IMPLEMENTED
     ),
-    at("(10)", "4", "III", "its integral")((equal(dot(e_sI), PUSH),), follow(equations), known=Known.IMPLEMENTED),
-    at("e_sI(0)", "4", "III", "start of the integral")((equal(e_sI0, -e_s0),), starts_at_zero, "so that s_e(0) = 0"),
+    at("(10)", "4", "III", "its integral")(reads("e_sI' = PUSH"), follow(equations), known=Known.IMPLEMENTED),
+    at("e_sI(0)", "4", "III", "start of the integral")(reads("e_sI0 = -e_s0"), starts_at_zero, "so that s_e(0) = 0"),
     at("s_e = 0 for ever", "4", "III", "s_e starts at zero and stays there")(
         (), rate_at_zero, "s = 0 can be kept, s_e not: it leaves zero at the rate g", Verdict.FALSE
     ),
     at("(11)", "4", "III", "estimate of g")(
-        (equal(ghat, k1 * s_e - v + PUSH),), follow(equations), known=Known.IMPLEMENTED
+        reads("ghat = k1 s_e - v + PUSH"), follow(equations), known=Known.IMPLEMENTED
     ),
-    at("(12)", "4", "III", "pseudo-input")((equal(dot(v), u),), follow(equations), known=Known.IMPLEMENTED),
+    at("(12)", "4", "III", "pseudo-input")(reads("v' = u"), follow(equations), known=Known.IMPLEMENTED),
     at("(13)", "4", "III", "its rate")(
-        (
-            equal(
-                u,
-                gamma * SECH2 * (SLOPE * (ghat - PUSH) - b * s_e)
-                - gamma**2 * SLOPE * SECH2 * sp.sign(s)
-                - k2 * sp.sign(s)
-                - s_e,
-            ),
-        ),
+        reads("u = gamma SECH2 (SLOPE (ghat - PUSH) - b s_e) - gamma^2 SLOPE SECH2 sgn(s) - k2 sgn(s) - s_e"),
         follow(equations),
         known=Known.IMPLEMENTED,
     ),
-    at("(14)", "4", "III", "second sliding surface")((equal(s, v + PULL),), follow(equations), known=Known.IMPLEMENTED),
+    at("(14)", "4", "III", "second sliding surface")(reads("s = v + PULL"), follow(equations), known=Known.IMPLEMENTED),
     at("v(0)", "4", "III", "start of the pseudo-input")(
-        (equal(v0, -gamma * sp.tanh(a * s_e0)),), slides_at_once, "so that s(0) = 0"
+        reads("v0 = -gamma tanh(a s_e0)"), slides_at_once, "so that s(0) = 0"
     ),
     at("s = 0 for ever", "5", "III", "s remains at zero")((), attracts, "with the listed gains, where |g| <= gamma"),
     at("(15)", "6", "III", "rate of s_e")(
-        (equal(dot(s_e), g - ghat + PUSH), equal(dot(s_e), g - k1 * s_e + s - PULL)), follow(error_dynamics)
+        reads("s_e' = g - ghat + PUSH; s_e' = g - k1 s_e + s - PULL"), follow(error_dynamics)
     ),
     at("(16)", "6", "III", "rate of V1 = s_e^2 / 2")(
-        (at_most(V1dot, -k1 * s_e**2 + s_e * s + LEFT_OVER),), drops(OF_SE), ONE_ENTRY
+        reads("Vdot1 <= -k1 s_e^2 + s_e s + LEFT_OVER"), drops(OF_SE), ONE_ENTRY
     ),
     at("(17)", "6", "III", "rate of s")(
-        (equal(dot(s), u + gamma * SECH2 * (SLOPE * (g - ghat + PULL) + b * s_e)),),
+        reads("s' = u + gamma SECH2 (SLOPE (g - ghat + PULL) + b s_e)"),
         follow(error_dynamics),
         "e_s in place of s_e in the hyperbolic tangent, as in (15); (18) follows from that only",
         Verdict.MISPRINT,
         correction={g - ghat + PULL: g - ghat + PUSH},
     ),
     at("(18)", "6", "III", "rate of s with (13) put in")(
-        (equal(dot(s), gamma * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.sign(s) - k2 * sp.sign(s) - s_e),),
+        reads("s' = gamma SECH2 SLOPE g - gamma^2 SLOPE SECH2 sgn(s) - k2 sgn(s) - s_e"),
         follow(error_dynamics),
     ),
     at("(19)", "6", "III", "rate of V2 = s^2 / 2")(
-        (
-            equal(
-                V2dot, gamma * s * SECH2 * SLOPE * g - gamma**2 * SLOPE * SECH2 * sp.Abs(s) - k2 * sp.Abs(s) - s * s_e
-            ),
-            at_most(V2dot, -k2 * sp.Abs(s) - s * s_e),
+        reads(
+            """Vdot2 = gamma s SECH2 SLOPE g - gamma^2 SLOPE SECH2 abs(s) - k2 abs(s) - s s_e;
+            Vdot2 <= -k2 abs(s) - s s_e"""
         ),
         drops(sp.S.Zero, OF_S),
         ONE_ENTRY,
@@ -274,7 +266,7 @@ ENTRIES = (
         OUTSIDE, decreases_outside, "for one entry, where |s_e| is at least the bound"
     ),
     at("end of the proof", "6", "III", "|s_e| is beyond its bound as time goes on")(
-        (LAYER, sp.GreaterThan(sp.Abs(s_e), esbar, evaluate=False)),
+        (LAYER, *reads("abs(s_e) >= esbar")),
         stays_outside,
         "it rests inside, so (21) does not hold there; s_e falls as 1/(a + b t) with the bound, no faster",
         Verdict.FALSE,

@@ -10,8 +10,8 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from percept_obs.compile import vectorised
-from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
-from percept_obs.papers.base import column, equal, exactly, identities
+from percept_obs.observers.integral_sliding_mode import integral_sliding_mode
+from percept_obs.papers.base import column, equal, exactly, identities, reader
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.recording import record
 from percept_obs.structure import COROLLARIES, ScaledDepthCamera
@@ -196,18 +196,17 @@ def needs_forward_motion(printed: Printed) -> Finding:
 
 
 CAMERA = equal(A_c, sp.ImmutableMatrix([[720, 0, 320], [0, 720, 240], [0, 0, 1]]))
-ZERO_START = (
-    equal(column(ghat01, ghat02, ghat03), column(0, 0, 0)),
-    equal(column(yhat01, yhat02, yhat03), column(0, 0, 0)),
-)
+reads = reader()
+
+ZERO_START = reads("[ghat_01, ghat_02, ghat_03] = [0, 0, 0]; [yhat_01, yhat_02, yhat_03] = [0, 0, 0]")
 SIMULATION = (
     equal(column(y01, y02, y03), hundredths(40, 40, 20)),
-    equal(d_s, 4),
+    *reads("d_s = 4"),
     equal(column(ybar01, ybar02, ybar03), hundredths(40, 40, 5)),
 )
 EXPERIMENT = (
     equal(column(y01, y02, y03), hundredths(32, 30, 52)),
-    equal(d_s, sp.Rational(104, 10)),
+    *reads("d_s = 104/10"),
     equal(column(ybar01, ybar02, ybar03), hundredths(32, 30, 5)),
 )
 VELOCITIES = (
@@ -225,7 +224,7 @@ VELOCITIES = (
 
 ENTRIES = (
     at("gains", "11", "VII.A", "constants of the observer")(
-        (equal(k1, 15), equal(gamma, 15), equal(a, 1), equal(k2, 1), equal(b, sp.Rational(1, 10))),
+        reads("k1 = 15; gamma = 15; a = 1; k2 = 1; b = 1/10"),
         identities(gains),
         "the package's own",
         known=Known.IMPLEMENTED,

@@ -11,7 +11,7 @@ from scipy.integrate import simpson
 
 from percept_obs.compile import vectorised
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
-from percept_obs.papers.base import column, equal, identities
+from percept_obs.papers.base import column, identities, reader
 from percept_obs.papers.chwa2019_cases import MOTION, ORDERS, nonsingular
 from percept_obs.papers.chwa2019_observer import CASE_G, GAINS, attracts, error_dynamics, rest
 from percept_obs.papers.chwa2019_observer import ENTRIES as OBSERVER
@@ -176,6 +176,8 @@ def assumption(number: int, page: str, section: str, says: str, note: str, check
     return at(f"Assumption {number}", page, section, says)((), check, note, verdict, known=known)
 
 
+reads = reader(Omega2)
+
 ENTRIES = (
     assumption(1, "3", "II", "velocities and their rates are bounded, w is known", "it does not bound g: see there"),
     assumption(2, "6", "IV", "the object stands still first", "then it may move anyhow; how long is left open"),
@@ -206,7 +208,7 @@ ENTRIES = (
         columns_independent("1j", "1k", "3i"),
     ),
     at("Assumption 8", "8", "VI", "the range y3, that is d_s, is known")(
-        (equal(y3, d_s * ybar3),), identities(known_scale), "either gives the other"
+        reads("y3 = d_s ybar3"), identities(known_scale), "either gives the other"
     ),
     assumption(9, "9", "VI.A", "v_c is known", "in place of assumptions 3, 5 and 7"),
     assumption(
@@ -247,7 +249,7 @@ ENTRIES = (
         "functions and |.| are taken of each entry, and each has to be beyond the bound; g = gamma / 2, s = 0",
     ),
     at("w = 0", "11", "VII.A", "neither simulation nor experiment turns")(
-        (equal(Omega2, column(0, 0, 0)),),
+        reads("Omega2 = [0, 0, 0]"),
         identities(does_not_turn),
         "so neither tries Omega2, in which the print has a slip",
     ),

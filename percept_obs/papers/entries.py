@@ -10,6 +10,8 @@ from functools import cached_property, partial
 
 import sympy as sp
 
+from percept_obs.checking.matrices import in_letters_of_matrices
+from percept_obs.checking.target import Target
 from percept_obs.papers.mathml import shown
 
 Printed = tuple[sp.Basic, ...]
@@ -76,7 +78,7 @@ class Entry:
     place : str
         Number of the equation, such as "(4)", or a few words that name the statement.
     page, section : str
-        Where it stands.
+        Where it stands; empty if that is not known.
     says : str
         What it says, in a few words.
     printed : tuple of sympy relations
@@ -133,6 +135,20 @@ class Entry:
         return self.expected != Verdict.MISPRINT or self.check(self.corrected).verdict in mended
 
     @property
+    def target(self) -> Target:
+        """What `percept_obs.check` compares a formula of your own with: the print, or its correction.
+
+        Raises
+        ------
+        ValueError
+            If there is no formula, or none that is true.
+        """
+        if not self.printed or self.expected in (Verdict.FALSE, Verdict.DEPENDS):
+            why = f"it {self.expected}" if self.printed else "it has no formula"
+            raise ValueError(f"nothing can be compared with {self.place}: {why.replace('it false', 'it is false')}")
+        return in_letters_of_matrices(self.corrected)
+
+    @property
     def verdict(self) -> str:
         """The computed verdict, and the recorded one if that is another, with how it is known."""
         recorded = "" if self.agrees else f"; recorded: {self.expected}"
@@ -154,7 +170,7 @@ class Entry:
         """All that there is to say of the entry, by what it is: texts, and formulas."""
         correction = self.corrected if self.correction else ()
         return {
-            "says": f"{self.says} (page {self.page}, section {self.section})",
+            "says": self.says + (f" (page {self.page}, section {self.section})" if self.page else ""),
             "print": self.printed,
             "derivation": tuple(sp.Eq(*sides, evaluate=False) for sides in self.finding.derived),
             "correction": correction,

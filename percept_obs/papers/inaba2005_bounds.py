@@ -1,6 +1,6 @@
 """Inaba, Abdursul and Ghosh 2005, section 3: the bounds of Theorem 3.4's proof, on an example whose numbers are not 1.
 
-The body of `ONE_POINT` in coordinates of other units, so that |C| = 2, |P(t0)| = 4, delta = 1/4 and b = 4.
+One moving point in coordinates of other units, so that |C| = 2, |P(t0)| = 4, delta = 1/4 and b = 4.
 """
 
 from __future__ import annotations
@@ -11,19 +11,16 @@ from functools import cache
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, simpson
 
 from percept_obs.observability.gramian import gramian
-from percept_obs.papers.base import Inner, Norm, at_most, equal, separates, vanishes, vectors
+from percept_obs.papers.base import Inner, Norm, at_most, reader, separates, vanishes, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
-from percept_obs.papers.inaba2005_theorem import DURATION, ONE_POINT, PERIOD, WEAKENING, WINDOW, followed, transition
+from percept_obs.papers.inaba2005_theorem import DURATION, PERIOD, WEAKENING, WINDOW, body, followed, transition
 from percept_obs.points import PointsForm, PointsRun, PointsScenario, constant
 from percept_obs.points.manoeuvre import PATH, TURNING
 from percept_obs.points.scenarios import along_the_line_of_sight
 from percept_obs.system.motion import TIME, cross, linear
-
-Array = NDArray[np.float64]
 
 # Numbers
 t, t0, s, T = sp.symbols("t t0 s T", real=True)
@@ -41,30 +38,32 @@ UNITS = np.diag([2.0, 1.0, 0.5])
 _to_units = sp.diag(2, 1, sp.S.Half).inv()
 _w, _path = sp.Matrix(TURNING), sp.Matrix(PATH)
 TURNS = sp.ImmutableMatrix(_to_units * cross(_w) * _to_units.inv())
-STRETCHED = PointsScenario(
-    "one point in other units",
-    PointsForm(linear(TURNS, _to_units * (_path.diff(TIME) - _w.cross(_path))), UNITS),
-    (np.linalg.inv(UNITS) @ ONE_POINT.state).tolist(),
-    ONE_POINT.duration,
-)
-"""x = U^-1 r with C = U: |r| is kept by the motion alone, so that P = U^2 meets (15) with equality."""
-
-RECEDING = along_the_line_of_sight()
 OFF = (0.3, 0.0, 0.0)
 """rho at the start, along the largest eigenvector of P."""
+
+receding = cache(along_the_line_of_sight)
+
+
+@cache
+def stretched() -> PointsScenario:
+    """The body with x = U^-1 r and C = U: |r| is kept by the motion alone, so that P = U^2 meets (15) with equality."""
+    form = PointsForm(linear(TURNS, _to_units * (_path.diff(TIME) - _w.cross(_path))), UNITS)
+    return PointsScenario(
+        "one point in other units", form, (np.linalg.inv(UNITS) @ body(1).state).tolist(), body(1).duration
+    )
 
 
 @cache
 def example() -> PointsRun:
     """The observer's run, with P = U^2."""
-    return followed(STRETCHED, constant(UNITS**2), OFF)
+    return followed(stretched(), constant(UNITS**2), OFF)
 
 
 @cache
 def totals() -> Mapping[str, float]:
     """The proof's integrals from 0 to 40 s, by which time |rho| is below 1e-3 of its start."""
     run, Phi_t = example(), transition(TURNS)
-    rows = STRETCHED.form.rows(run.recording.outputs)
+    rows = stretched().form.rows(run.recording.outputs)
     samples, back = round(WINDOW / PERIOD), np.linalg.inv(Phi_t)
     seen = np.einsum("tij,tj->ti", rows, run.error)
     # theta = P^-1 C^T B^T B C rho
@@ -113,7 +112,7 @@ def constants() -> dict[sp.Basic, sp.Float]:
 
 def along_the_ray(until: float) -> float:
     """Integral of |rho|^2 so far, over |rho(t0)|^2, for an error along a state that recedes along its ray, P = I."""
-    run = followed(RECEDING, None, (0.04, 0.02, 0.2))
+    run = followed(receding(), None, (0.04, 0.02, 0.2))
     part = run.time <= until
     return float(simpson(run.deviation[part] ** 2, run.time[part]) / run.deviation[0] ** 2)
 
@@ -146,7 +145,7 @@ def on_the_way(printed: Printed) -> Finding:
     lower, upper = printed
     run, size = example(), np.array(OFF)
     part = run.time <= 4
-    seen = np.einsum("tij,tj->ti", STRETCHED.form.rows(run.recording.outputs), run.error)
+    seen = np.einsum("tij,tj->ti", stretched().form.rows(run.recording.outputs), run.error)
     here: dict[sp.Basic, sp.Basic] = {
         NOW: sp.Float(run.error[part][-1] @ UNITS**2 @ run.error[part][-1]),
         START: sp.Float(size @ UNITS**2 @ size),
@@ -259,7 +258,16 @@ START, NOW = Inner(rho0, P0 * rho0), Inner(rho, P * rho)
 SEEN = sp.Integral(Norm(B * C * rho) ** 2, (s, t0, t))
 RHO = sp.Integral(Norm(rho) ** 2, (t, t0, sp.oo))
 MOVED = sp.Integral(Norm(B * C * Phi * rho) ** 2, (s, 0, T), (t, t0, sp.oo))
-SPLIT = (at_most(RHO, MOVED / epsilon), at_most(MOVED / epsilon, 2 / epsilon * (Q1 + Q2)))
+reads = reader(
+    (epsilon, gamma, gamma1, gamma2, b, delta, ysup, normC, rho0, P0),
+    START=START,
+    NOW=NOW,
+    SEEN=SEEN,
+    RHO=RHO,
+    MOVED=MOVED,
+)
+
+SPLIT = reads("RHO <= MOVED / epsilon; MOVED / epsilon <= 2 / epsilon * (Q1 + Q2)")
 CHAIN = (
     at_most(Q2, (1 + ysup) ** 2 * normC**2 * J1),
     at_most(J1, b**2 * J2),
@@ -271,16 +279,16 @@ EXAMPLE = "one point in units in which |C| = 2, |P(t0)| = 4, delta = 1/4, b = 4;
 
 ENTRIES = (
     at("(18)", "5", "3", "the error is square integrable")(
-        (at_most(RHO, gamma * Norm(rho0) ** 2),), square_integrable, f"{EXAMPLE}; its least gamma", known=Known.RUNS
+        reads("RHO <= gamma norm(rho0)^2"), square_integrable, f"{EXAMPLE}; its least gamma", known=Known.RUNS
     ),
     at("(19)", "5", "3", "what is seen of the error is square integrable")(
-        (at_most(SEEN, START / 2), at_most(START / 2, Norm(P0) * Norm(rho0) ** 2 / 2)),
+        reads("SEEN <= START / 2; START / 2 <= norm(P0) norm(rho0)^2 / 2"),
         equalities,
         EXAMPLE,
         known=Known.RUNS,
     ),
     at("way to (19)", "5", "3", "the rate of V integrated")(
-        (at_most(0, NOW), at_most(NOW, START - 2 * SEEN)),
+        reads("0 <= NOW; NOW <= START - 2 SEEN"),
         on_the_way,
         EXAMPLE,
         known=Known.RUNS,
@@ -292,10 +300,7 @@ ENTRIES = (
         known=Known.RUNS,
     ),
     at("(24)", "6", "3", "bound on Q2")(
-        (
-            equal(gamma2, (1 + ysup) ** 4 * normC**4 * b**2 * T**3 * Norm(P0) / (6 * delta**2)),
-            at_most(Q2, gamma2 * Norm(rho0) ** 2),
-        ),
+        reads("gamma2 = (1 + y_sup)^4 C_norm^4 b^2 T^3 norm(P0) / (6 delta^2); Q2 <= gamma2 norm(rho0)^2"),
         of_the_chain,
         "number and power of T lost by the scan",
     ),
@@ -306,7 +311,7 @@ ENTRIES = (
         known=Known.RUNS,
     ),
     at("end of the proof", "6", "3", "(23) and (24) give (18)")(
-        (at_most(RHO, 2 / epsilon * (gamma1 + gamma2) * Norm(rho0) ** 2),), put_together
+        reads("RHO <= 2 / epsilon * (gamma1 + gamma2) * norm(rho0)^2"), put_together
     ),
     at("gamma1, gamma2 and t0", "5", "3", "neither depends on t0")(
         (),

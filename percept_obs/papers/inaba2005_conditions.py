@@ -10,7 +10,7 @@ import sympy as sp
 
 from percept_obs.observability.gramian import gramian as windowed
 from percept_obs.observability.gramian import linear_gramian as windowed_linear
-from percept_obs.papers.base import Norm, at_most, column, equal, explicit, filled_in, identities, vanishes
+from percept_obs.papers.base import Norm, at_most, column, equal, explicit, filled_in, identities, reader, vanishes
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, rigid_body
 from percept_obs.points.manoeuvre import Manoeuvre
@@ -213,6 +213,8 @@ def gramian(bound: sp.Symbol, *factors: sp.MatrixExpr) -> sp.GreaterThan:
 
 SUP = "y_sup for the largest |y(k)|; exponents lost by the scan"
 
+reads = reader(epsilon, epsilontilde, ysup, B, S, y1)
+
 ENTRIES = (
     at("Assumption 3.1 (i)", "3", "3", "Lyapunov stable: Phi is bounded for all t, s")(
         (at_most(sp.Abs(Phi_(t, s)), b),),
@@ -236,7 +238,7 @@ ENTRIES = (
     ),
     at("S(y)", "4", "3", "information of an instant")(
         (
-            equal(S, B.T * B),
+            *reads("S = B^T B"),
             equal(
                 S,
                 sp.diag(
@@ -259,18 +261,18 @@ ENTRIES = (
         "for p = 2",
     ),
     at("eigenvalues of S", "4", "3", "eigenvalues of a point's block")(
-        (equal(lambda1, 0), equal(lambda2, 1), equal(lambda3, 1 + Norm(y1) ** 2)),
+        reads("lambda1 = 0; lambda2 = 1; lambda3 = 1 + norm(y1)^2"),
         identities(eigenvalues),
         "0 belongs to the line of sight; exponents lost by the scan",
     ),
-    at("bound on S", "4", "3", "largest eigenvalue")((at_most(lambdamax, 1 + ysup**2),), bounded_by_its_edge, SUP),
+    at("bound on S", "4", "3", "largest eigenvalue")(reads("lambda_max <= 1 + y_sup^2"), bounded_by_its_edge, SUP),
     at("S below its bound", "4", "3", "S is between 0 and its largest eigenvalue times I")(
         (at_most(S, (1 + ysup**2) * sp.Identity(3 * p)), at_most(sp.ZeroMatrix(3 * p, 3 * p), S)),
         bounded_as_a_matrix,
         SUP,
     ),
     at("constant of 3.3", "4", "3", "what of epsilon is left")(
-        (equal(epsilontilde, epsilon / (1 + ysup**2)),), identities(what_is_left), SUP
+        reads("epsilontilde = epsilon / (1 + y_sup^2)"), identities(what_is_left), SUP
     ),
     at("converse of 3.3", "4", "3", "(C, A) observable does not give (14)")(
         (), not_enough, "A = 0, C = 1, v along the line of sight: the state's length is never seen"

@@ -8,7 +8,18 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.papers.base import column, dot, equal, explicit, filled_in, identities, is_identity, vanishes, vectors
+from percept_obs.papers.base import (
+    column,
+    dot,
+    equal,
+    explicit,
+    filled_in,
+    identities,
+    is_identity,
+    reader,
+    vanishes,
+    vectors,
+)
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger
 from percept_obs.system.motion import linear
@@ -205,9 +216,11 @@ ERROR_DYNAMICS = equal(dot(rho), (A - P.inv() * C.T * B.T * B * C) * rho)
 BOTH: tuple[Callable[[], Values], ...] = (one_point, two_points)
 REAL = "C* is C^T, for all is real"
 
+reads = reader(x, xhat, v, rho, phi, r, A, P, B, C, E, K, FRACTIONS=FRACTIONS, INNOVATION=INNOVATION)
+
 ENTRIES = (
     at("(1)", "2", "2", "linear motion of the state, many points seen")(
-        (equal(dot(x), A * x + v), equal(y, H(C * x))),
+        (*reads("x' = A x + v"), equal(y, H(C * x))),
         identities(one_point_seen, two_points_seen),
         "initial values left out here and below: they name the start",
     ),
@@ -224,13 +237,13 @@ ENTRIES = (
         (equal(y1, h(C1 * x)), equal(y2, h(C2 * x)), equal(y, H(C * x))), identities(two_points_seen)
     ),
     at("(4)", "2", "3", "an observer keeps an estimate that is true")(
-        (equal(dot(xhat), phi),),
+        reads("xhat' = varphi"),
         identities(at_the_truth),
         "where xhat = x the package's observer moves with the truth",
         known=Known.IMPLEMENTED,
     ),
     at("form of phi", "2", "3", "the known rate and a correction")(
-        (equal(phi, A * xhat + v + r),), identities(one_point), known=Known.IMPLEMENTED
+        reads("varphi = A xhat + v + r"), identities(one_point), known=Known.IMPLEMENTED
     ),
     at("correction r", "2", "3", "the correction is a gain times the innovation")(
         (equal(r, K * (y - h(C * xhat))),),
@@ -245,14 +258,14 @@ ENTRIES = (
         (equal(C, sp.BlockMatrix([[C1], [C2]])),), identities(two_points_seen), "for p = 2"
     ),
     at("(5)", "3", "3", "observer of the Luenberger type")(
-        (equal(dot(xhat), A * xhat + v + K * INNOVATION),), identities(*BOTH), known=Known.IMPLEMENTED
+        reads("xhat' = A xhat + v + K INNOVATION"), identities(*BOTH), known=Known.IMPLEMENTED
     ),
     at("(6)", "3", "3", "the innovation is linear in the error")(
         (
             equal(INNOVATION, H(xi) - H(xihat)),
-            equal(INNOVATION, FRACTIONS),
+            *reads("INNOVATION = FRACTIONS"),
             equal(INNOVATION, sp.ImmutableMatrix([*FIRST_ROWS, *SECOND_ROWS])),
-            equal(INNOVATION, E * B * C * rho),
+            *reads("INNOVATION = E B C rho"),
         ),
         identities(two_points_seen),
         "written out for p = 2; letters in the matrices lost by the scan",
@@ -260,32 +273,29 @@ ENTRIES = (
     at("(7)", "3", "3", "what E and B are")(
         (
             equal(E, sp.diag(1 / xihat_31, 1 / xihat_31, 1 / xihat_32, 1 / xihat_32).as_immutable()),
-            equal(
-                B,
-                sp.ImmutableMatrix(
-                    [[1, 0, -y_11, 0, 0, 0], [0, 1, -y_21, 0, 0, 0], [0, 0, 0, 1, 0, -y_12], [0, 0, 0, 0, 1, -y_22]]
-                ),
+            *reads(
+                "B = [[1, 0, -y_11, 0, 0, 0], [0, 1, -y_21, 0, 0, 0], [0, 0, 0, 1, 0, -y_12], [0, 0, 0, 0, 1, -y_22]]"
             ),
         ),
         identities(two_points_seen),
         "written out for p = 2, with xihat_3 for C_3 xhat",
     ),
-    at("(8)", "3", "3", "the error")((equal(rho, x - xhat),), error_is_the_package_s, known=Known.DEFINITION),
+    at("(8)", "3", "3", "the error")(reads("rho = x - xhat"), error_is_the_package_s, known=Known.DEFINITION),
     at("(9)", "3", "3", "the correction is linear in the error")(
-        (equal(K * INNOVATION, K * E * B * C * rho),), identities(two_points_seen)
+        reads("K INNOVATION = K E B C rho"), identities(two_points_seen)
     ),
     at("(10)", "3", "3", "the gain")((GAIN,), identities(*BOTH), REAL, known=Known.IMPLEMENTED),
     at("no denominators", "3", "3", "the gain takes the denominators out")(
-        (equal(K * E, P.inv() * C.T * B.T),), identities(*BOTH)
+        reads("K E = P^-1 C^T B^T"), identities(*BOTH)
     ),
     at("(11)", "3", "3", "the observer")(
-        (equal(dot(xhat), A * xhat + v + K * INNOVATION),), identities(*BOTH), "K as in (10)", known=Known.IMPLEMENTED
+        reads("xhat' = A xhat + v + K INNOVATION"), identities(*BOTH), "K as in (10)", known=Known.IMPLEMENTED
     ),
     at("(12)", "3", "3", "error dynamics, linear")(
         (ERROR_DYNAMICS,), identities(*BOTH), "whatever the start: no linearisation"
     ),
     at("(16)", "4", "3", "the observer, its gain written out")(
-        (equal(dot(xhat), A * xhat + v + P.inv() * C.T * B.T * E.inv() * INNOVATION),),
+        reads("xhat' = A xhat + v + P^-1 C^T B^T E^-1 INNOVATION"),
         identities(*BOTH),
         REAL,
         known=Known.IMPLEMENTED,

@@ -19,6 +19,7 @@ from percept_obs.papers.base import (
     filled_in,
     identities,
     is_identity,
+    reader,
     vanishes,
     vectors,
 )
@@ -29,7 +30,7 @@ from percept_obs.system.surfaces import pinhole
 
 # Numbers
 t, t0, s, tau, T = sp.symbols("t t0 s tau T", real=True)
-delta, gamma, gamma1, ysup = sp.symbols("delta gamma gamma1 y_sup", positive=True)
+delta, gamma1, ysup = sp.symbols("delta gamma1 y_sup", positive=True)
 Q1, Vdot = sp.symbols("Q1 Vdot", real=True)
 rho_, theta_, seen_ = (sp.Function(name, real=True) for name in ("rho", "theta", "seen"))
 Phi_ = sp.Function("Phi", real=True)
@@ -154,6 +155,8 @@ def exchanged(printed: Printed) -> Finding:
 
 FROM_T0 = (t, t0, sp.oo)
 
+reads = reader(ysup, rho, theta, A, P, Pdot, B, C)
+
 ENTRIES = (
     at("(15)", "4", "3", "what P has to fulfil")(
         (at_most(A.T * P + P * A + Pdot, sp.ZeroMatrix(n, n)),),
@@ -168,20 +171,18 @@ ENTRIES = (
         known=Known.DEFINITION,
     ),
     at("rate of V", "5", "3", "rate of rho^T P rho")(
-        (
-            equal(Vdot, Inner(rho, (A.T * P + P * A + Pdot) * rho) - 2 * Inner(rho, C.T * B.T * B * C * rho)),
-            at_most(Vdot, -2 * Norm(B * C * rho) ** 2),
+        reads(
+            """Vdot = inner(rho, (A^T P + P A + Pdot) rho) - 2 inner(rho, C^T B^T B C rho);
+            Vdot <= -2 norm(B C rho)^2"""
         ),
         rate_of_energy,
         "given (15)",
     ),
     at("norm of B", "5", "3", "B is bounded")(
-        (at_most(Norm(B), 1 + ysup),), norm_of_rows, "y_sup for the largest |y(k)|"
+        reads("norm(B) <= 1 + y_sup"), norm_of_rows, "y_sup for the largest |y(k)|"
     ),
-    at("(20)", "5", "3", "(12) with theta")((equal(dot(rho), A * rho - theta),), identities(error_dynamics)),
-    at("(21)", "5", "3", "what theta is")(
-        (equal(theta, P.inv() * C.T * B.T * B * C * rho),), identities(error_dynamics)
-    ),
+    at("(20)", "5", "3", "(12) with theta")(reads("rho' = A rho - theta"), identities(error_dynamics)),
+    at("(21)", "5", "3", "what theta is")(reads("theta = P^-1 C^T B^T B C rho"), identities(error_dynamics)),
     at("(22)", "5", "3", "variation of constants")(
         (equal(rho_(t + s), Phi_(t + s, t) * rho_(t) - sp.Integral(Phi_(t + s, tau) * theta_(tau), (tau, t, t + s))),),
         variation_of_constants,

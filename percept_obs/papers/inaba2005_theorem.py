@@ -10,7 +10,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from percept_obs.observability.gramian import Gramian, gramian
-from percept_obs.papers.base import Norm, at_most, less, separates, vectors
+from percept_obs.papers.base import Norm, less, reader, separates, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
 from percept_obs.points import (
     LyapunovMatrix,
@@ -39,32 +39,28 @@ DURATION = 40.0
 """Seconds that each example lasts."""
 
 # Numbers
-t, t0, s, T = sp.symbols("t t0 s T", real=True)
-epsilon, gamma, gamma1, gamma2 = sp.symbols("epsilon gamma gamma1 gamma2", positive=True)
+t, t0 = sp.symbols("t t0", real=True)
 alpha, beta = sp.symbols("alpha beta", positive=True)
-Q1, Q2 = sp.symbols("Q1 Q2", real=True)
 
 # Vectors and matrices
 n, p = sp.symbols("n p", integer=True, positive=True)
 rho, rho0 = vectors("rho rho0", n)
 y = sp.MatrixSymbol("y", 2 * p, 1)
-P0, Phi = sp.MatrixSymbol("P0", n, n), sp.MatrixSymbol("Phi", n, n)
-B, C = sp.MatrixSymbol("B", 2 * p, 3 * p), sp.MatrixSymbol("C", 3 * p, n)
 
 
 SIDEWAYS = sp.Matrix([2 * sp.sin(TIME), 2])
 WEAKENING = sp.ImmutableMatrix(-sp.eye(2) / (2 * (1 + TIME)))
-FADING = PointsScenario(
-    "fading",
-    PointsForm(linear(WEAKENING, SIDEWAYS.diff(TIME) - WEAKENING * SIDEWAYS), [[[1, 0], [0, 0], [0, 1]]]),
-    (0.0, 2.0),
-    DURATION,
-)
-"""A point that is kept at (2 sin t, 0, 2) while A = -I / (2 (1 + t)), and P = (1 + t) I meets (15)."""
-
-ONE_POINT, TWO_POINTS = moving_body(1), moving_body(2)
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """rho at the start, as far as there are states."""
+
+body = cache(moving_body)
+
+
+@cache
+def fading() -> PointsScenario:
+    """A point that is kept at (2 sin t, 0, 2) while A = -I / (2 (1 + t)), and P = (1 + t) I meets (15)."""
+    motion = linear(WEAKENING, SIDEWAYS.diff(TIME) - WEAKENING * SIDEWAYS)
+    return PointsScenario("fading", PointsForm(motion, [[[1, 0], [0, 0], [0, 1]]]), (0.0, 2.0), DURATION)
 
 
 @cache
@@ -86,16 +82,17 @@ def gathered(scenario: PointsScenario) -> Gramian:
 @cache
 def transition(A: sp.ImmutableMatrix) -> Array:
     """Phi(t, 0) at the samples, shape (K, n, n): states that nothing drives, from unit starts."""
-    alone = PointsForm(linear(A, sp.zeros(A.rows, 1)), np.eye(3)[:, -A.rows :])
-    time = np.arange(0, DURATION + PERIOD / 2, PERIOD)
-    units = (PointsScenario("alone", alone, unit.tolist(), DURATION) for unit in np.eye(A.rows))
-    return np.stack([unit.coordinates(time) for unit in units], axis=-1)
+    n, time = A.rows, np.arange(0, DURATION + PERIOD / 2, PERIOD)
+    side_by_side = linear(sp.diag(*[A] * n), sp.zeros(n * n, 1))
+    form = PointsForm(side_by_side, [np.kron(unit, np.eye(3)[:, -n:]) for unit in np.eye(n)])
+    columns = PointsScenario("unit starts", form, np.eye(n).ravel().tolist(), DURATION).coordinates(time)
+    return columns.reshape(-1, n, n).transpose(0, 2, 1)
 
 
 def on_both_examples(printed: Printed) -> Finding:
     """(13): the largest image coordinates of both examples."""
     (line,) = printed
-    images = [record(scenario, 20.0, Camera(PERIOD)).outputs for scenario in (ONE_POINT, TWO_POINTS)]
+    images = [record(scenario, 20.0, Camera(PERIOD)).outputs for scenario in map(body, (1, 2))]
     largest = [float(np.linalg.norm(of_one, axis=-1).max()) for of_one in images]
     holds = all(separates(line, Norm(y), size, math.inf, {}) for size in largest)
     return judged(holds, Verdict.FALSE, {"largest |y(k)|, one point": largest[0], "two points": largest[1]})
@@ -104,7 +101,7 @@ def on_both_examples(printed: Printed) -> Finding:
 def converges_without(printed: Printed) -> Finding:
     """A P from a Riccati equation: the largest eigenvalue of the left side of (15) with it, and the decay."""
     matrix = riccati(1.0)
-    run = followed(ONE_POINT, matrix)
+    run = followed(body(1), matrix)
     conditions = run.conditions()
     numbers = {"largest eigenvalue of (15)": float(conditions.printed.max()), "decay in 1/s": run.decay_rate(0, 40)}
     serves = conditions.weaker_holds and not conditions.printed_holds and run.decay_rate(0, 40) > 0.1
@@ -116,7 +113,7 @@ def exponential(printed: Printed) -> Finding:
     (line,) = printed
     numbers: dict[str, float] = {}
     outcomes = []
-    for name, scenario in (("one point", ONE_POINT), ("two points", TWO_POINTS)):
+    for name, scenario in (("one point", body(1)), ("two points", body(2))):
         run = followed(scenario)
         sizes, fitted = run.deviation, run.decay_rate(10, 40)
         numbers |= {f"least of (14), {name}": gathered(scenario).least, f"decay from 10 s on in 1/s, {name}": fitted}
@@ -136,8 +133,8 @@ def exponential(printed: Printed) -> Finding:
 
 def not_exponential(printed: Printed) -> Finding:
     """A = -I / (2 (1 + t)), P = (1 + t) I: all is met but the bound on Phi backwards, and the rate halves."""
-    run, forwards = followed(FADING, scheduled(lambda t: 1 + t)), transition(WEAKENING)
-    least = gathered(FADING).least
+    run, forwards = followed(fading(), scheduled(lambda t: 1 + t)), transition(WEAKENING)
+    least = gathered(fading()).least
     rates = {f"decay from {k} to {2 * k} s in 1/s": run.decay_rate(k, 2 * k) for k in (10, 20)}
     early, late = rates.values()
     halves = 0.4 < late / early < 0.6
@@ -148,6 +145,8 @@ def not_exponential(printed: Printed) -> Finding:
 
 
 BOUNDED = less(Norm(y), sp.oo)
+
+reads = reader(alpha, beta, rho, rho0)
 
 ENTRIES = (
     at("(13)", "3", "3", "images are continuous and bounded")(
@@ -163,7 +162,7 @@ ENTRIES = (
         known=Known.RUNS,
     ),
     at("Theorem 3.4 (ii)", "5", "3", "the error converges exponentially")(
-        (at_most(Norm(rho), beta * sp.exp(-alpha * (t - t0)) * Norm(rho0)),),
+        reads("norm(rho) <= beta exp(-alpha (t - t0)) norm(rho0)"),
         exponential,
         "with (i) as printed: a bound on Phi backwards bounds P above; runs of two examples, P = I",
         known=Known.RUNS,

@@ -6,12 +6,15 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-import pandas as pd
 import sympy as sp
 
 from percept_obs.papers.entries import Entry, Known, Verdict
 from percept_obs.papers.mathml import shown
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 HEAD = ("equation", "page", "says", "verdict", "note")
 WIDTHS = (16, 5, 30, 16, 49)
@@ -43,7 +46,7 @@ class Ledger:
     def __post_init__(self) -> None:
         if len({entry.place for entry in self.entries}) != len(self.entries):
             raise ValueError(f"two entries of {self.paper} have the same place")
-        ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page)))
+        ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page or 0)))
         object.__setattr__(self, "entries", tuple(ordered))
 
     def __getitem__(self, place: str | int) -> Entry:
@@ -72,6 +75,8 @@ class Ledger:
     @property
     def table(self) -> pd.DataFrame:
         """A row for each entry, with the verdict that is recorded; `percept-obs check` computes all of them again."""
+        import pandas as pd  # takes as long to load as an equation to judge
+
         rows = [(e.place, e.page, e.says, e.printed, str(e.expected), str(e.known), e.note) for e in self.entries]
         return pd.DataFrame(rows, columns=COLUMNS)
 

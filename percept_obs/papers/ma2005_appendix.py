@@ -14,7 +14,16 @@ from numpy.typing import NDArray
 from scipy.linalg import expm, solve_continuous_lyapunov
 
 from percept_obs.observers.identifier_based import G
-from percept_obs.papers.base import Norm, at_most, column, dot, equal, explicit, identities, less, vanishes, weakened
+from percept_obs.papers.base import (
+    Norm,
+    column,
+    dot,
+    explicit,
+    identities,
+    reader,
+    vanishes,
+    weakened,
+)
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.papers.ma2005_observers import IBO_IN_VECTORS, IBO_MENDED, OBSERVED, phi, x1, x2, xhat1, xhat2
 from percept_obs.papers.ma2005_observers import ghat as ghat_of_11
@@ -53,8 +62,14 @@ V1dot_ = sp.Function("Vdot1", real=True)
 SIZES = ((1, 1), (2, 1), (1, 2))
 """n1 and n2: one of each, both outputs, one output."""
 
-DISPLAY = (equal(dot(e1), G * A_ * e1 + w.T * e2), equal(dot(e2), -(G**2) * w * P_ * e1 + g - ghat))
-TRANSFORMATION = (equal(xi1, e1 / G), equal(xi2, e2 / G**2))
+OVER_A_WINDOW = sp.Integral(V1dot_(tau), (tau, s, s + rho))
+reads = reader(
+    (A_, P_, alpha0, c1, c2, c3, c4, dxi1, dxi2, e1, e2, g, ghat, slope, w, wbar, xi, xi1, xi2, d1, d2, d3),
+    OVER_A_WINDOW=OVER_A_WINDOW,
+)
+
+DISPLAY = reads("e1' = G A e1 + w^T e2; e2' = -G^2 w P e1 + g - ghat")
+TRANSFORMATION = reads("xi1 = e1 / G; xi2 = e2 / G^2")
 SCALES = tuple(explicit(line.rhs, {e1: column(1), e2: column(1)})[0] for line in TRANSFORMATION)
 
 
@@ -176,17 +191,11 @@ def choice_of_gain(printed: Printed) -> Finding:
     return judged(same and turns and (bound.lhs, choice.lhs) == (dot(V2), G))
 
 
-LYAPUNOV_39 = (
-    less(c1 * Norm(xi) ** 2, V2),
-    less(V2, c2 * Norm(xi) ** 2),
-    less(dot(V2), -c3 * Norm(xi) ** 2),
-    less(Norm(slope), c4 * Norm(xi)),
-)
-REDUCED = (equal(dxi1, A_ * xi1 + wbar.T * xi2), equal(dxi2, wbar * P_ * xi1))
+LYAPUNOV_39 = reads("c1 norm(xi)^2 < V2; V2 < c2 norm(xi)^2; V2' < -c3 norm(xi)^2; norm(dV2) < c4 norm(xi)")
+REDUCED = reads("dxi1 = A xi1 + wbar^T xi2; dxi2 = wbar P xi1")
 MENDED = tuple(line.xreplace({P_: -P_}) for line in REDUCED)
-OVER_A_WINDOW = sp.Integral(V1dot_(tau), (tau, s, s + rho))
-V1_SANDWICH = (less(d1 * Norm(xi) ** 2, V1), less(V1, d2 * Norm(xi) ** 2))
-V1_FALLS = (at_most(dot(V1), 0), at_most(OVER_A_WINDOW, -d3 * Norm(xi) ** 2))
+V1_SANDWICH = reads("d1 norm(xi)^2 < V1; V1 < d2 norm(xi)^2")
+V1_FALLS = reads("V1' <= 0; OVER_A_WINDOW <= -d3 norm(xi)^2")
 SIGN_OF_P = "P with a minus sign, as in the error dynamics above: it is lost on the way from there"
 
 ENTRIES = (
@@ -203,7 +212,7 @@ ENTRIES = (
         known=Known.DEFINITION,
     ),
     at("(37)", "73", "Appendix", "error dynamics in xi")(
-        (equal(dot(xi1), G * (A_ * xi1 + w.T * xi2)), equal(dot(xi2), G * w * P_ * xi1 + (g - ghat) / G**2)),
+        reads("xi1' = G (A xi1 + w^T xi2); xi2' = G w P xi1 + (g - ghat) / G^2"),
         identities(*(partial(from_the_display, *sizes) for sizes in SIZES)),
         SIGN_OF_P,
         Verdict.MISPRINT,
@@ -238,17 +247,14 @@ ENTRIES = (
         correction=weakened(LYAPUNOV_39),
     ),
     at("(40)", "74", "Appendix", "error dynamics in xi and s")(
-        (equal(dxi1, A_ * xi1 + wbar.T * xi2), equal(dxi2, wbar * P_ * xi1 + (g - ghat) / G**3)),
+        reads("dxi1 = A xi1 + wbar^T xi2; dxi2 = wbar P xi1 + (g - ghat) / G^3"),
         identities(*(partial(from_the_display, *sizes) for sizes in SIZES)),
         SIGN_OF_P,
         Verdict.MISPRINT,
         correction={P_: -P_},
     ),
     at("choice of G", "74", "Appendix", "rate of V2 along (40)")(
-        (
-            at_most(dot(V2), (-c3 + c4 * alpha0 / G) * Norm(xi) ** 2),
-            sp.StrictGreaterThan(G, c4 * alpha0 / c3, evaluate=False),
-        ),
+        reads("V2' <= (-c3 + c4 alpha0 / G) norm(xi)^2; G > c4 alpha0 / c3"),
         choice_of_gain,
         "given (39) and (13)",
     ),

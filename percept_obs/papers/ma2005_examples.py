@@ -11,10 +11,10 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.observers import Observer, identifier_based, sliding_mode
-from percept_obs.observers.identifier_based import A, G, P
-from percept_obs.observers.parts import M, gamma, sigma2
-from percept_obs.observers.sliding_mode import alpha, alpha1, delta, lambda0
-from percept_obs.papers.base import Norm, at_most, column, dot, equal, exactly, explicit, identities, separates
+from percept_obs.observers.identifier_based import A, P
+from percept_obs.observers.parts import gamma, sigma2
+from percept_obs.observers.sliding_mode import delta, lambda0
+from percept_obs.papers.base import Norm, at_most, column, dot, equal, exactly, explicit, identities, reader, separates
 from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.papers.ma2005_proofs import SMALL, with_g_left_out
 from percept_obs.recording import Camera, Recording, Uniform, record
@@ -22,7 +22,7 @@ from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.system.surfaces.base import POINT, X, Y, Z
+from percept_obs.system.surfaces.base import POINT
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 
@@ -227,14 +227,10 @@ def positive_definite(printed: Printed) -> Finding:
     return judged(bool(positive.subs(P, listed[P])) and q > 0, Verdict.FALSE, numbers)
 
 
-IBO_LIST = (equal(G, 10), equal(A, 1), equal(P, -sp.Rational(1, 2)), equal(M, 10))
-SMO_LIST = (
-    equal(alpha, 5),
-    equal(lambda0, 1),
-    equal(alpha1, 10),
-    equal(delta1, sp.Rational(1, 5)),
-    equal(M, 10),
-)
+reads = reader(xhat)
+
+IBO_LIST = reads("G = 10; A = 1; P = -1/2; M = 10")
+SMO_LIST = reads("alpha = 5; lambda0 = 1; alpha1 = 10; delta1 = 1/5; M = 10")
 NOISE = at_most(sp.Abs(noise), sp.Rational(1, 100))
 START = equal(column(yhat01, yhat02, yhat03), column(0, 0, 0))
 POSITION = equal(column(X0, Y0, Z0), column(1, sp.Rational(3, 2), sp.Rational(5, 2)))
@@ -249,22 +245,18 @@ ENTRIES = (
         Verdict.FALSE,
     ),
     at("bound on the estimate", "65", "3.1", "(11), (12) keep the estimate bounded")(
-        (at_most(Norm(xhat), gamma * M),), estimate_is_bounded, "at the samples, after the reset", known=Known.RUNS
+        reads("norm(xhat) <= gamma M"), estimate_is_bounded, "at the samples, after the reset", known=Known.RUNS
     ),
     at("(35)", "70", "4", "first example")(
         (
-            equal(
-                column(dot(X), dot(Y), dot(Z)),
-                sp.ImmutableMatrix([[-2, 4, -6], [1, -2, 3], [3, -4, 4]]) / 10 * column(X, Y, Z)
-                + column(50, 25, 30) / 100,
-            ),
+            *reads("[X', Y', Z'] = [[-2, 4, -6], [1, -2, 3], [3, -4, 4]] / 10 * [X, Y, Z] + [50, 25, 30] / 100"),
             POSITION,
         ),
         identities(example(35)),
         known=Known.IMPLEMENTED,
     ),
     at("y0", "70", "4", "coordinates at the start of (35), (36)")(
-        (equal(column(y01, y02, y03), column(X0 / Z0, Y0 / Z0, 1 / Z0)),), identities(seen_at_the_start)
+        reads("[y_01, y_02, y_03] = [X_0 / Z_0, Y_0 / Z_0, 1 / Z_0]"), identities(seen_at_the_start)
     ),
     at("noise", "70", "4", "uniform noise within 0.01")(
         (NOISE,), not_checkable, "a choice; the runs below use it", Verdict.NOT_CHECKABLE, known=Known.DEFINITION
@@ -285,7 +277,7 @@ ENTRIES = (
         known=Known.IMPLEMENTED,
     ),
     at("gamma = 1", "70", "4", "gamma in both lists")(
-        (equal(gamma, 1),),
+        reads("gamma = 1"),
         resets_at_every_step,
         "against gamma > 1: the reset maps the bound to itself, and the estimate sticks to it",
         Verdict.FALSE,
@@ -308,11 +300,7 @@ ENTRIES = (
     ),
     at("(36)", "71", "4", "second example")(
         (
-            equal(
-                column(dot(X), dot(Y), dot(Z)),
-                sp.ImmutableMatrix([[-2, 4, -6], [1, -2, 3], [-4, 4, -4]]) / 10 * column(X, Y, Z)
-                + column(50, 25, 30) / 100,
-            ),
+            *reads("[X', Y', Z'] = [[-2, 4, -6], [1, -2, 3], [-4, 4, -4]] / 10 * [X, Y, Z] + [50, 25, 30] / 100"),
             POSITION,
         ),
         identities(example(36)),

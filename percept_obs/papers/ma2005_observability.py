@@ -15,13 +15,11 @@ from percept_obs.observers import identifier_based
 from percept_obs.observers.parts import M, gamma
 from percept_obs.papers.base import (
     Norm,
-    SmallestEigenvalue,
     column,
-    equal,
     exactly,
     explicit,
     identities,
-    less,
+    reader,
     separates,
     strict_at_zero,
     vanishes,
@@ -43,7 +41,6 @@ BOTH, FIRST = SYSTEM.measure("y1", "y2"), SYSTEM.measure("y1")
 EXAMPLES = (ma2005_eq35(), ma2005_eq36())
 
 # Numbers
-a12, a32 = sp.symbols("a12 a32", real=True)
 b1, b2, b3 = SYSTEM.motion.b
 y1, y2, y3 = SYSTEM.coordinates
 abar, bbar, centre1, centre2, radius, t, tau = sp.symbols("abar bbar o1 o2 r t tau", real=True)
@@ -235,11 +232,13 @@ def larger_of_rank_one(printed: Printed) -> Finding:
 
 
 SUM_BOTH = (b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2
-LIPSCHITZ = (less(Norm(g - gz), alpha0 * Norm(x2 - z2)),)
+reads = reader(epsilon, alpha0, x2, z2, g, gz, x, w, SUM_BOTH=SUM_BOTH)
+
+LIPSCHITZ = reads("norm(g - gz) < alpha0 norm(x2 - z2)")
 
 ENTRIES = (
     at("Assumption 1, x", "65", "3.1", "the state stays within M")(
-        (less(Norm(x), M),), state_is_bounded, "80 s of both examples, M = 10", known=Known.RUNS
+        reads("norm(x) < M"), state_is_bounded, "80 s of both examples, M = 10", known=Known.RUNS
     ),
     at("(13)", "66", "3.1", "g is Lipschitz in x2")(
         LIPSCHITZ,
@@ -259,16 +258,16 @@ ENTRIES = (
         correction={w.T * w: w * w.T},
     ),
     at("(14) at each instant", "66", "3.1", "equivalent of (14), y1 and y2")(
-        (more(SUM_BOTH, epsilon**2),),
+        reads("SUM_BOTH > epsilon^2"),
         not_at_every_instant,
         "sufficient, not equivalent: a path through the FOE excites every window",
         Verdict.FALSE,
     ),
     at("centre", "66", "3.1", "centre of the circle: the FOE")(
-        (equal(centre1, b1 / b3), equal(centre2, b2 / b3)), identities(circle(centre1, centre2))
+        reads("o1 = b1 / b3; o2 = b2 / b3"), identities(circle(centre1, centre2))
     ),
     at("radius", "66", "3.1", "radius of the circle")(
-        (equal(radius, epsilon / b3),),
+        reads("r = epsilon / b3"),
         identities(circle(radius)),
         "|b3| in place of b3, which may be negative",
         Verdict.MISPRINT,
@@ -281,25 +280,22 @@ ENTRIES = (
         Verdict.FALSE,
     ),
     at("(17)", "66", "3.1", "observability, y1 and y2")(
-        (more(SmallestEigenvalue(w * w.T), epsilon), more(epsilon, 0)), an_instant_suffices(BOTH)
+        reads("lambda_min(w w^T) > epsilon; epsilon > 0"), an_instant_suffices(BOTH)
     ),
     at("(18)", "66", "3.1", "observability, y1 alone")(
-        (more(SmallestEigenvalue(w * w.T), epsilon), more(epsilon, 0)),
+        reads("lambda_min(w w^T) > epsilon; epsilon > 0"),
         an_instant_suffices(FIRST),
         "w w^T has rank 1, so that its smallest eigenvalue is 0: never fulfilled",
         Verdict.FALSE,
     ),
     at("(19)", "67", "3.1", "the same, written out")(
-        (
-            more(SUM_BOTH, 0),
-            more(SmallestEigenvalue(sp.ImmutableMatrix([[abar**2, abar * bbar], [abar * bbar, bbar**2]])), 0),
-        ),
+        reads("SUM_BOTH > 0; lambda_min([[abar^2, abar bbar], [abar bbar, bbar^2]]) > 0"),
         smallest_of_rank_one,
         "the second line is never fulfilled, see (18)",
         Verdict.FALSE,
     ),
     at("(20)", "67", "3.1", "the same, simplified")(
-        (more(SUM_BOTH, 0), more((b1 - b3 * y1) ** 2 + (a12 - a32 * y1) ** 2, 0)),
+        reads("SUM_BOTH > 0; (b1 - b3 y1)^2 + (a12 - a32 y1)^2 > 0"),
         larger_of_rank_one,
         "the second sum is the larger eigenvalue; for a12 = b1 = 1, else 0, it is 2 and e2 - e3 stays",
         Verdict.FALSE,

@@ -11,7 +11,18 @@ from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.parts import M, gamma, hats, sigma2
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta
-from percept_obs.papers.base import Norm, column, dot, equal, explicit, identities, is_identity, vanishes, vectors
+from percept_obs.papers.base import (
+    Norm,
+    column,
+    dot,
+    equal,
+    explicit,
+    identities,
+    is_identity,
+    reader,
+    vanishes,
+    vectors,
+)
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
@@ -175,7 +186,6 @@ def reset(*estimates: sp.Symbol) -> sp.Eq:
 
 
 # Terms that two observers share in print.
-ERRORS = (equal(e1, y1 - yhat1), equal(e2, y2 - yhat2), equal(e3, y3 - yhat3))
 W_BOTH, W_FIRST = column(b1 - b3 * y1, b2 - b3 * y2), column(a12 - a32 * y1, b1 - b3 * y1)
 PHI_BOTH = (
     column(a13 + (a11 - a33) * y1 + a12 * y2, a23 + a21 * y1 + (a22 - a33) * y2)
@@ -184,53 +194,59 @@ PHI_BOTH = (
 PHI_FIRST = a13 + (a11 - a33) * y1 - a31 * y1**2
 G_BOTH = -(a31 * y1 + a32 * y2 + a33) * yhat3 - b3 * yhat3**2
 G_FIRST = column(alphatilde, -(a31 * y1 + a32 * yhat2 + a33) * yhat3 - b3 * yhat3**2)
-ALPHATILDE = equal(
-    alphatilde,
-    a23 + a21 * y1 + (a22 - a33) * yhat2 - a31 * y1 * yhat2 - a32 * yhat2**2 + (b2 - b3 * yhat2) * yhat3,
+S1, S2 = lambda1 * e1 / (sp.Abs(e1) + delta1), lambda2 * e2 / (sp.Abs(e2) + delta2)
+reads = reader(
+    (x1, xhat1, y, phi, x2, xhat2, g, ghat, xhat, xhat_plus, w, A_, P_),
+    W_BOTH=W_BOTH,
+    W_FIRST=W_FIRST,
+    PHI_BOTH=PHI_BOTH,
+    G_FIRST=G_FIRST,
+    S1=S1,
+    S2=S2,
 )
-OBSERVED = (equal(dot(x1), w.T * x2 + phi), equal(dot(x2), g))
-IBO_IN_VECTORS = (
-    equal(dot(xhat1), G * A_ * (x1 - xhat1) + w.T * xhat2 + phi),
-    equal(dot(xhat2), -(G**2) * w * P_ * (x1 - xhat1) + ghat),
+(ALPHATILDE,) = reads(
+    "alphatilde = a23 + a21 y1 + (a22 - a33) yhat2 - a31 y1 yhat2 - a32 yhat2^2 + (b2 - b3 yhat2) yhat3"
 )
+ERRORS = reads("e1 = y1 - yhat1; e2 = y2 - yhat2; e3 = y3 - yhat3")
+OBSERVED = reads("x1' = w^T x2 + phi; x2' = g")
+IBO_IN_VECTORS = reads("xhat1' = G A (x1 - xhat1) + w^T xhat2 + phi; xhat2' = -G^2 w P (x1 - xhat1) + ghat")
 IBO_MENDED: Values = {x1 - xhat1: xhat1 - x1}
 RESET = reset(yhat1, yhat2, yhat3)
-S1, S2 = lambda1 * e1 / (sp.Abs(e1) + delta1), lambda2 * e2 / (sp.Abs(e2) + delta2)
 
 ENTRIES = (
     at("f1, f2", "65", "3", "what the RIO estimates first")(
-        (equal(f1, (b1 - b3 * y1) * y3), equal(f2, (b1 - b3 * y2) * y3)),
+        reads("f1 = (b1 - b3 y1) y3; f2 = (b1 - b3 y2) y3"),
         identities(range_terms),
         "b2 is meant in f2, in place of b1",
         Verdict.MISPRINT,
         correction={b1 - b3 * y2: b2 - b3 * y2},
     ),
     at("RIO, two outputs", "65", "3", "y3 from f1 and f2")(
-        (equal(yhat3**2, (fhat1**2 + fhat2**2) / ((b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2)),), identities(range_terms)
+        reads("yhat3^2 = (fhat1^2 + fhat2^2) / ((b1 - b3 y1)^2 + (b2 - b3 y2)^2)"), identities(range_terms)
     ),
     at("RIO, one output", "65", "3", "y3 from f1 alone")(
-        (equal(yhat3**2, fhat1**2 / (b1 - b3 * y1) ** 2),), identities(range_terms)
+        reads("yhat3^2 = fhat1^2 / (b1 - b3 y1)^2"), identities(range_terms)
     ),
     at("(10)", "65", "3.1", "canonical form: measured x1, hidden x2")(
-        (*OBSERVED, equal(y, x1)),
+        (*OBSERVED, *reads("y = x1")),
         identities(*(partial(in_vectors, form) for form in (BOTH, FIRST, SECOND))),
         "y1 and y2, y1 alone, y2 alone",
     ),
     at("(11)", "65", "3.1", "IBO and its reset")(
-        (*IBO_IN_VECTORS, equal(xhat_plus, M * xhat / Norm(xhat))),
+        (*IBO_IN_VECTORS, *reads("xhatplus = M xhat / norm(xhat)")),
         feeds_back,
         "unstable for Hurwitz A, P > 0: feed back x1hat - x1, or take A = 1, P = -1/2 as section 4 does",
         Verdict.MISPRINT,
         correction=IBO_MENDED,
     ),
     at("(12)", "65", "3.1", "when the estimate is reset")(
-        (sp.GreaterThan(Norm(xhat), gamma * M, evaluate=False),),
+        reads("norm(xhat) >= gamma M"),
         reset_condition,
         "looked at between steps",
         known=Known.IMPLEMENTED,
     ),
     at("gamma > 1", "65", "3.1", "gamma is more than 1")(
-        (sp.StrictGreaterThan(gamma, 1, evaluate=False),),
+        reads("gamma > 1"),
         reset_leads_out,
         "for just these a reset leads out of its own condition",
     ),
@@ -260,7 +276,7 @@ ENTRIES = (
     ),
     at("(21)", "67", "3.2", "SMO, y1 and y2")(
         (
-            equal(column(dot(yhat1), dot(yhat2)), column(S1, S2) + W_BOTH * yhat3 + PHI_BOTH),
+            *reads("[yhat1', yhat2'] = [S1, S2] + W_BOTH yhat3 + PHI_BOTH"),
             equal(dot(yhat3), (alpha * W_BOTH.T * column(S1, S2))[0] + G_BOTH),
             RESET,
         ),
@@ -280,7 +296,7 @@ ENTRIES = (
     at("(23)", "67", "3.2", "SMO, y1 alone")(
         (
             equal(dot(yhat1), S1 + (W_FIRST.T * column(yhat2, yhat3))[0] + PHI_FIRST),
-            equal(column(dot(yhat2), dot(yhat3)), alpha * W_FIRST * S1 + G_FIRST),
+            *reads("[yhat2', yhat3'] = alpha W_FIRST S1 + G_FIRST"),
             RESET,
             ALPHATILDE,
         ),

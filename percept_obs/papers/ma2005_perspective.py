@@ -7,17 +7,16 @@ from functools import cache
 
 import sympy as sp
 
-from percept_obs.papers.base import column, dot, equal, identities, vanishes
+from percept_obs.papers.base import column, dot, identities, reader, vanishes
 from percept_obs.papers.entries import Finding, Printed, Values, Verdict, at, judged
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import chained, pinhole, plane
-from percept_obs.system.surfaces.base import POINT, X, Y, Z
+from percept_obs.system.surfaces.base import POINT, Y, Z
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 CHAINED = PerspectiveSystem(affine(), chained())
 
-a11, a12, a13, a21, a22, a23, a31, a32, a33, b1, b2, b3 = SYSTEM.motion.parameters
 y1, y2, y3 = SYSTEM.coordinates
 n1, n2, n3 = plane().parameters
 Xp, Yp, Zp, ell = sp.symbols("X_p Y_p Z_p l_p", real=True)
@@ -90,73 +89,59 @@ def third_output(printed: Printed) -> Finding:
     return judged(not dependent or ranks[0] > ranks[1], Verdict.FALSE, numbers)
 
 
+reads = reader(a_new, b_new)
+
 ENTRIES = (
     at("(1)", "63", "1", "affine motion of the point")(
-        (
-            equal(
-                column(dot(X), dot(Y), dot(Z)),
-                sp.ImmutableMatrix([[a11, a12, a13], [a21, a22, a23], [a31, a32, a33]]) * column(X, Y, Z)
-                + column(b1, b2, b3),
-            ),
-        ),
+        reads("[X', Y', Z'] = [[a11, a12, a13], [a21, a22, a23], [a31, a32, a33]] [X, Y, Z] + [b1, b2, b3]"),
         identities(velocity),
     ),
-    at("(2)", "63", "1", "homogeneous outputs")((equal(y1, X / Z), equal(y2, Y / Z)), identities(seen_by(SYSTEM))),
-    at("(3)", "64", "1", "coordinates y")(
-        (equal(column(y1, y2, y3), column(X / Z, Y / Z, 1 / Z)),), identities(seen_by(SYSTEM))
-    ),
+    at("(2)", "63", "1", "homogeneous outputs")(reads("y1 = X / Z; y2 = Y / Z"), identities(seen_by(SYSTEM))),
+    at("(3)", "64", "1", "coordinates y")(reads("[y1, y2, y3] = [X / Z, Y / Z, 1 / Z]"), identities(seen_by(SYSTEM))),
     at("(4)", "64", "1", "perspective dynamics, pinhole")(
-        (
-            equal(dot(y1), a13 + (a11 - a33) * y1 + a12 * y2 - a31 * y1**2 - a32 * y1 * y2 + (b1 - b3 * y1) * y3),
-            equal(dot(y2), a23 + a21 * y1 + (a22 - a33) * y2 - a31 * y1 * y2 - a32 * y2**2 + (b2 - b3 * y2) * y3),
-            equal(dot(y3), -(a31 * y1 + a32 * y2 + a33) * y3 - b3 * y3**2),
+        reads(
+            """y1' = a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 - b3 y1) y3;
+            y2' = a23 + a21 y1 + (a22 - a33) y2 - a31 y1 y2 - a32 y2^2 + (b2 - b3 y2) y3;
+            y3' = -(a31 y1 + a32 y2 + a33) y3 - b3 y3^2"""
         ),
         identities(rates_of(SYSTEM)),
     ),
     at("(5)", "64", "2", "general plane through (0, 0, 1)")(
-        (equal(n1 * Xp + n2 * Yp + n3 * (Zp - 1), 0),), identities(on_the_plane)
+        reads("n1 X_p + n2 Y_p + n3 (Z_p - 1) = 0"), identities(on_the_plane)
     ),
     at("(6)", "64", "2", "a point and its projection are in line")(
-        (equal(Xp, Zp * X / Z), equal(Yp, Zp * Y / Z)), identities(on_the_plane)
+        reads("X_p = Z_p X / Z; Y_p = Z_p Y / Z"), identities(on_the_plane)
     ),
     at("(7)", "64", "2", "projection on the plane")(
-        (
-            equal(Xp, n3 * X / ell),
-            equal(Yp, n3 * Y / ell),
-            equal(Zp, n3 * Z / ell),
-            equal(ell, n1 * X + n2 * Y + n3 * Z),
-        ),
+        reads("X_p = n3 X / l_p; Y_p = n3 Y / l_p; Z_p = n3 Z / l_p; l_p = n1 X + n2 Y + n3 Z"),
         identities(on_the_plane),
         "letter of the denominator lost by the scan",
     ),
     at("(8)", "64", "2", "outputs on the general plane")(
-        (equal(yg1, X / ell), equal(yg2, Y / ell), equal(yg3, Z / ell), equal(yg4, 1 / ell)),
+        reads("y_g1 = X / l_p; y_g2 = Y / l_p; y_g3 = Z / l_p; y_g4 = 1 / l_p"),
         identities(on_the_plane),
         "letter of the denominator lost by the scan",
     ),
     at("(9)", "64", "2", "the same with n = (0, 0, 1)")(
-        (equal(yg1, X / Z), equal(yg2, Y / Z), equal(yg3, 1), equal(yg4, 1 / Z)), identities(on_the_usual_plane)
+        reads("y_g1 = X / Z; y_g2 = Y / Z; y_g3 = 1; y_g4 = 1 / Z"), identities(on_the_usual_plane)
     ),
     at("(32)", "69", "3.4", "coordinates of the chained projection")(
-        (equal(column(y1, y2, y3), column(X / Y, Z / Y, 1 / Y)),), identities(seen_by(CHAINED))
+        reads("[y1, y2, y3] = [X / Y, Z / Y, 1 / Y]"), identities(seen_by(CHAINED))
     ),
     at("(33)", "69", "3.4", "perspective dynamics, chained")(
-        (
-            equal(dot(y1), a11 * y1 + a12 + a13 * y2 - (a21 * y1 + a22 + a23 * y2) * y1 + (b1 - b2 * y1) * y3),
-            equal(dot(y2), a31 * y1 + a32 + a33 * y2 - (a21 * y1 + a22 + a23 * y2) * y2 + (b3 - b2 * y2) * y3),
-            equal(dot(y3), -(a21 * y1 + a22 + a23 * y2) * y3 - b2 * y3**2),
+        reads(
+            """y1' = a11 y1 + a12 + a13 y2 - (a21 y1 + a22 + a23 y2) y1 + (b1 - b2 y1) y3;
+            y2' = a31 y1 + a32 + a33 y2 - (a21 y1 + a22 + a23 y2) y2 + (b3 - b2 y2) y3;
+            y3' = -(a21 y1 + a22 + a23 y2) y3 - b2 y3^2"""
         ),
         identities(rates_of(CHAINED)),
     ),
     at("(34)", "69", "3.4", "coefficients that turn (4) into (33)")(
-        (
-            equal(a_new, sp.ImmutableMatrix([[a11, a13, a12], [a31, a33, a32], [a21, a23, a22]])),
-            equal(b_new, column(b1, b3, b2)),
-        ),
+        reads("a = [[a11, a13, a12], [a31, a33, a32], [a21, a23, a22]]; b = [b1, b3, b2]"),
         turned_axes,
     ),
     at("constant y2", "64", "2", "a plane through the centre is seen as a line")(
-        (equal(y2, constant),),
+        reads("y2 = c"),
         identities(in_a_plane),
         "of the plane Y = c Z; y2' = 0 in (4) then gives y3 at once, but where b2 = b3 y2",
     ),

@@ -8,8 +8,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import FUNCTIONS
-from percept_obs.checking.tokens import Token
+from percept_obs.checking.tokens import FUNCTIONS, Token
 from percept_obs.labs.shared.markup import dotted, markup
 
 DEEPEST = 40
