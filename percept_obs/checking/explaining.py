@@ -47,7 +47,7 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
         The lines that are right, so that a step is not blamed that would have spoiled them as well.
     """
     line = target.lines[row]
-    search = Search(mine, line, frozenset(target.letters.values()), time.monotonic() + SECONDS)
+    search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + SECONDS)
     if not search.places:
         return Explanation((), Comparison())
     one = search.single()

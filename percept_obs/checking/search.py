@@ -45,7 +45,7 @@ class Search:
     @property
     def over(self) -> bool:
         """Whether the time is over."""
-        return time.monotonic() > self.until
+        return time.thread_time() > self.until
 
     @cached_property
     def places(self) -> list[ModularPoint]:
