@@ -213,9 +213,10 @@ def test_motion_that_is_asked_for_too_early_is_refused_by_any_clock(begin):
 def test_a_start_from_the_first_sample_is_as_uncertain_as_the_sample():
     """The normalised error squared is 1 an output at the start, and no innovation is counted twice."""
     sigma, errors, second = 0.01, [], []
+    scenario, camera = scenarios.ma2005_eq35(), Camera(0.05, Gaussian(sigma))
+    observer = ekf(BOTH, noise_variance=sigma**2, measured_variance=sigma**2, hidden_variance=1e-6)
     for seed in range(300):
-        recording = record(scenarios.ma2005_eq35(), 0.1, Camera(0.05, Gaussian(sigma)), seed)
-        observer = ekf(BOTH, noise_variance=sigma**2, measured_variance=sigma**2, hidden_variance=1e-6)
+        recording = record(scenario, 0.1, camera, seed)
         run = track(recording, observer, {"y3": recording.truth[0, 2]}, language="python")
         off, claimed = run.error[0, :2], run.covariance[0, :2, :2]
         errors.append(off @ np.linalg.solve(claimed, off))
