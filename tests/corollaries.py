@@ -11,12 +11,15 @@ def corollary_of(choice):
 
     Whether the known camera's velocity was estimated earlier makes no difference, unlike d_s.
     """
-    asked = pattern(choice)
-    for corollary in COROLLARIES:
-        if any(pattern(corollary.choice("".join(axes))) == asked for axes in permutations("123")):
-            return corollary
-    return None
+    return STATED.get(pattern(choice))
 
 
 def pattern(case):
     return replace(case, earlier=tuple(n for n in case.earlier if n == "d_s"), scale=None)
+
+
+STATED = {
+    pattern(corollary.choice("".join(axes))): corollary
+    for corollary in reversed(COROLLARIES)  # the first of two with the same pattern counts
+    for axes in permutations("123")
+}

@@ -57,6 +57,18 @@ EQ35 = replace(scenarios.ma2005_eq35(), duration=2.0)
 FORMS_AND_SQUARE = FORMS | {"x": SQUARE}
 
 
+@cache
+def recorded(scenario, surface, duration):
+    """One recording for all observers of what a surface shows."""
+    return record(scenario(surface), duration)
+
+
+@cache
+def made(name, form, every=EVERY.get):
+    """One observer of a form for all examples."""
+    return every(name)(FORMS[form])
+
+
 def each(names, forms=FORMS):
     """Every one of these observers on every form that it can observe."""
     known = {make.key: make for make in OBSERVERS}
@@ -103,7 +115,7 @@ def assert_it_stays_at_the_truth(recording, observer):
 @given(scenario=motions())
 @drawn(5)
 def test_started_at_the_truth_it_stays_there(name, form, scenario):
-    assert_it_stays_at_the_truth(record(scenario), EVERY[name](FORMS[form]))
+    assert_it_stays_at_the_truth(record(scenario), made(name, form))
 
 
 @pytest.mark.parametrize("make", COPIES, ids=lambda make: make.key)
@@ -113,8 +125,9 @@ def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
         with pytest.raises((NotAffine, NotIntegrable)):
             make(form)
     else:
+        observer = make(form)
         for scenario, duration in ((scenarios.ma2005_eq35, 5), (scenarios.ma2005_eq36, 10)):
-            assert_it_stays_at_the_truth(record(scenario(form.view), duration), make(form))
+            assert_it_stays_at_the_truth(recorded(scenario, form.view, duration), observer)
 
 
 @given(scenario=motions())
@@ -148,7 +161,7 @@ def test_every_iterate_of_the_cascade_stays_nearer_to_the_truth_it_started_at(na
 def test_halving_the_step_divides_the_error_by_sixteen(name, form, scenario):
     period = 0.2 if scenario is EQ35 else 0.25
     recording = record(scenario, camera=Camera(period=period))
-    observer = SMOOTH[name](FORMS[form])
+    observer = made(name, form, SMOOTH.get)
     steps = (period / n for n in (32, 64, 256))  # so short that the next order of the error matters little
     coarse, fine, reference = (
         track(recording, observer, ZERO, step=step, language="python").state[-1] for step in steps
@@ -276,5 +289,5 @@ def test_chained_is_the_pinhole_with_the_axes_exchanged(name, form):
     scenario = scenarios.ma2005_eq35(chained())
     here = track(record(scenario, 2), EVERY[name](CHAINED[form]), ZERO, language="python")
     exchanged_scenario = exchanged(scenario, [0, 2, 1], pinhole())
-    there = track(record(exchanged_scenario, 2), EVERY[name](FORMS[form]), ZERO, language="python")
+    there = track(record(exchanged_scenario, 2), made(name, form), ZERO, language="python")
     np.testing.assert_allclose(there.estimate, here.estimate, rtol=1e-9, atol=1e-9)

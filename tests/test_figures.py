@@ -2,8 +2,6 @@
 
 import html
 import re
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -613,12 +611,6 @@ def test_figures_of_their_own_stay_out_of_pyplot(runs):
     figures.signals(runs("plane"))
     figures.scene(runs("plane"))
     assert plt.get_fignums() == before
-
-
-def test_importing_the_package_does_not_load_matplotlib():
-    program = "import sys, percept_obs; print('matplotlib' in sys.modules); import percept_obs.figures;"
-    program += "print('matplotlib.pyplot' in sys.modules)"
-    assert subprocess.check_output([sys.executable, "-c", program], text=True).split() == ["False", "False"]
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])

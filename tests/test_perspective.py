@@ -25,9 +25,8 @@ point = st.tuples(st.floats(-1, 1), st.floats(0.5, 1.5), st.floats(2, 4))
 def test_rate_against_a_finite_difference(motion, surface, point, data):
     system = PerspectiveSystem(motion, surface)
     numbers = data.draw(st.lists(number, min_size=len(motion.parameters), max_size=len(motion.parameters)))
-    values = dict(zip(motion.parameters, numbers, strict=True))
-    A, b = (np.array(m.subs(values), dtype=float) for m in (motion.A, motion.b))
-    velocity = A @ np.array(point) + b.ravel()
+    moved = list(motion.A * sp.Matrix([X, Y, Z]) + motion.b)
+    velocity = np.array(vectorised((X, Y, Z, *motion.parameters), moved)(*point, *numbers))
     step = 1e-5
     ahead, behind = (surface.project(np.add(point, sign * step * velocity)) for sign in (1, -1))
     at = surface.project(point)

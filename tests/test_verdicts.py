@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import BOTH, NOISY, ONE, OTHER, ZERO
+from examples import BOTH, NOISE, NOISY, ONE, OTHER, ZERO
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from trust_study import figures
@@ -76,9 +76,11 @@ def test_an_observer_that_is_switched_off_has_not_converged():
 
 
 def test_a_point_far_away_before_a_camera_at_rest_is_not_found():
+    recording = record(REST)
     for make in OBSERVERS:
+        observer = make(BOTH)
         for start in (None, {"y3": 0.1}):
-            assert not track(record(REST), make(BOTH), start).outcome().converged, make.key
+            assert not track(recording, observer, start).outcome().converged, make.key
 
 
 def test_a_wrong_scale_of_the_motion_is_not_converged():
@@ -213,9 +215,10 @@ def test_motion_that_is_asked_for_too_early_is_refused_by_any_clock(begin):
 def test_a_start_from_the_first_sample_is_as_uncertain_as_the_sample():
     """The normalised error squared is 1 an output at the start, and no innovation is counted twice."""
     sigma, errors, second = 0.01, [], []
+    scenario, camera = scenarios.ma2005_eq35(), Camera(0.05, Gaussian(sigma))
+    observer = ekf(BOTH, noise_variance=sigma**2, measured_variance=sigma**2, hidden_variance=1e-6)
     for seed in range(300):
-        recording = record(scenarios.ma2005_eq35(), 0.1, Camera(0.05, Gaussian(sigma)), seed)
-        observer = ekf(BOTH, noise_variance=sigma**2, measured_variance=sigma**2, hidden_variance=1e-6)
+        recording = record(scenario, 0.1, camera, seed)
         run = track(recording, observer, {"y3": recording.truth[0, 2]}, language="python")
         off, claimed = run.error[0, :2], run.covariance[0, :2, :2]
         errors.append(off @ np.linalg.solve(claimed, off))
@@ -241,11 +244,12 @@ def test_excitation_takes_the_truth_by_its_own_names():
     assert windowed(OTHER, only, 2.0).least == pytest.approx(windowed(OTHER, whole, 2.0).least, rel=1e-9)
 
 
-@pytest.mark.parametrize("camera", [Camera(), NOISY], ids=["exact", "noisy"])
+@pytest.mark.parametrize("camera", [Camera(0.05), Camera(0.05, NOISE)], ids=["exact", "noisy"])
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_without_a_truth_no_observer_is_trusted_before_a_camera_at_rest(make, camera):
+    observer, recording = make(BOTH), blind(record(REST, camera=camera, seed=0))
     for start in (None, {"y3": 0.1}):
-        run = track(blind(record(REST, camera=camera, seed=0)), make(BOTH), start)
+        run = track(recording, observer, start)
         assert not run.trust().trusted
         assert "do not trust" in run.verdict()
 

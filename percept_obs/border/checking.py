@@ -98,7 +98,7 @@ def _only_a_float_fits(value: Any, kind: Any) -> bool:
 
 def _tells_all(kind: Any) -> bool:
     """Whether the type of a value alone decides of which kind it is, so that it is looked at once."""
-    return kind in (float, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
+    return kind in (float, np.float64, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from numbers import Integral, Real
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -82,6 +83,7 @@ _SCALARS: Mapping[Any, Kind] = {
 }
 
 
+@cache
 def _named(kind: Any) -> Kind | None:
     if get_origin(kind) is Annotated:
         return next((extra for extra in kind.__metadata__ if isinstance(extra, Kind)), None)
@@ -97,14 +99,21 @@ def _alternatives(inside: tuple[Any, ...]) -> tuple[Any, ...]:
     return (ArrayLike, *(each for each in inside if each not in arrays))
 
 
+@cache
+def _made_of(kind: Any) -> tuple[Any, tuple[Any, ...]]:
+    """What a kind was made by and of what: looking into annotations takes longer than looking at a value."""
+    origin, inside = get_origin(kind), get_args(kind)
+    return origin, _alternatives(inside) if origin in (Union, UnionType) else inside
+
+
 def fits(value: Any, kind: Any) -> bool:
     """Whether a value is of an annotated kind."""
     named = _named(kind)
     if named:
         return named.fits(value)
-    origin, inside = get_origin(kind), get_args(kind)
+    origin, inside = _made_of(kind)
     if origin in (Union, UnionType):
-        return any(fits(value, each) for each in _alternatives(inside))
+        return any(fits(value, each) for each in inside)
     if origin is Literal:
         return isinstance(value, type(inside[0])) and not isinstance(value, bool)
     if origin is Callable:
@@ -142,9 +151,9 @@ def words(kind: Any) -> str:
     named = _named(kind)
     if named:
         return named.words
-    origin, inside = get_origin(kind), get_args(kind)
+    origin, inside = _made_of(kind)
     if origin in (Union, UnionType):
-        return " or ".join(dict.fromkeys(words(each) for each in _alternatives(inside) if each is not NoneType))
+        return " or ".join(dict.fromkeys(words(each) for each in inside if each is not NoneType))
     if origin is Literal:
         return "one of " + ", ".join(map(repr, inside))
     if origin is Callable:
