@@ -110,14 +110,3 @@ def missing(advice):
     if os.environ.get("CI") == "true":
         pytest.fail(advice)
     pytest.skip(advice)
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    """A browser without Jupyter, for labs that stand alone."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield browser
-        browser.close()

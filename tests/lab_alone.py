@@ -42,7 +42,7 @@ def stated_policy():
 
 
 def opened(browser, lab, policy=None, answers=None, **options):
-    """A page with a lab and nothing else, served under a policy, or README's; a function of the page's messages `answers` them."""
+    """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
     told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
     told["texts"] = base64.b64encode(lab.texts).decode()
     files = {
