@@ -30,6 +30,10 @@ const model = {
 };
 bundle.render({ model, el: document.body });
 """
+DRAWN = """() => {
+    const [lab] = window.perceptObsLabs ?? [];
+    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending;
+}"""
 
 
 def stated_policy():
@@ -37,8 +41,8 @@ def stated_policy():
     return re.search(r"`(default-src[^`]*)`", (NOTEBOOKS.parent / "README.md").read_text())[1]
 
 
-def opened(browser, lab, policy, answers=None, **options):
-    """A page with a lab and nothing else, served under a policy; a function of the page's messages `answers` them."""
+def opened(browser, lab, policy=None, answers=None, **options):
+    """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
     told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
     told["texts"] = base64.b64encode(lab.texts).decode()
     files = {
@@ -47,7 +51,7 @@ def opened(browser, lab, policy, answers=None, **options):
         "/lab.js": ("text/javascript", (FRONT / "lab.js").read_text()),
     }
     page = browser.new_page(**options)
-    headers = {"Content-Security-Policy": policy}
+    headers = {"Content-Security-Policy": policy or stated_policy()}
 
     def answer(route):
         kind, body = files[route.request.url.removeprefix("http://lab.test")]

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from lab_alone import opened, stated_policy
+from lab_alone import opened
 from lab_browser import control, reached_by_keyboard, rested, serious_violations
 from test_desk import MISTAKES, RIGHT
 
@@ -27,7 +27,7 @@ def at_desk(browser, desk, **options):
         desk.set_state(message)
         return json.loads(json.dumps({"analysis": desk.analysis, "error": desk.error}))
 
-    page = opened(browser, desk, stated_policy(), answers, **options)
+    page = opened(browser, desk, answers=answers, **options)
     page.set_default_timeout(10_000)
     rested(page)
     yield page

@@ -1,22 +1,18 @@
 """The labs under the strict content policy that README states: scripts from `blob:`, inline styles, nothing else."""
 
 import pytest
-from lab_alone import opened, stated_policy
+from lab_alone import DRAWN, opened, stated_policy
 
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab, "desk": derivation_desk}
-DRAWN = """() => {
-    const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending;
-}"""
 
 
 @pytest.mark.parametrize("name", LABS)
 def test_a_lab_works_under_the_policy_that_readme_states(browser, name):
-    page = opened(browser, LABS[name](), stated_policy())
+    page = opened(browser, LABS[name]())
     page.wait_for_function(DRAWN)
     assert page.locator("canvas").count() + page.locator(".sheet input").count() > 2
     assert page.evaluate("window.refused") == []

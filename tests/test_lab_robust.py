@@ -119,6 +119,7 @@ def test_each_picture_says_in_words_what_it_shows(fresh):
     labels = state(fresh)["labels"]
     expected = {
         "Image plane": ("the point goes from y1 0.4, y2 0.6", "estimate ends at", "focus of expansion at y1 1.67"),
+        "Scene": ("the point goes from 2.5 m", "estimate begins infinitely far away"),
         "Image coordinates": ("true y1: from 0.4",),
         "Inverse distance": ("true y3: from 0.4",),
         "Distance": ("true distance: from 2.5",),

@@ -42,6 +42,12 @@ def test_of_a_point(node):
             assert answer["excitation"] == pytest.approx(list(excitation), rel=1e-6, abs=1e-12)
 
 
+def test_a_single_sample_is_told(node):
+    for lab, in_node in ((observer_lab(), run_in_node), (structure_lab(), structure_in_node)):
+        (answer,) = in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
+        assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]
+
+
 def test_of_structure(node):
     lab = structure_lab()
     tasks = [

@@ -283,9 +283,10 @@ def test_axe_finds_nothing_serious(fresh):
 def test_each_picture_says_in_words_what_it_shows(fresh):
     fresh.locator(control("picture points")).first.check()
     rested(fresh)
-    labels = state(fresh)["labels"][:5]
+    labels = state(fresh)["labels"][:6]
     expected = {
         "Image plane": ("point 1 goes from y1 0, y2 0.48", "its estimate ends at"),
+        "Scene": ("point 1 goes from depth 2.5 to", "its estimate ends at"),
         "Norm of the error": ("error: from 1.25",),
         "Depth": ("true depth of point 1: from 2.5", "depth of point 3: from 1.5"),
         "Error of each point": ("error of point 2",),

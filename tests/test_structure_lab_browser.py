@@ -170,7 +170,7 @@ def test_several_observers_stand_side_by_side(fresh):
     assert len(dashes) == len(set(dashes)) == 5
     starts = (
         "Image plane: the point goes from y1 0.32",
-        "View from above: the point goes from",
+        "Scene, seen from the side: the point goes from",
         "Innovation over time",
     )
     for start in starts:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.tracking.verdict import number
 
 NEGLIGIBLE = 1e-9
 """A direction that changes the outputs less than this, relatively, is not seen."""
@@ -85,7 +86,7 @@ def _sum(row: Array, names: Sequence[str]) -> str:
     shown = terms if len(terms) <= MOST_TERMS else terms[: MOST_TERMS - 1]
     words = ""
     for value, name in shown:
-        size = "" if abs(abs(value) - 1) < 1e-6 else f"{abs(value):.3g} "
+        size = "" if abs(abs(value) - 1) < 1e-6 else f"{number(abs(value))} "
         sign = "-" if value < 0 else "+"
         words += f" {sign} {size}{name}" if words else f"{sign.strip('+')}{size}{name}"
     return words if shown is terms else f"{words} and {len(terms) - len(shown)} more states"

@@ -18,7 +18,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.view import View
 from percept_obs.tracking.course import Hold
 from percept_obs.tracking.information import NOTHING, Fit, Information, gathered, one_point, relative_deviation
-from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, outcome
+from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
 
 Array = NDArray[np.float64]
 
@@ -281,10 +281,10 @@ class Run:
             See `outcome`.
         """
         if self.diverged_at is not None:
-            time = f"{self.diverged_at - self.time[0]:.3g}"
+            time = number(self.diverged_at - self.time[0])
             return VERDICTS["diverged"].format(time=time, remedy=self.remedy)
         if self.recording.truth is None or not self._known.any():
-            said = VERDICTS["followed"].format(time=f"{self.elapsed[-1]:.3g}")
+            said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else str(self.trust(tolerance))
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
@@ -295,13 +295,14 @@ class Run:
         said, begun = "", self.time[0]
         if len(self.resets):
             which = "reset once" if len(self.resets) == 1 else "reset often"
-            said = VERDICTS[which].format(count=len(self.resets), time=f"{self.resets[0] - begun:.3g}")
+            said = VERDICTS[which].format(count=len(self.resets), time=number(self.resets[0] - begun))
         for reason in dict.fromkeys(self.reasons):
             alike = [part for part, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
-            begin, end = (f"{time - begun:.3g}" for time in alike[0])
-            said += VERDICTS["gap"].format(begin=begin, end=end, reason=reason)
+            begin, end = (number(time - begun) for time in alike[0])
+            which = "short gap" if begin == end else "gap"
+            said += VERDICTS[which].format(begin=begin, end=end, reason=reason)
             if len(alike) > 1:
-                said += VERDICTS["more gaps"].format(count=len(alike) - 1)
+                said += VERDICTS["one more gap" if len(alike) == 2 else "more gaps"].format(count=len(alike) - 1)
         return said
 
     @property

@@ -57,6 +57,8 @@ VERDICTS = MappingProxyType(
         "reset once": "; driven to the bound and reset once, at {time} s",
         "reset often": "; driven to the bound and reset {count} times, first at {time} s",
         "gap": "; no estimate from {begin} to {end} s, for {reason}",
+        "short gap": "; no estimate at {begin} s, for {reason}",
+        "one more gap": ", and in one more gap",
         "more gaps": ", and in {count} more gaps",
     }
 )
@@ -137,10 +139,10 @@ class Trust:
         if self.information is None:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
-        words |= {"window": f"{window:.3g}", "within": percent(2 * self.information.deviation)}
+        words |= {"window": number(window), "within": percent(2 * self.information.deviation)}
         said = VERDICTS[self.kind].format(**words)
         if unexcited >= SETTLED_PART * self.length:
-            said += VERDICTS["unexcited"].format(begin=f"{self.length - unexcited:.3g}")
+            said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
             said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
         return said
@@ -174,13 +176,30 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
 def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str] = ()) -> str:
     """The sentence that says it: of the relative error, or with names of coordinates of their absolute error."""
     kind = "absolute" if names else "relative"
-    error, within = (f"{found.final:.2g}", f"{tolerance:g}") if names else (percent(found.final), percent(tolerance, 6))
+    error, within = (
+        (number(found.final, 2), f"{tolerance:g}") if names else (percent(found.final), percent(tolerance, 6))
+    )
     return VERDICTS[found.kind].format(
         **{"error_of": VERDICTS[kind], "judged": judged, "error": error},
-        **{"tolerance": within, "time": f"{found.settled:.3g}"},
+        **{"tolerance": within, "time": number(found.settled)},
     )
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number for people: plain up to a million, and no zero with a sign.
+
+    Examples
+    --------
+    >>> from percept_obs.tracking.verdict import number
+    >>> [number(value) for value in (0.05, 1234.0, -0.0, 2e6)]
+    ['0.05', '1230', '0', '2e+06']
+    """
+    text = f"{value:.{digits}g}"
+    if float(text) == 0:
+        return "0"
+    return f"{float(text):.0f}" if "e+" in text and abs(float(text)) < 1e6 else text
 
 
 def percent(share: float, digits: int = 3) -> str:
     """A share in per cent, with an end to how far off one is told to be."""
-    return f"{100 * share:.{digits}g} %" if share <= FAR_OFF else f"more than {100 * FAR_OFF:g} %"
+    return f"{number(100 * share, digits)} %" if share <= FAR_OFF else f"more than {100 * FAR_OFF:g} %"

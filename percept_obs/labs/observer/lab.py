@@ -15,9 +15,9 @@ from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEM
 from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
 from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
-from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
+from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, too_fast, within_reach
+from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, too_fast, too_short, within_reach
 from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
@@ -89,9 +89,7 @@ class ObserverLab(Lab):
         recording = self._recordings.get(settings["scenario"])
         surface, outputs = settings["surface"], settings["outputs"]
         allowed = part("observer_lab")["surfaces"][surface]["outputs"]
-        if recording is None:
-            refuse_a_single_sample(settings)
-        else:
+        if recording is not None:
             allowed = [o for o in allowed if set(o) <= set(recording.names)]
             Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
         if outputs not in allowed:
@@ -113,11 +111,12 @@ class ObserverLab(Lab):
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
         observers = {name: (*seen, name, _way(settings, name)) for name in settings["observers"]}
-        moved = 0.0
+        moved, refusal = 0.0, ""
         if settings["scenario"] not in self._recordings:
             fastest = float(np.abs(settings["A"]).sum(axis=1).max())
             moved = exact_path(settings["duration"], settings["period"], fastest)
-        if refusal := too_fast(moved):
+            refusal = too_short(settings["duration"], settings["period"]) or too_fast(moved)
+        if refusal:
             return {"sentences": [refusal]}
         try:
             recording = self._recordings.get(settings["scenario"]) or _simulated(settings)

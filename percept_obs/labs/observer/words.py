@@ -15,6 +15,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import number
 
 INSTANTS = 200
 """At how many instants of the window the error dynamics are linearised, at most."""
@@ -102,10 +103,11 @@ def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
         carried = np.eye(size) if not len(steps) else reduce(lambda before, step: step @ before, steps)
     factor = float(np.linalg.norm(carried, 2)) if np.isfinite(carried).all() else np.inf
     roots = ", ".join(f"{root:.3g}" for root in np.linalg.eigvals(J[-1]))
-    does = "shrinks to" if factor < 1 else "may grow to"
+    part = number(factor, 2)
+    does = "keeps its size" if part == "1" else f"{'shrinks' if factor < 1 else 'may grow'} to {part} of its size"
     sentences = [
         f"{observer.name}: its error dynamics end with the eigenvalues {roots} per second; over the last {window:g} s "
-        f"a small error {does} {factor:.2g} of its size."
+        f"a small error {does}."
     ]
     left = gains.get("noise_variance", 0.0) - (recording.noise_variance or 0.0)
     push = left * np.array([entry[-1] for entry in entries[size**2 :]])

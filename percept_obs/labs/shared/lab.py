@@ -51,12 +51,6 @@ class _Checked(traitlets.TraitType[Settings, Settings]):
             raise BadSettings(str(error)) from None
 
 
-def refuse_a_single_sample(settings: Settings) -> None:
-    """Raise a ValueError for a duration that is shorter than the period."""
-    if settings["duration"] < settings["period"]:
-        raise ValueError(f"a duration of {settings['duration']} s holds no two samples {settings['period']} s apart")
-
-
 class Lab(anywidget.AnyWidget):
     """A widget whose page computes by itself, from texts that were printed for it and a model that Python adds.
 

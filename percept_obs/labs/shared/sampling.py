@@ -56,6 +56,11 @@ def too_fast(work: float) -> str:
     return f"Python says nothing on so fast or long a motion; {slower}." if work > MOST_WORK else ""
 
 
+def too_short(duration: float, period: float) -> str:
+    """What is said of a duration that is shorter than the period; nothing of a longer one."""
+    return f"A duration of {duration:g} s holds no two samples {period:g} s apart." if duration < period else ""
+
+
 def within_reach(steps: float, states: Mapping[str, float], before: float = 0.0) -> tuple[list[str], list[str]]:
     """Names of the observers that Python follows for its words, and what it says of the others.
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.lab import NOISES, Lab, refuse_a_single_sample
+from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, within_reach
+from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import LARGEST, OBSERVERS, PHASES, observer_of, swinging
@@ -83,7 +83,6 @@ class StructureLab(Lab):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
-        refuse_a_single_sample(settings)
         settings["unknown"].sort(key=QUANTITIES.index)
         steps = _steps(settings)
         if steps > MOST_STEPS:
@@ -98,7 +97,7 @@ class StructureLab(Lab):
         moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings):
             moved += LOOK_WORK * looks(duration, fastest, settings["rate"])
-        if refusal := too_fast(moved):
+        if refusal := too_short(duration, settings["period"]) or too_fast(moved):
             return {"sentences": [refusal]}
         printed = part("structure_lab", f"forms/{LARGEST}")["observers"]
         states = {name: printed[name]["states"] for name in settings["observers"]}

@@ -43,8 +43,10 @@
  * @property {Float64Array} smallest  eigenvalue of the integral of w w^T over the window
  *
  * @typedef {object} OfObserverLab
- * @property {number[] | null} foe  the focus of expansion in the image
+ * @property {number[] | null} foe  the focus of expansion in the image; null where it is at infinity
+ * @property {number[] | null} foeTowards  the direction in which it is there, of length 1
  * @property {number[] | null} circle  its y1, y2 and radius, within which |w| is below the threshold
+ * @property {number[][]} inside  when the image of the point is in it: begin and end
  * @property {Excitation | null} excitation
  * @typedef {SharedResult & OfObserverLab} ObserverResult
  *
@@ -82,6 +84,8 @@
  * @property {Float64Array} size   norm of the error at each sample
  * @property {Float64Array[]} errors  of each point, in m
  * @property {number} tolerance    of the largest of the next
+ * @property {Float64Array} worst  the largest of the next at each sample
+ * @property {number} settling  seconds until it stays in the tolerance, or Infinity
  * @property {Float64Array[]} relative  the same over each point's distance
  * @property {{rate: number, begin: number, level: number} | null} fit  the exponential fitted to the error's end
  * @property {{first: number, last: number, begin: number, end: number}[][]} absences  of each point: samples and times
@@ -122,10 +126,11 @@
  * @typedef {object} ChartParts    one time chart, in the values and colours that it is drawn with
  * @property {string} title
  * @property {ChartLine[]} lines
- * @property {Scale} scale
+ * @property {(bounds: (line: ChartLine, options?: any) => number[] | null) => Scale} scale  for what lines do in sight
  * @property {{time: ArrayLike<number>, low: any, high: any, colour: string}} [band]  between two arrays of numbers
- * @property {number[][]} [spans]  shaded: begin and end
- * @property {{time: number, colour: string}[]} [marks]
+ * @property {{begin: number, end: number, text: string}[]} [regions]  shaded
+ * @property {{times: number[], colour: string, text: string}[]} [marks]  resets
+ * @property {{time: number, colour: string, text: string}[]} [events]
  * @property {{begin: number, end: number, colour: string}[]} [bars]
  * @property {number} [level]      of a dotted line
  *

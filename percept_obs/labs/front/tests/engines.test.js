@@ -79,9 +79,9 @@ function followed(lacking) {
 test("gaps of two reasons stay two, and each is told with its own", () => {
   const { run, time } = followed([0, 1, 1, 2, 2, 0, 1]);
   assert.deepEqual(run.gaps, [[1, 2, 1], [3, 4, 2], [6, 6, 1]]);
-  const verdicts = { followed: "followed", gap: "; {begin}-{end} {reason}", "more gaps": " and {count} more" };
+  const verdicts = { followed: "followed", gap: "; {begin}-{end} {reason}", "one more gap": " and one more" };
   const told = verdict(run, { time, truth: null }, { verdicts, remedy: "" });
-  assert.equal(told, "followed; 1-2 the first reason and 1 more; 3-4 the second");
+  assert.equal(told, "followed; 1-2 the first reason and one more; 3-4 the second");
   time.forEach((_, k) => assert.equal(Number.isNaN(run.estimate[2 * k + 1]), [1, 2, 3, 4, 6].includes(k)));
 });
 

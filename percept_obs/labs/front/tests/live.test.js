@@ -61,12 +61,11 @@ class SmallLab extends Live {
     this.drawings = [];
     const plane = { draw: (shown, ghost, cursor) => this.drawings.push([shown.value, ghost?.value ?? null, cursor]) };
     this.planes = [{ ...plane, describe: () => {} }];
-    this.charts = {};
     this.panel = { show: () => {} };
     this.formulas = { show: () => {} };
     const told = (name) => [name, (value) => (this.told[name] = value)];
     this.told = {};
-    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence"];
+    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence", "read", "time", "playing", "close"];
     this.follow({ root: { classList: { toggle() {} } }, ...Object.fromEntries(names.map(told)) });
   }
 

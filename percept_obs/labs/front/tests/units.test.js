@@ -62,7 +62,7 @@ test("the error has settled from the sample after the last one outside", () => {
 });
 
 test("numbers are written as Python writes them", () => {
-  const pairs = [[13.2, "13.2"], [80, "80"], [0.05, "0.05"], [1e-5, "1e-05"], [1234, "1.23e+03"], [0, "0"], [2.5e-7, "2.5e-07"], [21.25, "21.2"], [-21.75, "-21.8"], [9.995, "9.99"]];
+  const pairs = [[13.2, "13.2"], [80, "80"], [0.05, "0.05"], [1e-5, "1e-05"], [1234, "1230"], [2e6, "2e+06"], [-0, "0"], [-1500, "-1500"], [999999, "1e+06"], [0, "0"], [2.5e-7, "2.5e-07"], [21.25, "21.2"], [-21.75, "-21.8"], [9.995, "9.99"]];
   for (const [value, text] of pairs) assert.equal(short(value), text);
   assert.equal(readable(-2.5e-7), "−2.5e−7");
 });

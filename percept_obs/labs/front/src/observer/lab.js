@@ -4,6 +4,7 @@ import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
+import { Scene } from "../common/page/scene.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, translationTowards } from "./model/engine.js";
@@ -12,6 +13,7 @@ import { PRESETS, settingsOf } from "./model/presets.js";
 import { reasons } from "./model/text.js";
 import { Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
+import { sceneOf } from "./page/scene.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
 
@@ -21,14 +23,17 @@ export class ObserverLab extends Live {
       ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
       ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
     });
+    const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
+      arrowsOf: scene.arrowsOf,
       name: "foe",
       label: "Focus of expansion",
       tag: "FOE",
       placeOf: (shown) => shown.foe,
+      towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
-    this.planes = [plane];
+    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
       numbersOf: ({ A, b, normal }) => lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }),

@@ -2,6 +2,7 @@
 
 import { FormulaSheet, lettered } from "../common/page/formulas.js";
 import { Live } from "../common/page/live.js";
+import { Scene } from "../common/page/scene.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
@@ -10,6 +11,7 @@ import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/te
 import { ImagePlane } from "./page/image_plane.js";
 import { Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
+import { sceneOf } from "./page/scene.js";
 
 /** The equations of the observer and of the motion, with the numbers that sliders set. */
 class Formulas extends FormulaSheet {
@@ -28,7 +30,9 @@ export class PointsLab extends Live {
   constructor(widget, place, model) {
     const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { words: WORDS, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
-    this.planes = [new ImagePlane(this, this.model.mostPoints)];
+    const scene = sceneOf(this);
+    const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
+    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
     this.open(place);
@@ -97,6 +101,10 @@ export class PointsLab extends Live {
   /** The guaranteed rate of decay, if Python has told it of what is shown. */
   guaranteed() {
     return this.answered()?.bound ?? null;
+  }
+
+  story() {
+    return { settlings: [this.shown.settling], events: undefined };
   }
 
   besides() {

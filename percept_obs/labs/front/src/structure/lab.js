@@ -4,6 +4,7 @@ import { settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
+import { Scene } from "../common/page/scene.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
@@ -13,21 +14,23 @@ import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
 import { StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
-import { Scene } from "./page/scene.js";
+import { sceneOf } from "./page/scene.js";
 
 export class StructureLab extends Live {
   constructor(widget, place, model) {
     const computing = { words: WORDS, Kernels: StructureKernels, Engine: StructureEngine };
     const words = { reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
+    const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
+      arrowsOf: scene.arrowsOf,
       name: "ybar",
       label: "Start of the point",
       tag: "start",
       placeOf: (shown) => shown.settings.ybar.slice(0, 2),
       onMove: (point) => this.moveStart(point),
     });
-    this.planes = [plane, new Scene()];
+    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
       numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),

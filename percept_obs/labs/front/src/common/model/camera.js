@@ -7,6 +7,11 @@ import { column, plantGrid, sampleTimes } from "./tables.js";
 
 const NOTHING = new Float64Array(0);
 
+/** What is recorded where there is a problem. */
+function nothing(problem) {
+  return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
+}
+
 /** The times of samples, and the steps of what moves before them. */
 export function clockOf(memory, period, duration) {
   return memory.once("clock", [period, duration], () => {
@@ -28,8 +33,10 @@ export function errorOf(kind, size, draw) {
  *   sampled(seen, settings, drawn)   the samples, with noise
  */
 export class PointCamera {
-  constructor(model, memory, drawsOf) {
+  constructor(model, memory, drawsOf, remedy) {
     this.model = model;
+    /** What to do, in the panel's words, when the point starts behind the camera. */
+    this.remedy = remedy;
     this.memory = memory;
     this.drawsOf = drawsOf;
   }
@@ -53,14 +60,11 @@ export class PointCamera {
   see(settings, functions) {
     const { time, plant } = clockOf(this.memory, settings.period, settings.duration);
     const count = time.length;
+    if (count < 2) return nothing(`a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`);
     const truth = new Float64Array(3 * count);
     const inFront = this.look(settings, functions, plant, truth);
-    if (inFront < 2) {
-      const problem = inFront
-        ? "the point leaves the half-space in front of the camera at once"
-        : "the point starts behind the camera; move X0 in front of it";
-      return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
-    }
+    if (inFront === 1) return nothing("the point leaves the half-space in front of the camera at once");
+    if (!inFront) return nothing(`the point starts behind the camera: ${this.remedy}`);
     const leavesAt = inFront < count ? time[inFront] : null;
     return { time: time.subarray(0, inFront), truth: truth.subarray(0, 3 * inFront), leavesAt };
   }

@@ -1,11 +1,15 @@
 // Ranges, ticks and number words of axes.
 
-/** A number as Python's format(value, ".3g") writes it. */
+/** From this power of ten on, numbers are told by it. */
+const PLAIN = 6;
+
+/** A number for people, as number() in Python's verdict.py: plain up to a million, and no zero with a sign. */
 export function short(value, digits = 3) {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
-  if (value === 0) return Object.is(value, -0) ? "-0" : "0";
+  if (value === 0) return "0";
   const [mantissa, exponent] = rounded(value, digits).split("e");
   const power = Number(exponent);
+  if (power >= digits && power < PLAIN) return String(Number(`${mantissa}e${power}`));
   if (power < -4 || power >= digits) {
     const bare = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
     return `${bare}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
@@ -60,6 +64,14 @@ export function logScale(low, high) {
   const every = Math.ceil((top - bottom) / 4);
   const ticks = Array.from({ length: Math.floor((top - bottom) / every) + 1 }, (_, k) => 10 ** (bottom + k * every));
   return { low: 10 ** bottom, high: 10 ** top, ticks, log: true };
+}
+
+/** The scale that was drawn before, if the one that is wanted lies in it and is not lost there. */
+export function keptScale(before, wanted) {
+  if (!before || Boolean(before.log) !== Boolean(wanted.log)) return wanted;
+  const [[low, high], [least, most]] = [before, wanted].map((scale) => [scale.low, scale.high].map(scale.log ? Math.log10 : Number));
+  const slack = 1e-9 * (high - low);
+  return least >= low - slack && most <= high + slack && most - least > 0.4 * (high - low) ? before : wanted;
 }
 
 const SOME = 400;

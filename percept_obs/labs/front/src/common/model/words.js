@@ -3,6 +3,8 @@
 import { readable, short } from "./scales.js";
 import { sampleAt } from "./tables.js";
 
+const MANY = 3;
+
 export function filled(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
 }
@@ -17,8 +19,9 @@ export function verdict(run, shown, model) {
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: since(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
     const gaps = run.gaps.filter((gap) => gap[2] === which);
-    besides += say("gap", { begin: since(gaps[0][0]), end: since(gaps[0][1]), reason: run.gapReasons[which - 1] });
-    if (gaps.length > 1) besides += say("more gaps", { count: gaps.length - 1 });
+    const [begin, end] = gaps[0].slice(0, 2).map(since);
+    besides += say(begin === end ? "short gap" : "gap", { begin, end, reason: run.gapReasons[which - 1] });
+    if (gaps.length > 1) besides += say(gaps.length === 2 ? "one more gap" : "more gaps", { count: gaps.length - 1 });
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
@@ -46,8 +49,9 @@ export function percent(share, digits = 3) {
 
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
-  const row = (rows) =>
-    shown.names.map((name, c) => `${name} = ${readable(rows[k * shown.width + c])}`).join(", ");
+  // Of many observers only what is hidden: what is measured differs little.
+  const told = shown.runs.length > MANY ? shown.hidden : shown.names.map((_, c) => c);
+  const row = (rows) => told.map((c) => `${shown.names[c]} = ${readable(rows[k * shown.width + c])}`).join(", ");
   const parts = [`At ${readable(shown.time[k])} s`];
   if (shown.truth) parts.push(`true ${row(shown.truth)}`);
   for (const run of shown.runs) parts.push(`${run.title} ${row(run.estimate)}`);
@@ -63,6 +67,20 @@ export function imagePlaneInWords({ problem, time, truth, width, names, runs, fo
   if (truth) parts.unshift(`the point goes from ${point(truth)} to ${point(truth, end)}`);
   if (foe) parts.push(`focus of expansion at y1 ${readable(foe[0])}, y2 ${readable(foe[1])}`);
   if (circle) parts.push(`circle of radius ${readable(Math.abs(circle[2]))} in which an instant tells little`);
+  return `${parts.join("; ")}.`;
+}
+
+/** The text equivalent of the scene of a point: how far it is, and how far the estimates put it. */
+export function sceneInWords(shown, distancesOf) {
+  if (shown.problem) return shown.problem;
+  const { truth, runs, time } = shown;
+  const last = time.length - 1;
+  const far = (value) => (Number.isNaN(value) ? "infinitely far away or behind the camera" : `at ${readable(value)} m`);
+  const parts = runs.map(({ title, estimate }) => {
+    const distances = distancesOf(estimate);
+    return `the ${title} estimate begins ${far(distances[0])} and ends ${far(distances[last])}`;
+  });
+  if (truth?.length) parts.unshift(`the point goes from ${readable(distancesOf(truth)[0])} m to ${readable(distancesOf(truth)[last])} m of the camera`);
   return `${parts.join("; ")}.`;
 }
 

@@ -1,7 +1,10 @@
 // What time charts are put together from: lines, ranges, and the same in words.
 
-import { linearScale, logScale, readable, spread } from "../model/scales.js";
+import { linearScale, logScale, readable } from "../model/scales.js";
 import { DASHES, KEPT, SOLID } from "./lines.js";
+
+/** From this ratio on, the beginning of a distance cannot be read on a scale that shows its end. */
+const MANY = 50;
 
 export function line(name, time, values, colour, dash) {
   return { name, time, values, colour, dash };
@@ -13,28 +16,44 @@ export function withKept(name, shown, ghost, theme, pick) {
   return [...kept, line(name, ...pick(shown), theme.ink, SOLID)];
 }
 
+// A scale is told as a function of `bounds`, which says between what a line stays in the time that is in sight.
+
 /** A range around the lines that are sure, which lets others leave it by as much as it is high, and no further. */
 export function rangeAround(lines, certain) {
-  const bounds = lines.map((l) => [l, spread(l.values)]).filter(([, b]) => b);
-  const sure = bounds.filter(([l]) => certain.includes(l)).map(([, b]) => b);
-  const all = bounds.map(([, b]) => b);
-  if (!all.length) return linearScale(0, 1);
-  let [low, high] = hull(sure.length ? sure : all);
-  if (sure.length) {
-    const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
-    const [least, most] = hull(all);
-    [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
-  }
-  return linearScale(low, high, 3);
+  return (bounds) => {
+    const found = lines.map((l) => [l, bounds(l)]).filter(([, b]) => b);
+    const sure = found.filter(([l]) => certain(l)).map(([, b]) => b);
+    const all = found.map(([, b]) => b);
+    if (!all.length) return linearScale(0, 1);
+    let [low, high] = hull(sure.length ? sure : all);
+    if (sure.length) {
+      const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
+      const [least, most] = hull(all);
+      [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
+    }
+    return linearScale(low, high, 3);
+  };
 }
 
-/** A logarithmic range that holds the lines' positive values, as far as they lie between a least and a most. */
-export function decades(lines, least, most) {
-  const positive = lines.map((l) => spread(l.values, { above: 0 })).filter(Boolean);
-  if (!positive.length) return logScale(1e-3, 1);
-  const [low, high] = hull(positive);
-  const top = Math.min(Math.max(high, least * 10), most);
-  return logScale(Math.min(Math.max(low, least), top / 10), top);
+/** The same for distances, in decades where the truth goes through several: both its beginning and its end can be read. */
+export function distancesAround(lines, certain) {
+  return (bounds) => {
+    const sure = lines.filter(certain).map((l) => bounds(l)).filter(Boolean);
+    const [low, high] = sure.length ? hull(sure) : [1, 1];
+    return low > 0 && high > MANY * low ? logScale(low / 2, high * 2) : rangeAround(lines, certain)(bounds);
+  };
+}
+
+/** A logarithmic range that holds a level and the lines' positive values, as far as these lie between a least and a most. */
+export function decades(lines, least, most, level = NaN) {
+  const named = level > 0 ? [[0.9 * level, 1.1 * level]] : [];
+  return (bounds) => {
+    const positive = [...lines.map((l) => bounds(l, { above: 0 })), ...named].filter(Boolean);
+    if (!positive.length) return logScale(1e-3, 1);
+    const [low, high] = hull(positive);
+    const top = Math.min(Math.max(high, least * 10), most);
+    return logScale(Math.min(Math.max(low, least), top / 10), top);
+  };
 }
 
 /** The range that holds all of these. */
@@ -68,14 +87,33 @@ export function linesOf(shown, ghost, theme, label, pick) {
   return lines.toSpliced(lines.length - shown.runs.length, 0, ...truth);
 }
 
-export function marksOf(shown, theme) {
-  return shown.runs.flatMap((run) => run.resets.map((time) => ({ time, colour: theme.lines[run.order] })));
+/** When observers were reset, in their colours. */
+export function marksOf({ runs }, theme) {
+  return runs.filter((run) => run.resets.length).map(({ resets, order }) => {
+    const text = resets.length === 1 ? "1 reset" : `${resets.length} resets`;
+    return { times: resets, colour: theme.lines[order], text };
+  });
+}
+
+/** The tolerance, and since when errors stay in it, where they come to do so. */
+export function toleranceOf({ runs, time, tolerance }, theme) {
+  const events = runs
+    .filter(({ settling }) => settling > 0 && settling < Infinity)
+    .map(({ settling, order }) => ({ time: time[0] + settling, text: `${readable(settling)} s`, colour: theme.lines[order] }));
+  return { level: tolerance, events };
+}
+
+/** Which lines of a point are sure: the truth, or where there is none the samples. */
+export function sureOf(shown) {
+  return (l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled"));
 }
 
 /** A range around the truth, or where there is none around the samples; at least as far as `reach` to both sides. */
 export function around(lines, shown, reach = 0) {
-  const certain = (l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled"));
-  const scale = rangeAround(lines, lines.filter(certain));
-  const middle = (scale.low + scale.high) / 2;
-  return scale.high - scale.low < 2 * reach ? linearScale(middle - reach, middle + reach, 3) : scale;
+  const range = rangeAround(lines, sureOf(shown));
+  return (bounds) => {
+    const scale = range(bounds);
+    const middle = (scale.low + scale.high) / 2;
+    return scale.high - scale.low < 2 * reach ? linearScale(middle - reach, middle + reach, 3) : scale;
+  };
 }

@@ -1,25 +1,30 @@
-// Time charts: lines of width 1, least and greatest value of each pixel column, so that 8,000 points cost as 800.
+// Time charts: lines, of which the least and greatest value of each pixel column are drawn, so that 8,000 points cost as 800.
 
+import { within } from "../model/playback.js";
+import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
-import { stroke } from "./image_frame.js";
+import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, sayNothing, shade, shows } from "./chart_events.js";
+import { element } from "./controls.js";
+import { fading } from "./lines.js";
+import { horizontal } from "./chart_events.js";
 import { tickLabel } from "../model/scales.js";
 
 const LEFT = 46;
 const RIGHT = 12;
 const TOP = 20;
 const BOTTOM = 18;
-/** Length of a reset's mark, which hangs from the top. */
-const MARK = 5;
 
 export class TimeChart extends Picture {
   constructor(label) {
     super("chart", label);
+    this.now = element("div", { class: "now", hidden: true });
+    this.figure.append(this.now);
     /** @type {Place | null} */
     this.place = null;
   }
 
-  /** @param {import("../../types.js").ChartParts & Record<string, any>} parts with a span of time and the cursor */
-  draw({ title, lines, band, spans = [], marks = [], bars = [], level, scale, span, cursor, theme, last }) {
+  /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time that they are drawn on */
+  draw({ title, lines, band, regions = [], marks = [], bars = [], events = [], level, scale, span, theme, first, last }) {
     const { width, height } = this.fit();
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
@@ -30,16 +35,24 @@ export class TimeChart extends Picture {
     pen.beginPath();
     pen.rect(place.left, place.top - 1, place.width, place.height + 2);
     pen.clip();
-    for (const [begin, end] of spans) shade(pen, place, begin, end, theme.warning);
-    if (level !== undefined) horizontal(pen, place, level, theme.muted, [2, 4]);
+    for (const region of regions) shade(pen, place, region, theme, first);
+    if (level !== undefined) drawLevel(pen, place, level, theme);
     if (band) fillBand(pen, place, band);
-    for (const line of lines) strokeLine(pen, place, line);
-    for (const { time, colour } of marks) vertical(pen, place, time, colour, MARK);
+    for (const line of lines) strokeLine(pen, place, line, theme);
+    drawResets(pen, place, marks, theme, first);
     drawBars(pen, place, bars);
-    pen.globalAlpha = 0.45;
-    if (cursor !== null) vertical(pen, place, cursor, theme.ink);
-    pen.globalAlpha = 1;
+    for (const event of events) drawEvent(pen, place, event, level, theme);
+    for (const line of lines) drawOutside(pen, place, line, theme);
+    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, lines, theme);
     pen.restore();
+  }
+
+  /** Mark a time, without drawing anything again. */
+  point(time) {
+    const { now, place } = this;
+    const x = time === null || !place || time < place.span.low || time > place.span.high ? null : place.x(time);
+    now.hidden = x === null;
+    if (x !== null) now.style.transform = `translateX(${Math.round(x)}px)`;
   }
 
   axes(pen, place, theme, title, last) {
@@ -70,15 +83,29 @@ export class TimeChart extends Picture {
 
   /** The time under a pointer, or null beside the chart. */
   timeAt(clientX) {
+    const time = this.nearest(clientX);
+    if (!this.place || time === null) return null;
+    return Math.abs(this.place.x(time) - this.left(clientX)) < 1 ? time : null;
+  }
+
+  /** The time nearest to a pointer. */
+  nearest(clientX) {
     if (!this.place) return null;
-    const part = (clientX - this.canvas.getBoundingClientRect().left - this.place.left) / this.place.width;
-    return part < 0 || part > 1 ? null : this.place.span.low + part * (this.place.span.high - this.place.span.low);
+    const { left, width, span } = this.place;
+    const part = within((this.left(clientX) - left) / width, 0, 1);
+    return span.low + part * (span.high - span.low);
+  }
+
+  left(clientX) {
+    return clientX - this.canvas.getBoundingClientRect().left;
   }
 }
 
 /** Where times and values lie on a canvas. */
 class Place {
   constructor(span, scale, left, top, width, height) {
+    /** @type {{left: number, right: number, y: number}[]} where words stand */
+    this.words = [];
     this.span = span;
     this.scale = scale;
     this.left = left;
@@ -103,13 +130,17 @@ class Place {
   }
 }
 
-function strokeLine(pen, place, { time, values, colour, dash }) {
+function strokeLine(pen, place, { time, values, colour, dash }, theme) {
   pen.beginPath();
   tracePath(pen, place, time, values);
   pen.strokeStyle = colour;
   pen.setLineDash(dash ?? []);
   pen.lineJoin = "bevel";
+  pen.lineWidth = theme.width;
+  pen.globalAlpha = fading(theme, colour);
   pen.stroke();
+  pen.globalAlpha = 1;
+  pen.lineWidth = 1;
 }
 
 /** One path, with gaps where values are not numbers; of each pixel column the first, least, greatest and last. */
@@ -134,7 +165,8 @@ function tracePath(pen, place, time, values) {
     before = last;
     column = -1;
   };
-  for (let k = 0; k < values.length; k++) {
+  const [from, to] = indicesIn(time, place.span);
+  for (let k = from; k <= to; k++) {
     const value = values[k];
     if (!(value - value === 0)) {
       flush();
@@ -170,39 +202,4 @@ function fillBand(pen, place, { time, low, high, colour }) {
   pen.fillStyle = colour;
   pen.fill();
   pen.globalAlpha = 1;
-}
-
-function straight(pen, from, to, colour, dash = []) {
-  pen.setLineDash(dash);
-  pen.strokeStyle = colour;
-  stroke(pen, from, to);
-}
-
-function horizontal(pen, place, value, colour, dash) {
-  const y = Math.round(place.y(value)) + 0.5;
-  straight(pen, [place.left, y], [place.left + place.width, y], colour, dash);
-}
-
-/** A line at a time from the top down, or a tick of so many pixels. */
-function vertical(pen, place, time, colour, length = place.height) {
-  const x = Math.round(place.x(time)) + 0.5;
-  straight(pen, [x, place.top], [x, place.top + length], colour);
-}
-
-/** A time in which something is missing; never thinner than a pixel. */
-function shade(pen, place, begin, end, colour) {
-  const left = place.x(begin);
-  pen.globalAlpha = 0.14;
-  pen.fillStyle = colour;
-  pen.fillRect(left, place.top, Math.max(1, place.x(end) - left), place.height);
-  pen.globalAlpha = 1;
-}
-
-/** A row of thin bars for each colour, from the top on. */
-function drawBars(pen, place, bars) {
-  const rows = [...new Set(bars.map(({ colour }) => colour))];
-  for (const { begin, end, colour } of bars) {
-    pen.fillStyle = colour;
-    pen.fillRect(place.x(begin), place.top + 1 + 5 * rows.indexOf(colour), Math.max(1, place.x(end) - place.x(begin)), 3);
-  }
 }

@@ -84,6 +84,8 @@ export class Handle {
     const [left, top] = [inside(x(at[0]), box.left), inside(y(at[1]), box.top)];
     const outside = Math.abs(left - x(at[0])) + Math.abs(top - y(at[1])) > 1;
     if (outside !== node.classList.contains("outside")) node.classList.toggle("outside");
+    const right = left > box.left + 0.7 * box.side;
+    if (right !== node.classList.contains("right")) node.classList.toggle("right");
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 

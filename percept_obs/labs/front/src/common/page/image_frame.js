@@ -1,5 +1,7 @@
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
+import { LINE } from "./lines.js";
+import { endMark, startMark } from "./marks.js";
 import { linearScale, tickLabel } from "../model/scales.js";
 
 const EDGE = 34;
@@ -10,6 +12,12 @@ export function squareAround(bounds) {
   const centre = bounds.map(([low, high]) => (low + high) / 2);
   const ticks = centre.map((c) => linearScale(c - half, c + half, 4).ticks.filter((t) => Math.abs(t - c) <= half));
   return { centre, half, ticks };
+}
+
+/** Whether a square shows what another one would: that it is not lost in it, and leaves it by a little at most. */
+export function showsToo({ centre, half }, wanted) {
+  const apart = Math.max(...centre.map((value, i) => Math.abs(value - wanted.centre[i])));
+  return apart + wanted.half <= 1.2 * half && wanted.half > 0.4 * half;
 }
 
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
@@ -78,26 +86,15 @@ export function stroke(pen, from, to) {
   pen.stroke();
 }
 
-/** A circle, full or open, where there is a place for it. */
-export function dot(pen, x, y, radius, colour, full = true) {
-  if (Number.isNaN(x + y)) return;
-  pen.setLineDash([]);
-  pen.fillStyle = pen.strokeStyle = colour;
-  pen.beginPath();
-  pen.arc(x, y, radius, 0, 2 * Math.PI);
-  if (full) pen.fill();
-  else pen.stroke();
-}
-
-/** The start of a path is an open circle, the end a full square. */
+/** The marks of a path's ends. */
 export function drawEnds(pen, rows, width, { x, y }, theme) {
   const end = rows.length - width;
-  dot(pen, x(rows[0]), y(rows[1]), 4, theme.ink, false);
-  pen.fillRect(x(rows[end]) - 3.5, y(rows[end + 1]) - 3.5, 7, 7);
+  startMark(pen, x(rows[0]), y(rows[1]), theme);
+  endMark(pen, x(rows[end]), y(rows[end + 1]), theme);
 }
 
 /** One path of rows of numbers, whose coordinates y1, y2 stand at `first`, with gaps where they are none. */
-export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left, top, far }, colour, dash) {
+export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left, top, far, lineWidth = LINE }, colour, dash) {
   const [middle1, middle2] = centre;
   // Points closer than a pixel do not show.
   const near = 1.2 / scale;
@@ -123,7 +120,9 @@ export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left,
   }
   pen.strokeStyle = colour;
   pen.setLineDash(dash);
+  pen.lineWidth = lineWidth;
   pen.stroke();
+  pen.lineWidth = 1;
 }
 
 function clamp(value, bound) {

@@ -1,73 +1,134 @@
 // The image plane: the point's path, the estimates, and a handle.
 
 import { spread } from "../model/scales.js";
-import { sampleAt } from "../model/tables.js";
+import { between, valueBetween } from "../model/playback.js";
 import { imagePlaneInWords } from "../model/words.js";
 import { Picture } from "./canvas.js";
+import { rimOf } from "../model/space.js";
+import { button } from "./controls.js";
+import { indicesIn } from "../model/timeline.js";
 import { hull } from "./chart_parts.js";
 import { Handle } from "./handle.js";
-import { clipTo, dot, drawAxes, drawEnds, drawPath, placed, squareAround } from "./image_frame.js";
-import { DASHES, KEPT, SOLID } from "./lines.js";
+import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
+import { DASHES, fading, KEPT, SOLID } from "./lines.js";
+import { meanSpeed } from "../model/why.js";
+import { drawSwung } from "./swing.js";
+import { drawWhy } from "./why.js";
+import { ghostMark, pointMark, rimMark } from "./marks.js";
+
+/** How much is seen of the path at times that are not in sight. */
+const OTHER_TIMES = 0.2;
 
 /** A picture of a square of the image, with handles to drag. */
 export class FramedImage extends Picture {
-  constructor(handles) {
+  constructor(lab, handles) {
     super("image-plane", "Image plane");
+    this.lab = lab;
     /** @type {ReturnType<typeof squareAround> | null} */
     this.square = null;
     this.handles = handles.map((handle) => new Handle(handle));
-    this.figure.append(...this.handles.map(({ node }) => node));
+    this.choices = 0;
+    /** @type {any} the scene beside it */
+    this.scene = null;
+    const said = { class: "fitting", hidden: true, "data-control": "fit image", title: "Show all of the path" };
+    this.fitting = button("Fit", () => {
+      this.square = null;
+      this.fitting.hidden = true;
+      lab.redraw();
+    }, said);
+    this.figure.append(this.fitting, ...this.handles.map(({ node }) => node));
   }
 
-  /** Paint inside a square, and put handles in their places; while the hand holds one, the square stays as it is. */
-  paint(squareOf, theme, inside, places) {
-    const square = (this.handles.some(({ grip }) => grip) && this.square) || squareOf();
+  /** The square that stays while a hand moves something and after: a choice, or a press on "Fit", takes another one. */
+  squareFor(wanted) {
+    const { square, lab } = this;
+    if (!square) return wanted;
+    const there = showsToo(square, wanted);
+    const chosen = this.choices !== lab.choices && !lab.held;
+    if (chosen) this.choices = lab.choices;
+    this.fitting.hidden = there || chosen;
+    return there || !chosen ? square : wanted;
+  }
+
+  /** Paint inside a square, and put handles in their places. */
+  paint(squareOf, theme, inside, placesIn) {
+    const square = this.squareFor(squareOf());
     this.square = square;
-    const frame = placed(this, square);
+    const frame = { ...placed(this, square), lineWidth: theme.width };
     const pen = this.context;
     this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();
     clipTo(pen, frame.box);
     inside(pen, frame);
     pen.restore();
+    const places = placesIn(square);
     this.handles.forEach((handle, k) => handle.stand(places[k], frame));
+  }
+
+  /** The images of the copies that swing along what is not seen. */
+  swing(pen, { box, x, y }, shown, cursor, theme) {
+    const swung = this.scene?.swung(shown, cursor, theme);
+    if (swung) drawSwung(pen, swung.copies, ({ image }) => [x(image[0]), y(image[1])], swung.words, [box.left + 4, box.top + 14], theme);
   }
 }
 
 /** The image of one point; `placeOf` says of a result where the handle stands. */
 export class ImagePlane extends FramedImage {
-  constructor(lab, { name, label, tag, placeOf, onMove }) {
+  constructor(lab, { name, label, tag, placeOf, towardsOf = (_shown) => null, arrowsOf, onMove }) {
     const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
-    super([{ name, ...said, onMove, onRest: () => lab.rest() }]);
+    super(lab, [{ name, ...said, onMove, onRest: () => lab.rest() }]);
     this.placeOf = placeOf;
-    this.handles[0].node.dataset.tag = tag;
+    this.arrowsOf = arrowsOf;
+    this.tag = tag;
+    this.towardsOf = towardsOf;
   }
 
   draw(shown, ghost, cursor, theme) {
     const place = this.placeOf(shown);
     const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
-    this.paint(() => squareOf(shown, ghost, place), theme, inside, [place]);
+    const towards = this.towardsOf(shown);
+    const placesIn = ({ centre, half }) => [place ?? (towards && centre.map((value, c) => value + 1.5 * half * towards[c]))];
+    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, inside, placesIn);
+    const tag = place || !towards ? this.tag : `${this.tag} at infinity`;
+    if (this.handles[0].node.dataset.tag !== tag) this.handles[0].node.dataset.tag = tag;
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {
     if (shown.circle) drawCircle(pen, shown.circle, frame, theme);
-    const trace = (rows, colour, dash) => drawPath(pen, rows, { width: shown.width }, frame, colour, dash);
+    const { width } = shown;
+    const [from, to] = shown.time.length ? indicesIn(shown.time, this.lab.span) : [0, -1];
+    const some = from > 0 || to + 1 < shown.time.length;
+    const trace = (rows, colour, dash, all = width * shown.time.length) => {
+      pen.globalAlpha = (some ? OTHER_TIMES : 1) * fading(theme, colour);
+      drawPath(pen, rows, { width }, frame, colour, dash);
+      pen.globalAlpha = fading(theme, colour);
+      if (some && rows.length === all) drawPath(pen, rows.subarray(from * width, (to + 1) * width), { width }, frame, colour, dash);
+      pen.globalAlpha = 1;
+    };
     ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
     if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
-    if (shown.truth?.length) drawEnds(pen, shown.truth, shown.width, frame, theme);
-    if (cursor !== null) drawAt(pen, shown, cursor, frame, theme);
+    if (shown.truth?.length) drawEnds(pen, shown.truth.subarray(from * width, (to + 1) * width), width, frame, theme);
+    if (cursor === null) return;
+    if (shown.truth?.length) {
+      const speed = meanSpeed(shown.time, shown.truth, width, 0, [from, to]);
+      drawWhy(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
+    }
+    drawAt(pen, shown, cursor, frame, theme);
+    this.swing(pen, frame, shown, cursor, theme);
   }
 
   describe(shown) {
     this.tell(imagePlaneInWords(shown));
-    this.handles[0].describe();
+    this.handles[0].describe(this.towardsOf(shown) ? ", at infinity" : "");
   }
 }
 
 /** A square with round numbers that holds the path and the handle, unless that is far away. */
-function squareOf(shown, ghost, place) {
-  const seen = (c) => (shown.truth?.length ? bound(shown.truth, shown.width, c) : bound(shown.outputs, shown.sampled, c));
+function squareOf(shown, ghost, place, span) {
+  const [from, to] = shown.time.length ? indicesIn(shown.time, span) : [0, -1];
+  const [rows, width] = shown.truth?.length ? [shown.truth, shown.width] : [shown.outputs, shown.sampled];
+  const seen = (c) => bound(rows.subarray(from * width, (to + 1) * width), width, c);
   const bounds = [0, 1].map((c) => {
     let found = seen(c) ?? [-1, 1];
     for (const run of ghost?.runs ?? []) {
@@ -100,8 +161,20 @@ function drawCircle(pen, [y1, y2, radius], { x, y, scale }, theme) {
   pen.stroke();
 }
 
-function drawAt(pen, shown, cursor, { x, y }, theme) {
-  const at = shown.width * sampleAt(shown.time, cursor);
-  for (const { estimate, order } of shown.runs) dot(pen, x(estimate[at]), y(estimate[at + 1]), 3.5, theme.lines[order]);
-  if (shown.truth) dot(pen, x(shown.truth[at]), y(shown.truth[at + 1]), 3.5, theme.ink);
+/** The point and its estimates at a time, between samples too. */
+function drawAt(pen, shown, cursor, frame, theme) {
+  const { x, y } = frame;
+  const at = between(shown.time, cursor);
+  /** @type {(rows: Float64Array) => [number, number]} */
+  const place = (rows) => [x(valueBetween(rows, shown.width, 0, at)), y(valueBetween(rows, shown.width, 1, at))];
+  if (shown.truth) pointMark(pen, ...place(shown.truth), theme.ink, theme);
+  const { box } = frame;
+  const corners = [[box.left + 1, box.top + 1], [box.left + box.side - 1, box.top + box.side - 1]];
+  const middle = [box.left + box.side / 2, box.top + box.side / 2];
+  for (const { estimate, order } of shown.runs) {
+    const there = place(estimate);
+    const rim = rimOf(middle, there, corners);
+    if (rim) rimMark(pen, rim, "", theme.lines[order], theme);
+    else ghostMark(pen, ...there, theme.lines[order]);
+  }
 }

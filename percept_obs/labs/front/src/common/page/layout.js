@@ -1,8 +1,13 @@
 // Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
 
 import { button, element } from "./controls.js";
+import { Legend } from "./legend.js";
 import { swatch } from "./lines.js";
+import { Player } from "./player.js";
+import { zoomable } from "./zooming.js";
 
+/** What makes something else of the space bar. */
+const OWN_SPACE = "input, select, button, summary, a, .player";
 const CHIP = { class: "chip", "aria-expanded": "false" };
 
 export function build(lab, place, presets) {
@@ -14,13 +19,12 @@ export function build(lab, place, presets) {
   const why = element("ul", { class: "why" });
   const analysis = element("ul", { class: "analysis" });
   const reading = element("p", { class: "reading" });
-  const legend = element("ul", { class: "legend", "aria-label": "Lines" });
+  const legend = new Legend(lab);
   const card = element("div", { class: "card", hidden: true });
   const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
   const keep = button("Keep this run", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false" });
   const back = button("Back", () => lab.goBack(), { "data-control": "back", hidden: true });
-  const cursor = element("input", { type: "range", min: 0, max: 1, step: 0.001, value: 0, "data-control": "cursor" });
-  cursor.setAttribute("aria-label", "Time at which values are read");
+  const player = new Player(lab);
 
   /** Show the preset that is open, with its answer once it was asked for. */
   function preset() {
@@ -85,7 +89,7 @@ export function build(lab, place, presets) {
       "div",
       { class: "stage" },
       element("div", { class: "left" }, ...planes.map((plane) => plane.figure)),
-      element("div", { class: "right" }, legend, chartBox, element("label", { class: "cursor" }, element("span", {}, "read at"), cursor), reading),
+      element("div", { class: "right" }, legend.body, chartBox, player.body, reading),
       element("div", { class: "words" }, verdicts, why),
     ),
     ...[silence, live, panel.body],
@@ -95,14 +99,15 @@ export function build(lab, place, presets) {
   place.append(root);
 
   keys(root, lab);
-  cursor.addEventListener("input", () => {
-    const { time } = lab.shown;
-    if (time.length) lab.point(time[0] + Number(cursor.value) * (time.at(-1) - time[0]));
+  root.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.defaultPrevented || event.target.closest(OWN_SPACE)) return;
+    event.preventDefault();
+    player.toggle();
   });
-  for (const chart of Object.values(charts)) {
-    chart.canvas.addEventListener("pointermove", (event) => lab.point(chart.timeAt(event.clientX)));
-    chart.canvas.addEventListener("pointerleave", () => lab.point(null));
+  for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
+    root.addEventListener(type, () => lab.hold(type === "pointerdown"), true);
   }
+  for (const chart of Object.values(charts)) zoomable(lab, chart, player);
 
   let spoken = "";
   const view = {
@@ -112,9 +117,8 @@ export function build(lab, place, presets) {
     words(found) {
       const verdictOf = ({ which, title, text }) => [which, title, text];
       beside(verdicts, found.verdicts.map(verdictOf), (title, text) => [element("strong", {}, `${title}:`), ` ${text}`]);
-      beside(legend, found.legend, (text) => [text]);
+      legend.show(found.legend);
       fill(why, found.reasons);
-      put(reading, found.reading);
       spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
       const { settings } = lab;
       put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
@@ -122,6 +126,10 @@ export function build(lab, place, presets) {
       code.hidden ||= code.textContent !== lab.copy();
     },
     rested: () => put(live, spoken),
+    read: (text) => put(reading, text),
+    time: (cursor) => player.show(cursor),
+    playing: () => player.playing,
+    close: () => player.close(),
     ...functions,
     analysis: (sentences) => fill(analysis, sentences),
     answered: (answer) => analysis.classList.toggle("of-others", !answer),

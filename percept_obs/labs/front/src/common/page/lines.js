@@ -5,11 +5,25 @@ export const DASHES = [
   [7, 4], [2, 3], [10, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3], [4, 2, 4, 7], [2, 7], [16, 3, 5, 3], [13, 3, 2, 3, 7, 3],
 ];
 
+/** Width of all lines, in pixels; thin ones while a hand moves, for a page draws wide dashes several times slower. */
+export const LINE = 2;
+export const MOVING_LINE = 1;
+
+/** How much of a line is seen while the hand picks one out by its colour. */
+export function fading({ picked }, colour) {
+  return picked && picked !== colour ? 0.12 : 1;
+}
+
 export const SOLID = [];
 export const KEPT = [1, 3];
 export const FIT = [5, 3];
 export const BOUND = [1, 5];
 const NAMED = { truth: SOLID, kept: KEPT, fit: FIT, bound: BOUND };
+
+/** How a line looks by its place in the order; without one it is the truth. */
+export function lookOf(theme) {
+  return (order) => (order === null ? { colour: theme.ink, dash: SOLID } : { colour: theme.lines[order], dash: DASHES[order] });
+}
 
 /** A piece of a line, for legends: which is "truth", "kept", "fit", "bound" or the line's place in the order. */
 export function swatch(which) {

@@ -1,16 +1,12 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
 import { Results } from "../model/results.js";
-import { linearScale } from "../model/scales.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
-import { chartInWords } from "./chart_parts.js";
-import { TimeChart } from "./charts.js";
-import { Following } from "./following.js";
 import { build } from "./layout.js";
-
-/** @typedef {import("../../types.js").Plane} Plane */
-/** @typedef {import("../../types.js").ChartParts} ChartParts */
+import { LINE } from "./lines.js";
+import { Showing } from "./showing.js";
+import { TimeCharts } from "./time_charts.js";
 
 const REST = 150;
 const BETWEEN_WORDS = 250;
@@ -25,39 +21,32 @@ const BETWEEN_WORDS = 250;
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
-export class Live extends Following {
+export class Live extends Showing {
   constructor(widget, model, { Kernels, Engine, ...parts }) {
-    super(widget, model, parts.words);
-    this.parts = parts;
+    super(widget, model, parts);
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
-    /** @type {Plane[]} */
-    this.planes = [];
-    /** @type {Record<string, TimeChart>} */
-    this.charts = {};
     /** @type {any} */
     this.formulas = null;
-    /** @type {any} the result of the kept run */
-    this.ghost = null;
-    /** @type {Record<string, ChartParts>} */
-    this.drawn = {};
     this.pictures = 0;
     this.spoken = 0;
   }
 
-  get figures() {
-    return [...this.planes, ...Object.values(this.charts)];
-  }
-
   open(place) {
     const { labels, presets } = this.parts;
-    this.charts = Object.fromEntries(Object.entries(labels).map(([name, label]) => [name, new TimeChart(label)]));
+    this.time = new TimeCharts(labels);
     this.follow(build(this, place, presets));
+  }
+
+  close() {
+    super.close();
+    this.view.close();
   }
 
   // What the hand does.
 
   touched(chosen) {
+    if (chosen) this.choices += 1;
     this.schedule();
     if (!chosen) {
       clearTimeout(this.resting);
@@ -87,15 +76,13 @@ export class Live extends Following {
     this.touched(true);
   }
 
-  keep() {
-    this.change({ kept: this.settings.kept ? null : { ...structuredClone(this.settings), kept: null } }, true);
+  reset() {
+    this.time.timeline.forget();
+    super.reset();
   }
 
-  point(cursor) {
-    if (cursor === this.state.cursor || this.shown?.problem) return;
-    this.state.cursor = cursor;
-    this.spoken = 0;
-    this.schedule();
+  keep() {
+    this.change({ kept: this.settings.kept ? null : { ...structuredClone(this.settings), kept: null } }, true);
   }
 
   // What is there to show it with.
@@ -123,6 +110,7 @@ export class Live extends Following {
   async settle() {
     clearTimeout(this.resting);
     this.resting = null;
+    if (this.theme && this.theme.width !== LINE) this.schedule();
     if (this.pending) this.paint();
     const { settings } = this;
     try {
@@ -150,10 +138,10 @@ export class Live extends Following {
       return;
     }
     // Nobody reads sixty texts a second, and the page would lay itself out for each of them.
-    const speaking = performance.now() - this.spoken > BETWEEN_WORDS;
+    const speaking = this.stale && performance.now() - this.spoken > BETWEEN_WORDS;
     try {
       Object.assign(this, this.results.of(settings, speaking));
-      this.theme ??= themeOf(this.view.root);
+      this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
       this.pictures += 1;
       if (speaking) this.speakNow();
@@ -171,34 +159,6 @@ export class Live extends Following {
     );
   }
 
-  // What is shown.
-
-  chosen() {
-    const { problem, settings } = this.shown;
-    return problem ? [] : this.model.pictures.filter((name) => settings.pictures.includes(name));
-  }
-
-  draw() {
-    const { shown, ghost, theme } = this;
-    const { chartOf } = this.parts;
-    if (shown.problem || shown.refusal) this.state.cursor = null;
-    const { cursor } = this.state;
-    for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
-    this.view.answered(this.answered());
-    const chosen = this.chosen();
-    for (const [name, chart] of Object.entries(this.charts)) chart.figure.hidden = !chosen.includes(name);
-    const more = this.besides();
-    this.drawn = Object.fromEntries(chosen.map((name) => [name, chartOf(name, shown, ghost, theme, more)]));
-    if (!chosen.length) return;
-    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
-    const recorded = shown.settings.scenario in (this.model.recordings ?? {});
-    const [low, high] = [shown.time[0], recorded ? shown.time.at(-1) : shown.settings.duration];
-    const span = { low, high, ticks: linearScale(low, high, this.width < 600 ? 4 : 8).ticks };
-    for (const [name, chart] of Object.entries(this.drawn)) {
-      this.charts[name].draw({ ...chart, span, cursor, theme, last: name === chosen.at(-1) });
-    }
-  }
-
   /** Bring words and controls to what is drawn. */
   speakNow() {
     this.spoken = performance.now();
@@ -211,12 +171,9 @@ export class Live extends Following {
 
   speak() {
     const { shown, model, parts } = this;
-    const { cursor } = this.state;
-    const unread = cursor === null || shown.problem || shown.refusal;
     this.view.words({
       verdicts: this.verdicts(),
       reasons: parts.reasons(shown, model),
-      reading: unread ? "" : parts.readingAt(shown, cursor),
       problem: shown.problem ?? (shown.refusal || undefined),
       legend: [...this.legend(), ...(shown.settings.kept ? [["kept", "kept run"]] : [])],
     });
@@ -228,23 +185,19 @@ export class Live extends Following {
     return shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) }));
   }
 
-  /** What else the time charts show. */
-  besides() {
-    return {};
-  }
-
   copy() {
     return this.parts.pythonOf(this.shown, this.model);
   }
 
   legend() {
-    const { truth, runs } = this.shown;
+    const { truth, runs, problem } = this.shown;
+    if (problem) return [];
     return [...(truth ? [["truth", "truth"]] : []), ...runs.map(({ order, title }) => [order, title])];
   }
 
   describe() {
     for (const plane of this.planes) plane.describe(this.shown);
-    for (const [name, chart] of Object.entries(this.drawn)) this.charts[name].tell(chartInWords(chart));
+    this.time.describe();
     this.formulas.show(this.shown.settings);
   }
 

@@ -1,10 +1,11 @@
 // A numeric witness: the image's motion at a point, as the typed lines have it and as it is.
 
 import { readable } from "../../common/model/scales.js";
-import { dot, squareAround, stroke } from "../../common/page/image_frame.js";
+import { squareAround, stroke } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
 import { element } from "../../common/page/controls.js";
 import { DASHES, SOLID, swatch } from "../../common/page/lines.js";
+import { pointMark } from "../../common/page/marks.js";
 import { put } from "../../common/page/layout.js";
 
 const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
@@ -15,14 +16,13 @@ const MINE = 1;
 
 export class Witness extends FramedImage {
   constructor(lab) {
-    super([
+    super(lab, [
       {
         ...{ name: "point", label: "Point of the image: drag it, or use the arrow keys", className: "diamond" },
         onMove: (place) => this.move(place),
         onRest: () => lab.rest(),
       },
     ]);
-    this.lab = lab;
     this.handles[0].node.dataset.tag = "y";
     this.words = element("p", { class: "reading" });
     const entry = (which, text) => element("li", {}, swatch(which), text);
@@ -47,9 +47,9 @@ export class Witness extends FramedImage {
       const scale = LENGTH / Math.max(length(found.true), mine ? length(mine) : 0, 1e-9);
       arrow(pen, frame, point, found.true, scale, theme.ink, SOLID, 2.5);
       if (mine) arrow(pen, frame, point, mine, scale, theme.lines[MINE], DASHES[MINE], 2.5);
-      dot(pen, frame.x(point[0]), frame.y(point[1]), 3, theme.ink);
+      pointMark(pen, frame.x(point[0]), frame.y(point[1]), theme.ink, theme);
     };
-    this.paint(() => SQUARE, theme, inside, [point.slice(0, 2)]);
+    this.paint(() => SQUARE, theme, inside, () => [point.slice(0, 2)]);
     if (!found) return;
     const told = inWords(found, point);
     put(this.words, told);

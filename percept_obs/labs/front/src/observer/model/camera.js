@@ -4,7 +4,7 @@ import { errorOf, PointCamera } from "../../common/model/camera.js";
 
 export class Camera extends PointCamera {
   constructor(model, memory) {
-    super(model, memory, 2);
+    super(model, memory, 2, "move its start X, Y, Z in front of it");
   }
 
   record(settings, functions) {

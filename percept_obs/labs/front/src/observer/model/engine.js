@@ -8,7 +8,11 @@ import { switchOf } from "../../common/model/settings.js";
 import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
 import { Camera, constantMotion, shapeOf } from "./camera.js";
 import { keyOf } from "./kernels.js";
-import { windowed } from "./measures.js";
+import { spansInside, windowed } from "./measures.js";
+
+/** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
+const INFINITY = 1e6;
+const NEARLY = 1e-9;
 
 export class Engine extends Runner {
   constructor(model) {
@@ -30,9 +34,12 @@ export class Engine extends Runner {
       judged: this.model.judged,
       runs: [],
       excitation: null,
+      inside: [],
       whole: false,
     };
     if (result.problem) return { ...result, whole: true };
+    const { truth, time, circle } = result;
+    if (truth && circle) result.inside = spansInside(time, truth, 3, circle);
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
     result.runs = settings.observers.map((name) => {
@@ -94,14 +101,27 @@ export class Engine extends Runner {
 
   /** Where the translation points in the image, and where an instant tells too little. */
   geometry(settings, functions, form) {
-    const nowhere = { foe: null, circle: null };
+    const nowhere = { foe: null, foeTowards: null, circle: null };
     if (settings.scenario in this.model.recordings) return nowhere;
     const parameters = [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
     const foe = Array.from(functions.foe(parameters, [0, 0]));
-    if (!foe.every((v) => Math.abs(v) < 1e6)) return nowhere;
-    if (!form.circle) return { foe, circle: null };
-    return { foe, circle: Array.from(functions.circle([...parameters, settings.threshold], [0, 0, 0])) };
+    if (!foe.every((v) => Math.abs(v) < INFINITY)) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
+    const found = { foe, foeTowards: null, circle: null };
+    if (!form.circle) return found;
+    return { ...found, circle: Array.from(functions.circle([...parameters, settings.threshold], [0, 0, 0])) };
   }
+}
+
+/** The direction in the image in which a focus of expansion lies that is at infinity; null where nothing translates. */
+function towardsFoe(settings, functions) {
+  const shape = shapeOf(settings);
+  const length = Math.hypot(...settings.b);
+  // A little of the translation along the middle ray brings it back from infinity, on the same side.
+  const ahead = functions.ray([0, 0, ...shape], [0, 0, 0]);
+  const b = settings.b.map((value, i) => value + NEARLY * length * ahead[i]);
+  const [y1, y2] = functions.foe([...settings.A.flat(), ...b, ...shape], [0, 0]);
+  const far = Math.hypot(y1, y2);
+  return length > 0 && far < Infinity && far > 0 ? [y1 / far, y2 / far] : null;
 }
 
 /** The b that puts the focus of expansion at an image point, with its distance from the camera kept. */
@@ -109,7 +129,10 @@ export function translationTowards(place, settings, functions) {
   const shape = shapeOf(settings);
   const ray = functions.ray([...place, ...shape], [0, 0, 0]);
   const [, , distance] = functions.project([...settings.b, ...shape], [0, 0, 0]);
-  return Array.from(ray, (entry) => entry * distance);
+  const length = Math.hypot(...settings.b);
+  // From infinity it comes back with the speed kept, since it had no distance from the camera.
+  const size = Math.abs(distance) > NEARLY * length ? distance : length / Math.hypot(...ray);
+  return Array.from(ray, (entry) => entry * size);
 }
 
 /** The estimates at the first sample: that sample and 0, or what is asked for. */

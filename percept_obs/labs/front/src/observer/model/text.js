@@ -5,7 +5,7 @@ import { leavingInWords } from "../../common/model/words.js";
 
 const UNEXCITED = 1e-4;
 
-export function reasons(shown) {
+export function reasons(shown, model) {
   const { settings, measured, names, hiddenNames } = shown;
   if (shown.problem) return [shown.problem];
   const found = leavingInWords(shown);
@@ -21,6 +21,12 @@ export function reasons(shown) {
   }
   if (measured.length < hiddenNames.length) {
     found.push(`Only ${names[measured[0]]} is measured: an instant never tells both hidden coordinates, a window may.`);
+  }
+  if (shown.foeTowards) {
+    found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
+  }
+  if (!(settings.scenario in model.recordings) && settings.b.every((value) => value === 0)) {
+    found.push("Nothing translates, b = 0: there is no focus of expansion, and images do not tell any distance.");
   }
   const nearest = nearestToFoe(shown);
   if (nearest && shown.circle && nearest.distance < Math.abs(shown.circle[2])) {

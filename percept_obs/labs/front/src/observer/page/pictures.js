@@ -4,7 +4,7 @@ import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
 import { SOLID } from "../../common/page/lines.js";
-import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
+import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range" };
 
@@ -17,7 +17,8 @@ export const LABELS = {
 };
 
 export function chartOf(name, shown, ghost, theme) {
-  return BUILD[name](shown, ghost, theme);
+  const regions = (shown.inside ?? []).map(([begin, end]) => ({ begin, end, text: "unobservable circle" }));
+  return { regions, ...BUILD[name](shown, ghost, theme) };
 }
 
 const BUILD = {
@@ -43,13 +44,13 @@ const BUILD = {
   distance(shown, ghost, theme) {
     const lines = linesOf(shown, ghost, theme, "distance", ({ width }, rows) => distancesOf(rows, width));
     const title = `${NAMES[shown.settings.surface]} in m`;
-    return { title, lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
+    return { title, lines, scale: distancesAround(lines, sureOf(shown)), marks: marksOf(shown, theme) };
   },
   error(shown, ghost, theme) {
     const [own, kept] = [shown, ghost].map((result) => (result?.truth ? result : null));
     const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
     const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
-    return { title, lines, scale: decades(lines, 1e-6, 1e2), level: shown.tolerance, marks: marksOf(shown, theme) };
+    return { title, lines, scale: decades(lines, 1e-6, 1e2, shown.tolerance), ...toleranceOf(shown, theme), marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {
     const lines = withKept("excitation", shown, ghost, theme, ({ excitation: { time, smallest } }) => [time, smallest]);

@@ -1,11 +1,12 @@
 // The whole of a run: points in motion, camera, observer, and what is read off them.
 
+import { settlingTime } from "../../common/model/errors.js";
 import { Memory } from "../../common/model/memory.js";
 import { differences } from "../../common/model/tables.js";
 import { Camera } from "./camera.js";
 import { inversesOf } from "./flow.js";
 import { windowsOf } from "./gramian.js";
-import { decayRate, norms, pointErrors, spansOf } from "./measures.js";
+import { decayRate, largestOf, norms, pointErrors, spansOf } from "./measures.js";
 import { Observer } from "./observer.js";
 
 export class PointsEngine {
@@ -26,11 +27,13 @@ export class PointsEngine {
     const size = norms(truth, estimate, n);
     const errors = pointErrors(layout, truth, estimate, n);
     const distances = pointErrors(layout, truth, new Float64Array(truth.length), n);
+    const relative = errors.map((values, p) => values.map((value, k) => value / distances[p][k]));
+    const worst = largestOf(relative);
     const result = {
       ...{ settings, points, n, names: layout.names, ...recording, estimate, divergedAt, size },
       estimated: this.camera.project(scene, estimate),
       errors,
-      relative: errors.map((values, p) => values.map((value, k) => value / distances[p][k])),
+      ...{ relative, worst, settling: settlingTime(time, worst, this.model.tolerance) },
       tolerance: this.model.tolerance,
       fit: decayRate(time, size),
       absences: Array.from({ length: points }, (_, k) => spansOf(time, outputs, points, k)),

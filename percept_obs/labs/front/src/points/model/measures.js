@@ -27,6 +27,11 @@ export function pointErrors({ begins, axes, states, entries }, truth, estimate, 
   });
 }
 
+/** The largest of several columns at each sample; NaN where one of them is not there. */
+export function largestOf(columns) {
+  return columns[0].map((_, k) => columns.reduce((most, values) => Math.max(most, values[k]), 0));
+}
+
 /** The exponential fitted to the last two thirds of an error: its rate and its logarithm at time 0, or null. */
 export function decayRate(time, size) {
   const begin = time.at(-1) / 3;

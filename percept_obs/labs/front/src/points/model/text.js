@@ -1,7 +1,6 @@
 // What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
 
 import { derived } from "../../common/model/derived.js";
-import { settlingTime } from "../../common/model/errors.js";
 import { readable, short } from "../../common/model/scales.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { filled, settledInWords } from "../../common/model/words.js";
@@ -9,20 +8,21 @@ import { inWords, mainly } from "./directions.js";
 import { eigen } from "./symmetric.js";
 
 const MOST_ABSENCES = 3;
+/** Rates below this, per second, are those of rounding. */
+const NO_RATE = 1e-9;
 
 /** What happened to the error, as PointsRun.verdict() in Python. */
-export function verdict({ time, relative, divergedAt }, model) {
+export function verdict({ time, worst, settling, divergedAt }, model) {
   const { verdicts, remedy, judged, tolerance } = model;
   if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
-  const worst = relative[0].map((_, k) => Math.max(...relative.map((values) => values[k])));
   const error = { judged, error: worst.at(-1), tolerance };
-  return settledInWords(error, settlingTime(time, worst, tolerance), time.at(-1) - time[0], model);
+  return settledInWords(error, settling, time.at(-1) - time[0], model);
 }
 
 /** How fast the error decays, and what is guaranteed. */
 export function decayInWords({ fit }, bound) {
   if (!fit) return "no rate can be fitted to the last two thirds of the run";
-  const measured = `${readable(fit.rate, 2)} per second, fitted from ${readable(fit.begin)} s on`;
+  const measured = `${readable(Math.abs(fit.rate) < NO_RATE ? 0 : fit.rate, 2)} per second, fitted from ${readable(fit.begin)} s on`;
   return bound === null ? measured : `${measured}; at least ${readable(bound, 2)} is guaranteed`;
 }
 

@@ -1,11 +1,15 @@
 // The image plane of many points: their paths, those of their estimates, and each point at time 0 as a handle.
 
 import { readable, spread } from "../../common/model/scales.js";
+import { between, valueBetween } from "../../common/model/playback.js";
+import { meanSpeed } from "../../common/model/why.js";
+import { drawWhy } from "../../common/page/why.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { hull } from "../../common/page/chart_parts.js";
-import { dot, drawPath, squareAround } from "../../common/page/image_frame.js";
+import { drawPath, squareAround } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
 import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
+import { ghostMark, pointMark } from "../../common/page/marks.js";
 import { imagePlaneInWords } from "../model/text.js";
 
 const NEARER = ["-", "PageDown"];
@@ -16,13 +20,14 @@ const FAINT = 0.35;
 const HIDDEN = [1, 4];
 
 export class ImagePlane extends FramedImage {
-  constructor(lab, most) {
-    super(Array.from({ length: most }, (_, k) => handleOf(lab, k)));
+  constructor(lab, most, arrowsOf) {
+    super(lab, Array.from({ length: most }, (_, k) => handleOf(lab, k)));
+    this.arrowsOf = arrowsOf;
   }
 
   draw(shown, ghost, cursor, theme) {
     const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
-    this.paint(() => squareOf(shown), theme, inside, this.handles.map((_, k) => startOf(shown, k)));
+    this.paint(() => squareOf(shown), theme, inside, () => this.handles.map((_, k) => startOf(shown, k)));
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {
@@ -41,7 +46,13 @@ export class ImagePlane extends FramedImage {
       drawPath(pen, recent(shown, shown.seenImages), pathOf(shown, k), frame, theme.lines[k], SOLID);
       drawPath(pen, recent(shown, shown.estimated.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
     }
-    drawAt(pen, shown, last, frame, theme);
+    if (cursor !== null) {
+      const { time, images, points } = shown;
+      const speed = meanSpeed(time, images, 2 * points, 0, [0, time.length - 1]);
+      drawWhy(pen, frame, this.arrowsOf(shown, between(time, cursor), theme), speed, theme);
+    }
+    drawAt(pen, shown, between(shown.time, cursor ?? shown.time[last]), frame, theme);
+    this.swing(pen, frame, shown, cursor, theme);
   }
 
   describe(shown) {
@@ -79,7 +90,7 @@ function pathOf({ points }, k) {
 }
 
 /** The samples that are drawn in full: the seconds before the cursor, and the first ones without it. */
-function trail(time, cursor) {
+export function trail(time, cursor) {
   const last = sampleAt(time, cursor ?? TRAIL);
   return [sampleAt(time, Math.max(0, time[last] - TRAIL)), last];
 }
@@ -95,11 +106,11 @@ function squareOf({ points, images }) {
 }
 
 /** Where points are at a time, full, and where they are estimated to be, open. */
-function drawAt(pen, { points, images, estimated }, k, { x, y }, theme) {
+function drawAt(pen, { points, images, estimated }, at, { x, y }, theme) {
   for (let p = 0; p < points; p++) {
-    const at = 2 * (k * points + p);
-    const found = estimated.images;
-    dot(pen, x(images[at]), y(images[at + 1]), 3.5, theme.lines[p]);
-    dot(pen, x(found[at]), y(found[at + 1]), 5.5, theme.lines[p], false);
+    /** @type {(rows: Float64Array) => [number, number]} */
+    const place = (rows) => [x(valueBetween(rows, 2 * points, 2 * p, at)), y(valueBetween(rows, 2 * points, 2 * p + 1, at))];
+    pointMark(pen, ...place(images), theme.lines[p], theme);
+    ghostMark(pen, ...place(estimated.images), theme.lines[p]);
   }
 }

@@ -3,7 +3,7 @@
 import { columnOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
-import { decades, line, rangeAround, withKept } from "../../common/page/chart_parts.js";
+import { decades, distancesAround, line, withKept } from "../../common/page/chart_parts.js";
 import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/lines.js";
 
 export const LABELS = {
@@ -41,15 +41,17 @@ const BUILD = {
     const certain = each("true depth", shown, shown.depths, (k) => [theme.lines[k], SOLID]);
     const estimated = each("depth", shown, shown.estimated.depths, (k) => [theme.lines[k], DASHES[k]]);
     const lines = [...kept, ...certain, ...estimated];
-    return { title: "Depth in m, true (solid) and estimated", lines, scale: rangeAround(lines, certain) };
+    return { title: "Depth in m, true (solid) and estimated", lines, scale: distancesAround(lines, (l) => certain.includes(l)) };
   },
-  points({ time, relative, tolerance }, ghost, theme) {
+  points({ time, relative, tolerance, settling }, ghost, theme) {
     const lines = relative.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
     ghost?.relative.forEach((values, k) => {
       lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
     });
+    const settled = settling > 0 && settling < Infinity;
+    const events = settled ? [{ time: time[0] + settling, text: `all in: ${readable(settling)} s`, colour: theme.ink }] : [];
     const title = `Error of each point over its distance, with the tolerance ${percent(tolerance, 6)}`;
-    return { title, lines, scale: decades(lines, 1e-8, 1e6), level: tolerance };
+    return { title, lines, scale: decades(lines, 1e-8, 1e6, tolerance), level: tolerance, events };
   },
   gramian(shown, ghost, theme, { unseen }) {
     const { time, smallest, largest, window } = shown.gramian;

@@ -17,7 +17,7 @@ export function varies({ rate, v_c_swing, v_p_swing }) {
 
 export class StructureCamera extends PointCamera {
   constructor(model, memory) {
-    super(model, memory, 3);
+    super(model, memory, 3, "make its start ȳ3 positive");
   }
 
   placeOf(settings) {

@@ -19,7 +19,7 @@ export function quantityOf(result, rows, name) {
 /** The range at the samples: NaN where there is no estimate, or none that is positive. */
 export function rangeOf(result, rows) {
   return derived(rows, "range", () => {
-    const [ybar3, theta] = [2, 3].map((c) => columnOf(rows, result.width, c));
+    const [ybar3, theta] = [2, result.choice ? 3 : 2].map((c) => columnOf(rows, result.width, c));
     return scales(result, rows).map((scale, k) => {
       const inverse = scale * ybar3[k];
       return inverse > 0 && !Number.isNaN(theta[k]) ? 1 / inverse : NaN;
@@ -27,9 +27,25 @@ export function rangeOf(result, rows) {
   });
 }
 
+/** The inverse range at the samples, whatever its sign, and the standard deviation that an observer claims of it. */
+export function inverseRange(result, rows, run) {
+  const { choice, width } = result;
+  const at = choice?.unknown.indexOf("d_s") ?? -1;
+  const scaleAt = (k) => (at < 0 ? result.scale : rows[k * width + 3 + at]);
+  const inverse = derived(rows, "inverse range", () => columnOf(rows, width, 2).map((value, k) => value * scaleAt(k)));
+  if (!run?.deviation) return { inverse };
+  // Of the product d_s ybar3, to first order.
+  const deviation = derived(run.deviation, "inverse range", () =>
+    columnOf(run.deviation, width, 2).map((own, k) =>
+      Math.hypot(scaleAt(k) * own, at < 0 ? 0 : rows[k * width + 2] * run.deviation[k * width + 3 + at]),
+    ),
+  );
+  return { inverse, deviation };
+}
+
 /** d_s at the samples, estimated or known. */
 function scales({ choice, scale, width, time }, rows) {
-  const at = choice.unknown.indexOf("d_s");
+  const at = choice?.unknown.indexOf("d_s") ?? -1;
   return derived(rows, "d_s", () => {
     if (at < 0) return new Float64Array(time.length).fill(scale);
     return columnOf(rows, width, 3 + at).map((value) => (value > 0 ? value : NaN));

@@ -53,14 +53,6 @@ function plain(value) {
   return readable(Number(value.toFixed(6)), 4);
 }
 
-/** The text equivalent of the view from above. */
-export function sceneInWords(shown) {
-  if (shown.problem) return shown.problem;
-  const { image, scale, time } = shown;
-  const place = (k) => `${readable(image[3 * k] / (scale * image[3 * k + 2]))} m aside and ${readable(1 / (scale * image[3 * k + 2]))} m ahead`;
-  return `the point goes from ${place(0)} to ${place(time.length - 1)} of the camera.`;
-}
-
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");

@@ -102,7 +102,7 @@ export class ChoiceOfUnknowns {
       for (const [number, press] of this.cases) press.setAttribute("aria-pressed", String(number === corollary));
       this.tell(settings, refusal, corollary);
     }
-    if (!refusal && !shown.problem) this.fill(shown);
+    if (!refusal) this.fill(shown);
   }
 
   tell(settings, refusal, corollary) {
@@ -141,12 +141,12 @@ export class ChoiceOfUnknowns {
   }
 
   /** The determinant's number at the start of the run. */
-  fill({ settings, guard, truth }) {
+  fill({ settings, guard, problem }) {
     const { ybar, scale, w } = settings;
     const [v_c, v_p] = ["v_c", "v_p"].map((which) => valuesAtStart(settings, which, this.model));
-    const at = { d_s: scale, ybar3: truth[2], y1: ybar[0], y2: ybar[1], ...lettered({ w, v_c, v_p }) };
+    const at = { d_s: scale, ybar3: ybar[2], y1: ybar[0], y2: ybar[1], ...lettered({ w, v_c, v_p }) };
     this.determinant.putIn((_, letter) => at[letter]);
-    const text = ` = ${readable(guard.determinants[0])} at the start`;
+    const text = problem ? "" : ` = ${readable(guard.determinants[0])} at the start`;
     if (this.value.textContent !== text) this.value.textContent = text;
   }
 }

@@ -3,7 +3,7 @@
 import { columnOf, derived } from "../../common/model/derived.js";
 import { percent } from "../../common/model/words.js";
 import { DASHES, SOLID } from "../../common/page/lines.js";
-import { around, decades, line, linesOf, marksOf, runLines, withKept } from "../../common/page/chart_parts.js";
+import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
 
 export const LABELS = {
@@ -31,9 +31,9 @@ export function chartsOf({ settings, choice, problem, refusal }) {
 const MEASURED = ["image", "depth"];
 
 export function chartOf(name, shown, ghost, theme) {
-  const spans = united(shown.runs.flatMap((run) => run.gaps));
+  const regions = united(shown.runs.flatMap((run) => run.gaps)).map(([begin, end]) => ({ begin, end, text: "no estimate" }));
   const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];
-  return { spans, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
+  return { regions, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
 }
 
 /** Spans of time without overlaps, so that none is shaded twice. */
@@ -60,7 +60,7 @@ const BUILD = {
   error(shown, ghost, theme) {
     const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
     const lines = runLines(shown, ghost, theme, "error", (_, run) => run.error);
-    return { title, lines, scale: decades(lines, 1e-8, 1e3), level: shown.tolerance };
+    return { title, lines, scale: decades(lines, 1e-8, 1e3, shown.tolerance), ...toleranceOf(shown, theme) };
   },
   image(shown, ghost, theme) {
     const lines = [0, 1].flatMap((c) => outputs(shown, ghost, theme, c));
@@ -88,7 +88,7 @@ const BUILD = {
   },
   range(shown, ghost, theme) {
     const lines = linesOf(shown, ghost, theme, "range", rangeOf);
-    return { title: "Range Z in m", lines, scale: around(lines, shown) };
+    return { title: "Range Z in m", lines, scale: distancesAround(lines, sureOf(shown)) };
   },
 };
 

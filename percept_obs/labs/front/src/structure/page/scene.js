@@ -1,89 +1,41 @@
-// The scene from above, in metres: the camera at the bottom, the object's path, and where the estimates put it.
+// What the scene of the structure lab shows: the object and its estimates, in the range that each d_s stands for.
 
-import { linearScale, spread } from "../../common/model/scales.js";
-import { sampleAt } from "../../common/model/tables.js";
-import { Picture } from "../../common/page/canvas.js";
-import { clipTo, dot, drawAxes, drawEnds, drawPath, frameOf } from "../../common/page/image_frame.js";
-import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
-import { rangeOf } from "../model/quantities.js";
-import { sceneInWords } from "../model/text.js";
+import { tracksOfPoint } from "../../common/model/tracks.js";
+import { valueBetween } from "../../common/model/playback.js";
+import { affine, imageVelocities, scaled } from "../../common/model/why.js";
+import { sceneInWords } from "../../common/model/words.js";
+import { straight } from "../../common/model/space.js";
+import { lookOf } from "../../common/page/lines.js";
+import { keyOf } from "../model/kernels.js";
+import { inverseRange, rangeOf } from "../model/quantities.js";
 
-const [LEFT, RIGHT, TOP, BOTTOM] = [40, 14, 22, 34];
-
-/** The picture: X to the right, Z upwards. */
-export class Scene extends Picture {
-  constructor() {
-    super("scene", "View from above");
-  }
-
-  describe(shown) {
-    this.tell(sceneInWords(shown));
-  }
-
-  draw(shown, ghost, cursor, theme) {
-    const { width, height } = this.fit();
-    const { image, scale, time } = shown;
-    if (!time.length) return;
-    const places = placesOf(image, 3, () => scale);
-    const { frame, ticks } = placed(places, width, height);
-    const { x, y } = frame;
-    const pen = this.context;
-    const names = ["X in m", "From above: Z in m"];
-    this.underlay([frame, ticks, theme], (below) => drawAxes(below, frame, ticks, theme, names));
-    pen.save();
-    clipTo(pen, frame.box);
-    drawCamera(pen, x(0), y(0), theme);
-    const trace = (result, { estimate }, colour, dash) => {
-      const range = rangeOf(result, estimate);
-      const values = placesOf(estimate, result.width, (k) => 1 / (range[k] * estimate[k * result.width + 2]));
-      drawPath(pen, values, { width: 2 }, frame, colour, dash);
-    };
-    ghost?.runs.forEach((run) => trace(ghost, run, theme.kept, KEPT));
-    drawPath(pen, places, { width: 2 }, frame, theme.ink, SOLID);
-    shown.runs.forEach((run) => trace(shown, run, theme.lines[run.order], DASHES[run.order]));
-    drawEnds(pen, places, 2, frame, theme);
-    const at = cursor === null ? -1 : 2 * sampleAt(time, cursor);
-    if (at >= 0) dot(pen, x(places[at]), y(places[at + 1]), 3.5, theme.ink);
-    pen.restore();
-  }
-}
-
-/** A frame that holds camera and path in one scale; it widens in steps, so that it stands still while dragging. */
-function placed(places, width, height) {
-  const across = spread(places, { lowPart: 0, highPart: 1, first: 0, width: 2 }) ?? [-1, 1];
-  const ahead = spread(places, { lowPart: 0, highPart: 1, first: 1, width: 2 }) ?? [0, 1];
-  const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM };
-  const [least, most] = [Math.min(across[0], -0.1), Math.max(across[1], 0.1)];
-  const high = linearScale(0, 1.08 * ahead[1], 4).high;
-  const reach = linearScale(0, 1.1 * (most - least), 4).high;
-  const perMetre = Math.min(box.width / reach, box.height / (1.06 * high));
-  const half = box.width / perMetre / 2;
-  const centre = Math.round((most + least) / 2 / (0.1 * half)) * 0.1 * half;
-  const bottom = TOP + box.height - 0.05 * high * perMetre;
-  const ticks = [linearScale(centre - half, centre + half, 4).ticks, linearScale(0, box.height / perMetre, 4).ticks];
-  return { frame: frameOf(box, perMetre, [centre, 0], [LEFT + box.width / 2, bottom], 1e4), ticks };
-}
-
-/** X and Z in metres of rows of ybar with a scale. */
-function placesOf(rows, width, scaleOf) {
-  const found = new Float64Array((2 * rows.length) / width);
-  for (let k = 0; k < rows.length / width; k++) {
-    const depth = 1 / (scaleOf(k) * rows[k * width + 2]);
-    found[2 * k] = rows[k * width] * depth;
-    found[2 * k + 1] = depth;
-  }
-  return found;
-}
-
-function drawCamera(pen, x, y, theme) {
-  pen.beginPath();
-  pen.moveTo(x, y);
-  pen.lineTo(x - 9, y - 16);
-  pen.lineTo(x + 9, y - 16);
-  pen.closePath();
-  pen.setLineDash([]);
-  pen.strokeStyle = theme.muted;
-  pen.lineWidth = 1.5;
-  pen.stroke();
-  pen.lineWidth = 1;
-}
+export const sceneOf = (lab) => ({
+  /** How fast the image of the point and of its copies moves. */
+  arrowsOf(shown, at, theme) {
+    const { settings, image, scale, time } = shown;
+    const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
+    const when = valueBetween(time, 1, 0, at);
+    const { rows } = lab.results.engines[0].camera.velocities(settings, lab.kernels.of(settings).swinging, [when]);
+    const [w1, w2, w3, ...v] = rows;
+    // The point as the camera sees it move: [w]x X + v_p - v_c, as rigid() has it.
+    const A = [[0, -w3, w2], [w3, 0, -w1], [-w2, w1, 0]];
+    const motion = [0, 1, 2].map((i) => v[3 + i] - v[i]);
+    const there = [y1, y2, 1].map((value) => value / (scale * ybar3));
+    const velocities = imageVelocities(there, (copy) => affine(A, motion, copy), ([x, y, z]) => [x / z, y / z]);
+    return [{ place: [y1, y2], velocities, colour: theme.ink }];
+  },
+  /** Where no velocity is known the scale is not seen: all lengths and velocities may be larger. */
+  unseenOf(shown, at, theme) {
+    const { settings, image, scale } = shown;
+    if (!shown.refusal || shown.refusal !== lab.model.unknowns[keyOf(settings)]?.withoutThem) return null;
+    const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
+    const point = { image: [y1, y2], place: [y1, y2, 1].map((value) => value / (scale * ybar3)), colour: theme.ink };
+    return { words: "the image stands still, whatever the scale", moved: (amount) => scaled([point], amount) };
+  },
+  tracksOf(shown, ghost, theme) {
+    const along = (result, rows, run) => ({ distances: rangeOf(result, rows), ...inverseRange(result, rows, run) });
+    const seen = shown.refusal ? { ...shown, truth: shown.image } : shown;
+    return { tracks: tracksOfPoint(seen, ghost, along, lookOf(theme)), ray: straight };
+  },
+  wordsOf: (shown) => sceneInWords(shown.refusal ? { ...shown, truth: shown.image } : shown, (rows) => rangeOf(shown, rows)),
+});

@@ -1,0 +1,45 @@
+// The legend: what each line is; the one that the hand or the focus is on stands out, and a press keeps it so.
+
+import { button, element } from "./controls.js";
+import { swatch } from "./lines.js";
+
+export class Legend {
+  constructor(lab) {
+    this.lab = lab;
+    this.body = element("ul", { class: "legend", "aria-label": "Lines" });
+    this.key = "";
+    /** @type {string | number | null} */
+    this.kept = null;
+  }
+
+  show(entries) {
+    const key = JSON.stringify(entries);
+    if (key === this.key) return;
+    this.key = key;
+    if (!entries.some(([which]) => which === this.kept)) this.keep(null);
+    this.body.replaceChildren(...entries.map(([which, text]) => element("li", {}, this.entry(which, text))));
+  }
+
+  entry(which, text) {
+    const said = { class: "line-name", "data-control": "line", title: "Let this line stand out", "aria-pressed": String(which === this.kept) };
+    const press = button("", () => this.keep(which === this.kept ? null : which), said);
+    press.append(swatch(which), element("span", {}, text));
+    press.dataset.line = which;
+    for (const type of ["pointerenter", "focus"]) press.addEventListener(type, () => this.pick(which));
+    for (const type of ["pointerleave", "blur"]) press.addEventListener(type, () => this.pick(this.kept));
+    return press;
+  }
+
+  keep(which) {
+    this.kept = which;
+    for (const press of this.body.querySelectorAll("button")) press.setAttribute("aria-pressed", String(press.dataset.line === String(which)));
+    this.pick(which);
+  }
+
+  pick(which) {
+    const { theme } = this.lab;
+    if (!theme) return;
+    const named = { truth: theme.ink, kept: theme.kept, fit: theme.lines[1], bound: theme.lines[2] };
+    this.lab.pick(which === null ? null : (named[which] ?? theme.lines[which]));
+  }
+}

@@ -1,0 +1,76 @@
+// The one language of marks: what the start, the end, the present, an estimate, a reset look like in every picture.
+
+const HALO = 3;
+
+/** Length of a reset's tick, which hangs from the top of a chart. */
+export const RESET = 6;
+
+/** Where a path begins: an open circle. */
+export function startMark(pen, x, y, theme) {
+  ring(pen, x, y, 4, theme.ink, 1);
+}
+
+/** Where a path ends: a full square. */
+export function endMark(pen, x, y, theme) {
+  if (Number.isNaN(x + y)) return;
+  pen.fillStyle = theme.ink;
+  pen.fillRect(x - 3.5, y - 3.5, 7, 7);
+}
+
+/** Where the point is at the time shown: a full dot. */
+export function pointMark(pen, x, y, colour, theme) {
+  if (Number.isNaN(x + y)) return;
+  disc(pen, x, y, 4 + HALO / 2, theme.paper);
+  disc(pen, x, y, 4, colour);
+}
+
+/** Where an observer thinks it is: a ring in the observer's colour, its ghost. */
+export function ghostMark(pen, x, y, colour) {
+  ring(pen, x, y, 6, colour, 2);
+}
+
+/** What lies outside: an arrow at the rim, with its value inside of it. */
+export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  pen.fillStyle = colour;
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(x - 10 * c + 5 * s, y - 10 * s - 5 * c);
+  pen.lineTo(x - 10 * c - 5 * s, y - 10 * s + 5 * c);
+  pen.fill();
+  pen.textAlign = c > 0.3 ? "right" : c < -0.3 ? "left" : "center";
+  pen.textBaseline = "middle";
+  label(pen, text, x - 14 * c, y - 14 * s, colour, theme);
+}
+
+/** Letters that can be read on whatever lies below them. */
+export function label(pen, text, x, y, colour, theme) {
+  if (!text || Number.isNaN(x + y)) return;
+  pen.font = theme.font;
+  pen.setLineDash([]);
+  pen.lineWidth = HALO;
+  pen.lineJoin = "round";
+  pen.strokeStyle = theme.paper;
+  pen.strokeText(text, x, y);
+  pen.lineWidth = 1;
+  pen.fillStyle = colour;
+  pen.fillText(text, x, y);
+}
+
+function disc(pen, x, y, radius, colour) {
+  pen.fillStyle = colour;
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fill();
+}
+
+function ring(pen, x, y, radius, colour, width) {
+  if (Number.isNaN(x + y)) return;
+  pen.setLineDash([]);
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.stroke();
+  pen.lineWidth = 1;
+}

@@ -1,0 +1,50 @@
+// Why the distance is told or not, drawn in the image: how the point moves, and how copies nearer and farther would.
+
+import { COPIES } from "../model/why.js";
+import { stroke } from "./image_frame.js";
+import { label } from "./marks.js";
+
+/** Length of an arrow at the mean speed of the image, as a part of the picture's side. */
+const USUAL = 0.16;
+const [HEAD, SHORTEST] = [6, 2];
+const NAMES = ["½", "", "2"];
+const MOVING = "arrows: velocity at ½, 1, 2 × distance";
+const STILL = "still at every distance: no arrow";
+
+/** @param {{place: number[], velocities: number[][], colour: string}[]} arrows */
+export function drawWhy(pen, frame, arrows, speed, theme) {
+  if (!arrows.length) return;
+  const seconds = speed > 0 ? (USUAL * frame.box.side) / (frame.scale * speed) : 0;
+  for (const { place, velocities, colour } of arrows) {
+    const from = [frame.x(place[0]), frame.y(place[1])];
+    COPIES.forEach((part, k) => {
+      const to = [frame.x(place[0] + seconds * velocities[k][0]), frame.y(place[1] + seconds * velocities[k][1])];
+      if (Number.isFinite(from[0] + from[1] + to[0] + to[1])) arrow(pen, from, to, part === 1 ? 1 : 0.5, colour, NAMES[k], theme);
+    });
+  }
+  pen.textAlign = "left";
+  pen.textBaseline = "alphabetic";
+  const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
+  label(pen, still ? STILL : MOVING, frame.box.left + 4, frame.box.top + frame.box.side - 6, theme.muted, theme);
+}
+
+function arrow(pen, from, to, strength, colour, name, theme) {
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  if (length < SHORTEST) return;
+  const [c, s] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  const back = (side) => [to[0] - HEAD * c + side * 0.5 * HEAD * s, to[1] - HEAD * s - side * 0.5 * HEAD * c];
+  pen.globalAlpha = strength;
+  pen.setLineDash([]);
+  pen.strokeStyle = pen.fillStyle = colour;
+  pen.lineWidth = strength < 1 ? 1.5 : 2.5;
+  stroke(pen, from, [to[0] - 0.7 * HEAD * c, to[1] - 0.7 * HEAD * s]);
+  pen.lineWidth = 1;
+  pen.beginPath();
+  pen.moveTo(to[0], to[1]);
+  for (const side of [1, -1]) pen.lineTo(...back(side));
+  pen.fill();
+  pen.globalAlpha = 1;
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  label(pen, name, to[0] + 7 * c, to[1] + 7 * s, colour, theme);
+}

@@ -1,0 +1,35 @@
+// Where the points of a state are at a time, and how fast they would move if all of the state were nearer or farther.
+
+import { valueBetween } from "../../common/model/playback.js";
+import { kindsOf } from "./flow.js";
+
+/** Of each point: its place, and the velocity of a copy so many times as far, which moves by the same A(t) and v(t). */
+export function motionAt(lab, shown, at) {
+  const { settings, n, points, truth, time } = shown;
+  const { layouts, width } = lab.model.states[settings.state];
+  const layout = layouts[points - 1];
+  const { turning, spin, input, velocity } = settings;
+  const known = new Float64Array(width);
+  lab.kernels.of(settings).coefficients(Float64Array.of(valueBetween(time, 1, 0, at), turning, spin, input, ...velocity), known);
+  const { kinds, kindOf } = kindsOf(layout, n);
+  const state = Array.from({ length: n }, (_, i) => valueBetween(truth, n, i, at));
+  const [linear, constant] = [new Float64Array(n), new Float64Array(n)];
+  for (let vector = 0; vector < n / 3; vector++) {
+    for (const [entry, index] of kinds[kindOf[vector]]) {
+      const [row, column] = [3 * vector + ((entry / 4) | 0), entry % 4];
+      if (column === 3) constant[row] += known[index];
+      else linear[row] += known[index] * state[3 * vector + column];
+    }
+  }
+  const { begins, axes, states, entries } = layout;
+  const pointOf = (values, k) => {
+    const found = [0, 0, 0];
+    for (let e = begins[k]; e < begins[k + 1]; e++) found[axes[e]] += entries[e] * values[states[e]];
+    return found;
+  };
+  return (k) => {
+    const [moved, pushed] = [pointOf(linear, k), pointOf(constant, k)];
+    const velocityAt = (_, part) => moved.map((value, i) => part * value + pushed[i]);
+    return { place: pointOf(state, k), velocityAt };
+  };
+}

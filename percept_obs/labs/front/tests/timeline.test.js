@@ -1,0 +1,76 @@
+// Which time and which values are in sight: where the story is, what the hand asks for, and no more change than needed.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { keptScale, linearScale, logScale, spread } from "../src/common/model/scales.js";
+import { indicesIn, storyOf, Timeline, zoomed } from "../src/common/model/timeline.js";
+import { spansInside } from "../src/observer/model/measures.js";
+import { decades, distancesAround, rangeAround } from "../src/common/page/chart_parts.js";
+
+const WHOLE = { low: 0, high: 80 };
+const ASKED = { question: "a", choice: 1, held: false };
+
+test("time opens where the errors fall and events are, and shows all of a run that never settles", () => {
+  assert.deepEqual(storyOf(WHOLE, [1.91]), { low: 0, high: 8 });
+  assert.deepEqual(storyOf(WHOLE, [1.91], 20), { low: 0, high: 30 });
+  for (const settlings of [[1.91, Infinity], [null], [], [0], [60]]) assert.equal(storyOf(WHOLE, settlings), WHOLE);
+});
+
+test("a part is zoomed about a time that stays where it is, inside the whole", () => {
+  assert.deepEqual(zoomed({ low: 10, high: 30 }, WHOLE, 0.5, 15), { low: 12.5, high: 22.5 });
+  assert.deepEqual(zoomed({ low: 10, high: 30 }, WHOLE, 9, 15), WHOLE);
+  assert.deepEqual(zoomed({ low: 0, high: 20 }, WHOLE, 2, 20), { low: 0, high: 40 });
+});
+
+test("while a hand moves settings the time in sight stays; another choice shows its story", () => {
+  const timeline = new Timeline();
+  const follow = (settling, asked = {}, whole = WHOLE) => {
+    timeline.follow(whole, { settlings: [settling], events: undefined }, { ...ASKED, ...asked });
+    return timeline.span.high;
+  };
+  assert.equal(follow(1.91), 8);
+  assert.equal(follow(7, { held: true }), 8);
+  assert.equal(follow(7), 8);
+  assert.equal(follow(7, { choice: 2 }), 30);
+  assert.equal(follow(1.91, { choice: 3 }), 8);
+  timeline.zoom(0.5, 4);
+  assert.deepEqual(timeline.span, { low: 2, high: 6 });
+  assert.equal(follow(7, { choice: 4 }), 6);
+  assert.equal(follow(7, { question: "b", choice: 5 }), 30);
+  assert.equal(follow(7, { question: "b", choice: 5, held: true }, { low: 0, high: 10 }), 10);
+  timeline.zoom(0.5, 4);
+  timeline.forget();
+  assert.equal(follow(1.91, { question: "b", choice: 5 }), 8);
+});
+
+test("a span needs its own times and one beside it", () => {
+  assert.deepEqual(indicesIn([0, 1, 2, 3, 4], { low: 1, high: 2.5 }), [1, 3]);
+  assert.deepEqual(indicesIn([0, 1], { low: 0, high: 9 }), [0, 1]);
+});
+
+test("a scale stays while the next one lies in it and is not lost there", () => {
+  const before = linearScale(0, 10);
+  for (const [low, high, kept] of [[1, 9, true], [0, 10, true], [0, 11, false], [4, 6, false]]) {
+    const wanted = linearScale(low, high);
+    assert.equal(keptScale(before, wanted), kept ? before : wanted);
+  }
+  const decade = logScale(1e-3, 1);
+  assert.equal(keptScale(decade, before), before);
+  assert.equal(keptScale(decade, logScale(1e-2, 1)), decade);
+});
+
+test("scales hold what is in sight: the level too, and both ends of a distance that goes through decades", () => {
+  const bounds = ({ values }, options) => spread(values, { lowPart: 0, highPart: 1, ...options });
+  const error = { name: "error", values: [1e-5, 1e-4] };
+  assert.ok(decades([error], 1e-6, 1e2)(bounds).high < 2e-4);
+  assert.equal(decades([error], 1e-6, 1e2, 0.1)(bounds).high, 1);
+  const [near, far] = [[2, 8], [2, 2e6]].map((values) => ({ name: "true", values }));
+  assert.equal(distancesAround([near], () => true)(bounds).log, false);
+  const { low, high, log } = distancesAround([far], () => true)(bounds);
+  assert.ok(log && low <= 2 && high >= 2e6);
+  assert.equal(rangeAround([near, far], (l) => l === near)(bounds).high, 15);
+});
+
+test("the times inside a circle begin and end with the samples there", () => {
+  const rows = Float64Array.of(-2, 0, 9, -0.5, 0, 9, 0.5, 0, 9, 2, 0, 9, 0, 0, 9);
+  assert.deepEqual(spansInside([0, 1, 2, 3, 4], rows, 3, [0, 0, 1]), [[1, 2], [4, 4]]);
+});

@@ -1,0 +1,142 @@
+"""Charts name their events, hold still under the hand, open where the story is, and can be zoomed and picked apart."""
+
+import math
+
+import pytest
+from lab_alone import DRAWN, opened
+from lab_browser import centre, control
+
+from percept_obs.labs import observer_lab
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+RESTED = """() => { const [lab] = window.perceptObsLabs ?? [];
+    return lab?.shown?.settings === lab?.settings && !lab?.pending && lab?.resting === null; }"""
+SPAN = "() => { const { low, high } = [...window.perceptObsLabs][0].span; return [low, high]; }"
+SCALES = "() => Object.values([...window.perceptObsLabs][0].time.scales).map(({ low, high, log }) => [low, high, log])"
+WRITTEN = """async () => {
+    const pen = CanvasRenderingContext2D.prototype;
+    const own = pen.fillText;
+    const written = [];
+    pen.fillText = function (text, ...place) { written.push(text); return own.call(this, text, ...place); };
+    const [lab] = window.perceptObsLabs;
+    lab.schedule();
+    await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+    pen.fillText = own;
+    return written;
+}"""
+BIAS = {"outputs": ["y1"], "noise": {"kind": "uniform", "size": 0.01}, "seed": 1}
+ZERO = {"mode": "zero", "values": [0.0, 0.0, 0.0]}
+TURNING = [[0.0, 0.0, 0.1], [0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]
+CROSSING = {"A": TURNING, "b": [0.0, 0.0, 0.8], "X0": [-2.0, 0.0, 2.0], "duration": 12.0}
+
+
+def page_of(browser, **settings):
+    page = opened(browser, observer_lab(**settings), viewport={"width": 1280, "height": 800})
+    page.wait_for_function(DRAWN)
+    page.wait_for_function(RESTED)
+    return page
+
+
+@pytest.fixture
+def page(browser):
+    page = page_of(browser)
+    yield page
+    page.close()
+
+
+def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(browser):
+    cases = {"2330 resets": {**BIAS, "start": ZERO}, "unobservable circle": CROSSING, "1.91 s": {}, "799": {}}
+    for text, settings in cases.items():
+        page = page_of(browser, **settings)
+        assert text in page.evaluate(WRITTEN)
+        page.close()
+
+
+def test_an_empty_chart_says_why(browser):
+    still = [[0.0] * 3] * 3
+    page = page_of(browser, A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0)
+    assert "nothing above 0 in this time" in page.evaluate(WRITTEN)
+    page.close()
+    page = page_of(browser)
+    assert "begins at 10 s" in page.evaluate(WRITTEN)
+    page.close()
+
+
+def test_time_opens_at_the_story_and_zooms_by_keys_wheel_and_drag(page):
+    assert page.evaluate(SPAN) == [0, 8]
+    page.focus(control("cursor"))
+    page.keyboard.press("+")
+    assert page.evaluate(SPAN) == [0, 4]
+    page.keyboard.press("0")
+    assert page.evaluate(SPAN) == [0, 80]
+    x, y = centre(page, "figure.chart:not([hidden]) canvas")
+    page.mouse.move(x, y)
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -300)
+    page.keyboard.up("Control")
+    page.wait_for_function("() => [...window.perceptObsLabs][0].span.high < 79")
+    page.keyboard.press("0")
+    page.mouse.down()
+    page.mouse.move(x + 80, y, steps=4)
+    page.mouse.up()
+    low, high = page.evaluate(SPAN)
+    assert 30 < low < 45
+    assert 5 < high - low < 20
+    page.mouse.dblclick(x, y)
+    assert page.evaluate(SPAN) == [0, 80]
+    page.click(control("zoom in"))
+    assert page.evaluate(SPAN) != [0, 80]
+    page.click(control("reset"))
+    page.wait_for_function(RESTED)
+    assert page.evaluate(SPAN) == [0, 8]
+
+
+def test_axes_hold_still_while_the_hand_is_down_and_the_foe_stays_where_it_is_let_go(page):
+    before = page.evaluate(SCALES), page.evaluate("[...window.perceptObsLabs][0].planes[0].square")
+    x, y = centre(page, control("foe"))
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 60, y - 30, steps=6)
+    page.wait_for_timeout(400)
+    assert (page.evaluate(SCALES), page.evaluate("[...window.perceptObsLabs][0].planes[0].square")) == before
+    held = centre(page, control("foe"))
+    page.mouse.up()
+    page.wait_for_function(RESTED)
+    page.wait_for_timeout(100)
+    assert math.dist(held, centre(page, control("foe"))) < 3
+    assert page.evaluate(SPAN) == [0, 8]
+
+
+def test_a_depth_that_grows_far_shows_its_beginning(browser):
+    growing = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
+    page = page_of(browser, A=growing, b=[0.1, 0.0, 0.1], pictures=["distance"])
+    page.click(control("zoom whole"))
+    ((low, high, log),) = page.evaluate(SCALES)
+    assert log
+    assert low <= 2.5
+    assert high > 1e6
+    page.close()
+
+
+def test_the_line_that_the_legend_points_at_stands_out(browser):
+    page = page_of(browser, observers=["identifier_based", "sliding_mode", "extended_kalman"])
+    faint = """() => {
+        const pen = CanvasRenderingContext2D.prototype;
+        const own = pen.stroke;
+        let count = 0;
+        pen.stroke = function (...path) { if (this.globalAlpha < 0.15) count += 1; return own.apply(this, path); };
+        const [lab] = window.perceptObsLabs;
+        lab.schedule();
+        lab.paint();
+        pen.stroke = own;
+        return count;
+    }"""
+    assert page.evaluate(faint) == 0
+    page.hover(".line-name:has-text('sliding mode')")
+    assert page.evaluate(faint) >= 6
+    page.mouse.move(5, 5)
+    assert page.evaluate(faint) == 0
+    page.focus(".line-name:has-text('truth')")
+    assert page.evaluate(faint) >= 6
+    page.close()
