@@ -34,7 +34,7 @@ async ([seed, count, most = 20000]) => {
         const controls = [...root.querySelectorAll("[data-control]")];
         const usable = (control) => !control.disabled && control.checkVisibility();
         const unused = (control) => !used.has(control.dataset.control) && usable(control);
-        let control = (random() < 0.3 && controls.find(unused)) || pick(controls);
+        let control = (random() < 0.5 && controls.find(unused)) || pick(controls);
         while (!usable(control)) control = pick(controls);  // asking all takes long
         return control;
     }
@@ -86,6 +86,9 @@ async ([seed, count, most = 20000]) => {
         if (/NaN|undefined|null|\[object/.test(text)) note(`text: ${text}`);
         for (const problem of root.querySelectorAll(".problem:not([hidden])")) note(problem.textContent);
     }
+    // What still moves is stopped, as a hand would.
+    if (lab.view.playing()) root.querySelector('[data-control="play"]').click();
+    root.querySelector('[data-control="swing"][aria-pressed="true"]')?.click();
     root.parentElement.style.width = "";
     Object.assign(pen, originals);
     window.removeEventListener("error", onError);

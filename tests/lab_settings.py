@@ -95,8 +95,6 @@ NUDGE = 1e-12
 def assert_follows_python(settings, told, tolerance=1e-8):
     """The page's runs of any settings are Python's, as far as numbers of 16 digits decide them.
 
-    The page moves the point by Runge-Kutta steps, Python exactly: fast motions differ by less than 1e-8 in it.
-
     Random gains make observers unstable, stiff or switching without end; such a run multiplies the last digit, which
     two languages need not share.  How much it does is seen in Python alone, by moving the samples by 1e-12: page and
     Python may differ by the tolerance, relative to 1 or the value, and by as much as that; and once Python's own runs

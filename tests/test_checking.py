@@ -382,3 +382,16 @@ def test_matrices_that_would_take_long_are_refused_at_once(text, message):
     with pytest.raises(CannotRead, match=message):
         check(text, MA2005[38])
     assert time.process_time() - began < 0.5
+
+
+def test_an_index_may_be_a_greek_letter():
+    letter = sp.Symbol("e_chi", real=True)
+    assert sp.latex(letter) == r"e_{\chi}"
+    assert check(rf"2 {sp.latex(letter)} + 1", 2 * letter + 1).right
+
+
+def test_two_slips_of_which_the_first_moves_the_second_are_told():
+    y2, y3, b1, b3 = sp.symbols("y2 y3 b1 b3", real=True)
+    told = str(check(2 * y3 * (b1 - b1 * y2), y3 * (b1 - b3 * y2)).hint(3))
+    assert "the index: b1 stands where b3 belongs" in told
+    assert "the factor is wrong" in told

@@ -74,7 +74,7 @@ def test_a_form_of_no_view_has_no_numbers_of_one(system):
 
 
 def test_what_is_far_off_is_told_without_a_number():
-    assert percent(10.0) == "1e+03 %"
+    assert percent(10.0) == "1000 %"
     assert percent(10.5) == "more than 1000 %"
 
 

@@ -237,9 +237,11 @@ class Search:
                 for second in chain(factored(first.formula, MENDS), slips_in(first.formula, siblings, MENDS)):
                     after = self.values(second.formula)
                     if after is not None and less(after, before) == wanted:
+                        # the second one's place is that of a term which the first one has changed, or moved
+                        paths = first.path, _place_of(second.term, term) if second.path else ()
                         yield tuple(
-                            _named(replace(s, path=(*start, *s.path), term=s.term if s.path else term))
-                            for s in (first, second)
+                            _named(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
+                            for slip, path in zip((first, second), paths, strict=True)
                         )
 
 
@@ -263,6 +265,17 @@ def at(e: Any, path: Sequence[int]) -> Any:
     for index in path:
         e = e.args[index]
     return e
+
+
+def _place_of(part: sp.Basic, whole: sp.Basic) -> tuple[int, ...]:
+    """Where a part stands first; the place of the whole if it stands nowhere."""
+    paths: list[tuple[int, ...]] = [()]
+    for path in paths:
+        node = at(whole, path)
+        if node == part:
+            return path
+        paths += [(*path, k) for k in range(len(node.args))]
+    return ()
 
 
 def put(formula: sp.Basic, path: Sequence[int], new: sp.Basic) -> sp.Basic:

@@ -15,6 +15,7 @@ LONGEST, LONGEST_NUMBER, LONGEST_WORD = 9000, 15, 60
 _NAMES = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
 phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
 GREEK = dict(zip("αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΦΨΩ", re.findall(r"\w+", _NAMES), strict=True))
+_GREEK = rf"\\(?:{'|'.join(GREEK.values())})(?![A-Za-z])"
 ACCENTS = ("hat", "bar", "dot", "tilde")
 _MARKS = {"\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde"}
 _SAME = str.maketrans("−–·⋅×′’⟨⟩", "--***''()") | {ord(c): str(k) for k, c in enumerate("₀₁₂₃₄₅₆₇₈₉")}
@@ -187,10 +188,10 @@ class _Words:
         stem = self._stem(accents)
         index = ""
         while self._match(r"\s*_"):
-            found = self._match(r"\s*{([A-Za-z0-9,\s_]+)}|\s*([A-Za-z0-9]+)")
+            found = self._match(rf"\s*{{((?:[A-Za-z0-9,\s_]|{_GREEK})+)}}|\s*({_GREEK}|[A-Za-z0-9]+)")
             if not found:
                 raise self._refusal(self.at, "an index is letters and digits, as in y_1 or v_{c1}")
-            index += key(found[1] or found[2]).replace(",", "")
+            index += key((found[1] or found[2]).replace("\\", "")).replace(",", "")
         accents += ["dot"] * len(found[0]) if (found := self._match("'+")) else []
         return stem + index + "".join(accents)
 
