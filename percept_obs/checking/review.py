@@ -21,6 +21,7 @@ MARKS = {
     Verdict.CONVENTION: "✓",
     Verdict.CANNOT_TELL: "?",
 }
+CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
 HINTS = ("which line", "which term", "which slip, and in which step")
 
 
@@ -80,7 +81,7 @@ class Review:
             more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
             return (what if count > 1 else "Not right yet") + more + "."
         if self.right is None:
-            return "It cannot be told whether this is the same; write it closer to the usual form."
+            return CANNOT_BE_TOLD
         given, asked = len({line.row for line in self.lines}), len(self.target.lines)
         notes = sorted({line.note for line in self.lines if line.note})
         return "; ".join(["Right" + (f", {given} of {asked} lines" if given < asked else ""), *notes]) + "."

@@ -14,7 +14,7 @@ from percept_obs.checking import CannotRead, Review, Verdict
 from percept_obs.checking.explaining import sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
-from percept_obs.checking.review import HINTS
+from percept_obs.checking.review import CANNOT_BE_TOLD, HINTS
 from percept_obs.labs.desk.sheets import Sheet
 from percept_obs.labs.desk.typed import typed_markup
 from percept_obs.labs.shared.markup import markup
@@ -125,7 +125,7 @@ def summary_of(review: Review, asked: int) -> str:
     if any(line.verdict == Verdict.CARRIED for line in review.lines):
         return f"Right from there on: {'; '.join(notes)}."
     if review.right is None:
-        return "It cannot be told whether this is the same; write it closer to the usual form."
+        return CANNOT_BE_TOLD
     begun = "Right" if count == asked else f"Right so far, {count} of {asked} lines"
     return "; ".join([begun, *notes]) + "."
 

@@ -3,8 +3,8 @@
 import { between, valueBetween } from "../model/playback.js";
 import { linearScale, readable, tickLabel } from "../model/scales.js";
 import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOOK } from "../model/space.js";
-import { indicesIn } from "../model/timeline.js";
 import { positionAt, positionsOf, rimOf, turned } from "../model/space.js";
+import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
 import { drawSwung, Swing } from "./swing.js";
 import { element } from "./controls.js";
@@ -224,8 +224,10 @@ function on(frame, place) {
   return [frame.x(...place), frame.y(...place)];
 }
 
-/** A place some pixels further away from the camera than another. */
-/** @returns {[number, number]} */
+/**
+ * A place some pixels further away from the camera than another.
+ * @returns {[number, number]}
+ */
 function beyond(frame, place, pixels) {
   const [x0, y0] = on(frame, [0, 0, 0]);
   const [x, y] = on(frame, place);

@@ -25,7 +25,10 @@ export function drawWhy(pen, frame, arrows, speed, theme) {
   pen.textAlign = "left";
   pen.textBaseline = "alphabetic";
   const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
-  label(pen, still ? STILL : MOVING, frame.box.left + 4, frame.box.top + frame.box.side - 6, theme.muted, theme);
+  // Away from the point and its handle, and a line below what is said of a copy that swings.
+  const { left, top, side } = frame.box;
+  const above = arrows.some(({ place }) => frame.y(place[1]) > top + 0.7 * side);
+  label(pen, still ? STILL : MOVING, left + 4, above ? top + 28 : top + side - 6, theme.muted, theme);
 }
 
 function arrow(pen, from, to, strength, colour, name, theme) {
