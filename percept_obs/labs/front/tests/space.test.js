@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { advanced, begun, between, stepped, valueBetween } from "../src/common/model/playback.js";
-import { scaled, unseenDirection } from "../src/common/model/why.js";
+import { scaled, unseenDirection } from "../src/common/model/velocities.js";
 import * as space from "../src/common/model/space.js";
 
 const near = (one, other, slack = 1e-12) => one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));

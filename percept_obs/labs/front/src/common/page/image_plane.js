@@ -11,9 +11,9 @@ import { hull } from "./chart_parts.js";
 import { Handle } from "./handle.js";
 import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
 import { DASHES, fading, KEPT, SOLID } from "./lines.js";
-import { meanSpeed } from "../model/why.js";
+import { meanSpeed } from "../model/velocities.js";
 import { drawSwung } from "./swing.js";
-import { drawWhy } from "./why.js";
+import { drawVelocities } from "./velocities.js";
 import { ghostMark, pointMark, rimMark } from "./marks.js";
 
 /** How much is seen of the path at times that are not in sight. */
@@ -112,7 +112,7 @@ export class ImagePlane extends FramedImage {
     if (cursor === null) return;
     if (shown.truth?.length) {
       const speed = meanSpeed(shown.time, shown.truth, width, 0, [from, to]);
-      drawWhy(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
+      drawVelocities(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, cursor, frame, theme);
     this.swing(pen, frame, shown, cursor, theme);

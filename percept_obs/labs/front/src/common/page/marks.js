@@ -43,6 +43,25 @@ export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
   label(pen, text, x - 14 * c, y - 14 * s, colour, theme);
 }
 
+/** An arrow with a head of a fixed size; nothing where it would be shorter than it could be seen. */
+export function arrowMark(pen, from, to, { colour, dash, width, head }) {
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  if (!(length > 1)) return;
+  const [c, s] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  pen.strokeStyle = pen.fillStyle = colour;
+  pen.lineWidth = width;
+  pen.setLineDash(dash);
+  pen.beginPath();
+  pen.moveTo(from[0], from[1]);
+  pen.lineTo(to[0] - 0.7 * head * c, to[1] - 0.7 * head * s);
+  pen.stroke();
+  pen.lineWidth = 1;
+  pen.beginPath();
+  pen.moveTo(to[0], to[1]);
+  for (const side of [0.5, -0.5]) pen.lineTo(to[0] - head * (c - side * s), to[1] - head * (s + side * c));
+  pen.fill();
+}
+
 /** Letters that can be read on whatever lies below them. */
 export function label(pen, text, x, y, colour, theme) {
   if (!text || Number.isNaN(x + y)) return;

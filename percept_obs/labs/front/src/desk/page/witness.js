@@ -1,11 +1,11 @@
 // A numeric witness: the image's motion at a point, as the typed lines have it and as it is.
 
 import { readable } from "../../common/model/scales.js";
-import { squareAround, stroke } from "../../common/page/image_frame.js";
+import { squareAround } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
 import { element } from "../../common/page/controls.js";
 import { DASHES, SOLID, swatch } from "../../common/page/lines.js";
-import { pointMark } from "../../common/page/marks.js";
+import { arrowMark, pointMark } from "../../common/page/marks.js";
 import { put } from "../../common/page/layout.js";
 
 const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
@@ -45,8 +45,8 @@ export class Witness extends FramedImage {
     const inside = (pen, frame) => {
       if (!found) return;
       const scale = LENGTH / Math.max(length(found.true), mine ? length(mine) : 0, 1e-9);
-      arrow(pen, frame, point, found.true, scale, theme.ink, SOLID, 2.5);
-      if (mine) arrow(pen, frame, point, mine, scale, theme.lines[MINE], DASHES[MINE], 2.5);
+      arrow(pen, frame, point, found.true, scale, theme.ink, SOLID);
+      if (mine) arrow(pen, frame, point, mine, scale, theme.lines[MINE], DASHES[MINE]);
       pointMark(pen, frame.x(point[0]), frame.y(point[1]), theme.ink, theme);
     };
     this.paint(() => SQUARE, theme, inside, () => [point.slice(0, 2)]);
@@ -76,23 +76,8 @@ function length([y1, y2]) {
   return Math.hypot(y1, y2);
 }
 
-/** An arrow from a place, with a head of a fixed size. */
-function arrow(pen, { x, y }, [y1, y2], [d1, d2], scale, colour, dash, width) {
-  const from = [x(y1), y(y2)];
+/** An arrow from a place, so long as a motion is at a scale. */
+function arrow(pen, { x, y }, [y1, y2], [d1, d2], scale, colour, dash) {
   const to = [x(y1 + scale * d1), y(y2 + scale * d2)];
-  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-  const size = Math.hypot(dx, dy);
-  if (!(size > 1)) return;
-  pen.save();
-  pen.strokeStyle = pen.fillStyle = colour;
-  pen.lineWidth = width;
-  pen.setLineDash(dash);
-  stroke(pen, from, to);
-  const [u, v] = [dx / size, dy / size];
-  pen.beginPath();
-  pen.moveTo(to[0] + 2 * u, to[1] + 2 * v);
-  pen.lineTo(to[0] - HEAD * u + (HEAD / 2) * v, to[1] - HEAD * v - (HEAD / 2) * u);
-  pen.lineTo(to[0] - HEAD * u - (HEAD / 2) * v, to[1] - HEAD * v + (HEAD / 2) * u);
-  pen.fill();
-  pen.restore();
+  arrowMark(pen, [x(y1), y(y2)], to, { colour, dash, width: 2.5, head: HEAD });
 }

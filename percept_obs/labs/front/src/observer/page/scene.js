@@ -2,7 +2,7 @@
 
 import { columnOf, distancesOf } from "../../common/model/derived.js";
 import { valueBetween } from "../../common/model/playback.js";
-import { affine, imageVelocities, unseenDirection } from "../../common/model/why.js";
+import { affine, imageVelocities, unseenDirection } from "../../common/model/velocities.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { tracksOfPoint } from "../../common/model/tracks.js";
 import { lookOf } from "../../common/page/lines.js";

@@ -2,8 +2,8 @@
 
 import { readable, spread } from "../../common/model/scales.js";
 import { between, valueBetween } from "../../common/model/playback.js";
-import { meanSpeed } from "../../common/model/why.js";
-import { drawWhy } from "../../common/page/why.js";
+import { meanSpeed } from "../../common/model/velocities.js";
+import { drawVelocities } from "../../common/page/velocities.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { hull } from "../../common/page/chart_parts.js";
 import { drawPath, squareAround } from "../../common/page/image_frame.js";
@@ -49,7 +49,7 @@ export class ImagePlane extends FramedImage {
     if (cursor !== null) {
       const { time, images, points } = shown;
       const speed = meanSpeed(time, images, 2 * points, 0, [0, time.length - 1]);
-      drawWhy(pen, frame, this.arrowsOf(shown, between(time, cursor), theme), speed, theme);
+      drawVelocities(pen, frame, this.arrowsOf(shown, between(time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, between(shown.time, cursor ?? shown.time[last]), frame, theme);
     this.swing(pen, frame, shown, cursor, theme);

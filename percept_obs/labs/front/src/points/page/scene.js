@@ -2,7 +2,7 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
-import { imageVelocities, scaled } from "../../common/model/why.js";
+import { imageVelocities, scaled } from "../../common/model/velocities.js";
 import { motionAt } from "../model/motion.js";
 import { DASHES } from "../../common/page/lines.js";
 import { trail } from "./image_plane.js";

@@ -2,7 +2,7 @@
 
 import { tracksOfPoint } from "../../common/model/tracks.js";
 import { valueBetween } from "../../common/model/playback.js";
-import { affine, imageVelocities, scaled } from "../../common/model/why.js";
+import { affine, imageVelocities, scaled } from "../../common/model/velocities.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { straight } from "../../common/model/space.js";
 import { lookOf } from "../../common/page/lines.js";

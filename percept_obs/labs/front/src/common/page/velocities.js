@@ -1,8 +1,8 @@
-// Why the distance is told or not, drawn in the image: how the point moves, and how copies nearer and farther would.
+// Velocities in the image, as arrows: of the point, and of copies nearer and farther, which tell why its distance shows.
 
-import { COPIES } from "../model/why.js";
-import { stroke } from "./image_frame.js";
-import { label } from "./marks.js";
+import { COPIES } from "../model/velocities.js";
+import { SOLID } from "./lines.js";
+import { arrowMark, label } from "./marks.js";
 
 /** Length of an arrow at the mean speed of the image, as a part of the picture's side. */
 const USUAL = 0.16;
@@ -12,7 +12,7 @@ const MOVING = "arrows: velocity at ½, 1, 2 × distance";
 const STILL = "still at every distance: no arrow";
 
 /** @param {{place: number[], velocities: number[][], colour: string}[]} arrows */
-export function drawWhy(pen, frame, arrows, speed, theme) {
+export function drawVelocities(pen, frame, arrows, speed, theme) {
   if (!arrows.length) return;
   const seconds = speed > 0 ? (USUAL * frame.box.side) / (frame.scale * speed) : 0;
   for (const { place, velocities, colour } of arrows) {
@@ -34,20 +34,11 @@ export function drawWhy(pen, frame, arrows, speed, theme) {
 function arrow(pen, from, to, strength, colour, name, theme) {
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
   if (length < SHORTEST) return;
-  const [c, s] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
-  const back = (side) => [to[0] - HEAD * c + side * 0.5 * HEAD * s, to[1] - HEAD * s - side * 0.5 * HEAD * c];
   pen.globalAlpha = strength;
-  pen.setLineDash([]);
-  pen.strokeStyle = pen.fillStyle = colour;
-  pen.lineWidth = strength < 1 ? 1.5 : 2.5;
-  stroke(pen, from, [to[0] - 0.7 * HEAD * c, to[1] - 0.7 * HEAD * s]);
-  pen.lineWidth = 1;
-  pen.beginPath();
-  pen.moveTo(to[0], to[1]);
-  for (const side of [1, -1]) pen.lineTo(...back(side));
-  pen.fill();
+  arrowMark(pen, from, to, { colour, dash: SOLID, width: strength < 1 ? 1.5 : 2.5, head: HEAD });
   pen.globalAlpha = 1;
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  label(pen, name, to[0] + 7 * c, to[1] + 7 * s, colour, theme);
+  const beyond = [0, 1].map((i) => to[i] + (7 * (to[i] - from[i])) / length);
+  label(pen, name, beyond[0], beyond[1], colour, theme);
 }

@@ -1,5 +1,5 @@
 // @ts-check
-// Why an image tells the distance, or does not: how fast points at other distances on the same ray would move in it.
+// Velocities in the image: of a point, and of copies at other distances on its ray; where they differ, distance shows.
 
 /** Distances of the copies, as parts of the point's own: nearer, where it is, farther. */
 export const COPIES = [0.5, 1, 2];
