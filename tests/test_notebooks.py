@@ -68,6 +68,18 @@ def test_a_number_is_pinned(name):
     assert any(isinstance(node, ast.Assert) for tree in trees for node in ast.walk(tree))
 
 
+def test_each_notebook_leads_to_the_next():
+    texts = {name: "".join("".join(cell["source"]) for cell in read(name)["cells"][-1:]) for name in NAMES}
+    for name, following in zip(NAMES, NAMES[1:], strict=False):
+        assert f"]({following})" in texts[name], f"the end of {name} has no link to {following}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_lead_to_notebooks(name):
+    text = "".join("".join(cell["source"]) for cell in read(name)["cells"] if cell["cell_type"] == "markdown")
+    assert set(re.findall(r"\]\(([^):]*\.ipynb)\)", text)) <= set(NAMES)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
