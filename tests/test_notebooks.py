@@ -4,6 +4,7 @@ import ast
 import json
 import re
 import shutil
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -70,7 +71,7 @@ def test_a_number_is_pinned(name):
 
 def test_each_notebook_leads_to_the_next():
     texts = {name: "".join("".join(cell["source"]) for cell in read(name)["cells"][-1:]) for name in NAMES}
-    for name, following in zip(NAMES, NAMES[1:], strict=False):
+    for name, following in pairwise(NAMES):
         assert f"]({following})" in texts[name], f"the end of {name} has no link to {following}"
 
 
