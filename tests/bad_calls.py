@@ -24,6 +24,7 @@ from percept_obs.observers.integral_sliding_mode import tolerable_amplification,
 from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.ray import ray_turning
+from percept_obs.recording.pixels import PixelCamera
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
@@ -66,7 +67,7 @@ def calls():
     choice = structure.StructureAndMotion(("v_p1", "v_p2", "v_p3"))
     case = structure_scenarios.chwa2019_simulation("IV.B")
     pictures = po.record(case, 0.1)
-    camera = pixels.PixelCamera((720, 720), (320, 240))
+    camera = PixelCamera((720, 720), (320, 240))
     square = np.array([[0, 0], [1, 0], [0, 1], [1, 1.0]])
     ismo = po.ismo(form)
     good = [
@@ -149,7 +150,7 @@ def calls():
             {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0},
         ),
         (structure.linear_view, {"recording": pictures}),
-        (pixels.PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480)}),
+        (PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480), "distortion": (0.1, 0, 0, 0)}),
         (camera.pixels, {"image": [[0.1, 0.2]]}),
         (camera.image, {"pixels": [[100.0, 200.0]]}),
         (camera.sees, {"pixels": [[100.0, 200.0]]}),

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise, apparent_size, homography
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise, apparent_size, homography
 from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 
 small = st.floats(-0.3, 0.3)

@@ -72,8 +72,7 @@ class Poses:
                 f"the poses' times must increase strictly; look at row {late.argmax() + 2}, "
                 f"{float(time[late.argmax() + 1])!r} s: sort the rows and remove repeated ones"
             )
-        values = (time, position, _quaternions(turns))
-        for name, value in zip(("time", "position", "orientation"), values, strict=True):
+        for name, value in zip(vars(self).copy(), (time, position, _quaternions(turns)), strict=True):
             object.__setattr__(self, name, readonly(value))
 
     @cached_property
@@ -93,10 +92,9 @@ class Poses:
         orientation : array of shape (4,) or (3, 3)
             Of the camera in the body's frame, as in `Poses`.
         """
-        place, turn = numbers(position, "the position", 3), np.asarray(numbers(orientation, "the orientation"))
-        twice = Poses([0.0, 1.0], [place, place], [turn, turn])
-        orientations = (self.rotation * twice.rotation[0]).as_quat()
-        return Poses(self.time, self.position + self.rotation.apply(place), orientations)
+        mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
+        places = self.position + self.rotation.apply(mount.position[:1].copy())
+        return Poses(self.time, places, (self.rotation * mount.rotation[0]).as_quat())
 
     def path(self, derivative: Derivative = USUAL) -> CameraPath:
         """The poses with their velocities.
@@ -202,7 +200,8 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [-0.1, 0.2]
     """
-    poses = Poses(times, positions, orientations)
+    given = {"the times": times, "the positions": positions, "the orientations": orientations}
+    poses = Poses(*(numbers(values, name) for name, values in given.items()))
     return (poses if frame == "world" else _turned_round(poses)).motion(derivative)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
 import numpy as np
 
-from percept_obs.border import checked
+from percept_obs.border import checked, write_whole
 from percept_obs.compile import Array
 
 PathLike = str | os.PathLike[str]
@@ -38,8 +39,8 @@ class Clock:
 
     Examples
     --------
-    >>> Clock(zero=1403636579763555584, tick=1e-9).seconds(["1403636579768555520"]).round(9).tolist()
-    [0.005]
+    >>> Clock(zero=1403636579763555584, tick=1e-9).seconds(["1403636579763555592"]).tolist()
+    [8e-09]
     """
 
     zero: int | float = 0
@@ -70,6 +71,14 @@ class Clock:
                 raise ValueError(f"row {row} has the time {text!r}; every row needs a finite number there")
             found.append(float(reading - zero) * self.tick)
         return np.array(found)
+
+    def readings(self, seconds: Array, whole: bool = False) -> list[str]:
+        """The readings, as text with all digits, at some seconds; rounded to whole ones if asked for."""
+        exact = [Decimal(second) / Decimal(self.tick) + Decimal(self.zero) for second in seconds.tolist()]
+        return [str(round(each)) if whole else f"{each:f}" for each in exact]
+
+
+SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,3 +197,9 @@ def read_table(path: PathLike, names: tuple[str, ...] = (), separator: str = ","
         raise ValueError(f"{file} has a header and no rows; at least two samples are needed")
     columns = zip(names or found, (rows[name] for name in rows.columns), strict=False)
     return TextTable(file, {name: [str(cell).strip() for cell in column.fillna("")] for name, column in columns})
+
+
+def write_table(path: PathLike, head: list[str], rows: Iterable[Iterable[str]], separator: str = ",") -> None:
+    """Write rows of text below some lines, whole or not at all."""
+    lines = [*head, *(separator.join(row) for row in rows)]
+    write_whole(Path(path), ("\n".join(lines) + "\n").encode())
