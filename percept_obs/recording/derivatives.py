@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from percept_obs.border import checked
-from percept_obs.compile import Array
+from percept_obs.compile import Array, Indices
+
+AT_ONCE = 200_000
+"""Poses in windows that are fitted together: with what is computed from them they take about 50 MB."""
 
 Derived = tuple[Array, Array, Array, Array]
 """Positions and quaternions, smoothed, with the rates of both: velocities along the axes of the world, and angular
@@ -68,26 +70,39 @@ class Quadratic:
     def of(self, time: Array, position: Array, orientation: Array) -> Derived:
         """Poses and rates; see `Derived`."""
         from scipy.spatial.transform import Rotation
-        from tqdm.auto import tqdm
 
-        rotation, fit = Rotation.from_quat(orientation), np.empty((len(time), 2, 6))
-        for k in tqdm(range(len(time)), desc="fitting poses", delay=2, leave=False):
-            fit[k] = self._around(time, position, rotation, k)
-        (smooth, turn), (velocity, turning) = (np.split(fit[:, i], 2, axis=1) for i in (0, 1))
-        # The first two terms of the series for w in the fit's correction; the others are of its second order.
+        begin, end = self._windows(time)
+        rotation, widest = Rotation.from_quat(orientation), int((end - begin).max())
+        reach = np.maximum(time[end - 1] - time, time - time[begin])
+        fit = np.empty((len(time), 2, 6))
+        for rows in np.array_split(np.arange(len(time)), len(time) * widest // AT_ONCE + 1):
+            near = begin[rows, None] + np.arange(widest)
+            inside = near < end[rows, None]
+            near = np.minimum(near, len(time) - 1)
+            turned = rotation[np.repeat(rows, widest)].inv() * rotation[near.ravel()]
+            shifted = position[near] - position[rows, None]
+            values = np.concatenate([shifted, turned.as_rotvec().reshape(shifted.shape)], axis=-1)
+            powers = (((time[near] - time[rows, None]) / reach[rows, None])[..., None] ** np.arange(3)) * inside[
+                ..., None
+            ]
+            transposed = np.swapaxes(powers, 1, 2)
+            fit[rows] = np.linalg.solve(transposed @ powers, transposed @ values)[:, :2]
+        (shift, turn), (velocity, turning) = (np.split(fit[:, i], 2, axis=1) for i in (0, 1))
+        velocity, turning = velocity / reach[:, None], turning / reach[:, None]
         smoothed = rotation * Rotation.from_rotvec(turn)
-        return smooth, smoothed.as_quat(), velocity, turning - np.cross(turn, turning) / 2
+        # The first two terms of the series for w in the fit's correction; the others are of its second order.
+        return position + shift, smoothed.as_quat(), velocity, turning - np.cross(turn, turning) / 2
 
-    def _around(self, time: Array, position: Array, rotation: Any, k: int) -> Array:
-        """Values (row 0) and rates (row 1) at t_k of the parabolas fitted to p and to log(R_k^T R)."""
+    def _windows(self, time: Array) -> tuple[Indices, Indices]:
+        """First pose of each window and the one after its last: all that are near, or the nearest few."""
         width = self.half_width * (1 + 1e-9)  # a pose at the very edge is in, however its time was rounded
-        near = np.arange(*np.searchsorted(time, [time[k] - width, time[k] + width]))
-        if near.size < self.fewest:
-            near = np.argsort(np.abs(time - time[k]), kind="stable")[: self.fewest]
-        turned = (rotation[k].inv() * rotation[near]).as_rotvec()
-        powers = np.vander(time[near] - time[k], 3, increasing=True)
-        coefficients: Array = np.linalg.lstsq(powers, np.hstack([position[near], turned]), rcond=None)[0]
-        return coefficients[:2]
+        begin, end = np.searchsorted(time, time - width), np.searchsorted(time, time + width)
+        starts = np.arange(len(time))[:, None] + np.arange(1 - self.fewest, 1)
+        starts = np.clip(starts, 0, len(time) - self.fewest)
+        far = np.maximum(time[starts + self.fewest - 1] - time[:, None], time[:, None] - time[starts])
+        nearest = starts[np.arange(len(time)), far.argmin(axis=1)]
+        few = end - begin < self.fewest
+        return np.where(few, nearest, begin), np.where(few, nearest + self.fewest, end)
 
 
 @checked

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -103,9 +104,10 @@ class PixelCamera:
 
     def variance(self, sigma: float) -> float:
         """Variance of an image coordinate for noise of a standard deviation in pixels, the mean of both."""
-        if not (np.isfinite(sigma) and sigma >= 0):
-            raise ValueError(f"the sigma of the pixels is {sigma}; it must be finite and not negative")
-        return float(np.mean(np.square(sigma / np.array(self.focal))))
+        variance = float(np.mean(np.square(sigma / np.array(self.focal))))
+        if not (math.isfinite(variance) and sigma >= 0):
+            raise ValueError(f"the pixel sigma is {sigma}; it must be finite and not negative")
+        return variance
 
     def sees(self, pixels: ArrayLike) -> Flags:
         """Whether pixel coordinates lie in the image, shape (...)."""
@@ -132,9 +134,9 @@ class PixelCamera:
                 if not (np.abs(step) > 1e-15 * (1 + np.abs(found))).any():
                     break
             back = np.stack(lens(*np.moveaxis(found, -1, 0))[:2], axis=-1)
-            folded = np.asarray(lens(*np.moveaxis(found, -1, 0))[2:])
+            a, b, c, d = lens(*np.moveaxis(found, -1, 0))[2:]
             lost = ~(np.abs(back - distorted) < 1e-9 * (1 + np.abs(distorted))).all(axis=-1)
-            lost |= ~(folded[0] * folded[3] > folded[1] * folded[2])  # beyond the turn of the lens
+            lost |= ~((a * d > b * c) & (a + d > 0))  # where the lens has folded or mirrored the image
         lost &= np.isfinite(distorted).all(axis=-1)
         if lost.any():
             pixel = np.atleast_2d((distorted * self.focal + self.centre)[lost])[0]

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 UNIT = 0.01
 """By how much the length of a quaternion, or R^T R, may differ from 1: files are rounded."""
 
-USUAL = Quadratic(0.2)
-"""The derivative that is taken if none is named: a hand hardly shakes a camera faster than it follows."""
+USUAL = Quadratic(0.1)
+"""The derivative that is taken if none is named: a bargain for a camera that a hand carries."""
 
 
 @checked
@@ -55,7 +55,7 @@ class Poses:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
         if position.shape != (len(time), 3):
             raise ValueError(
-                f"the positions have the shape {position.shape}; expected ({len(time)}, 3), one row a time"
+                f"the positions have the shape {position.shape}; expected ({len(time)}, 3), as the times have it"
             )
         if turns.shape not in ((len(time), 4), (len(time), 3, 3)):
             raise ValueError(
@@ -177,7 +177,7 @@ def rigid_from_poses(
         Whose frame the poses are stated in: "world" for a camera in the world, X_world = R X_camera + p, as files of
         trajectories have it; "camera" for the world before a camera, X_camera = R X_world + p, as calibration has it.
     derivative : Neighbours, Quadratic or SmoothingSpline
-        How velocities are made of poses; a parabola over 0.2 s to either side when left out.
+        How velocities are made of poses; a parabola over 0.1 s to either side when left out.
 
     Returns
     -------
@@ -200,6 +200,8 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [-0.1, 0.2]
     """
+    if frame not in ("world", "camera"):
+        raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
     given = {"the times": times, "the positions": positions, "the orientations": orientations}
     poses = Poses(*(numbers(values, name) for name, values in given.items()))
     return (poses if frame == "world" else _turned_round(poses)).motion(derivative)
@@ -208,7 +210,7 @@ def rigid_from_poses(
 def _turned_round(poses: Poses) -> Poses:
     """The camera in the world, from the world before the camera."""
     back = poses.rotation.inv()
-    return Poses(poses.time, -back.apply(poses.position), back.as_quat())
+    return Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
 
 
 def _quaternions(turns: Array) -> Array:

@@ -95,8 +95,8 @@ class TextTable:
     file: str
     columns: dict[str, list[str]]
 
-    def column(self, name: str) -> list[str]:
-        """The cells of a column.
+    def column(self, name: str, of: str = "") -> list[str]:
+        """The cells of a column, which tells what the second text says.
 
         Raises
         ------
@@ -105,12 +105,12 @@ class TextTable:
         """
         if name not in self.columns:
             raise ValueError(
-                f"{self.file} has the columns {', '.join(self.columns)}; it needs {name!r}: rename the column, or "
-                "say what it is called"
+                f"{self.file} has the columns {', '.join(self.columns)}; it needs {name!r}{of and f' for the {of}'}: "
+                "rename the column, or say what it is called"
             )
         return self.columns[name]
 
-    def numbers(self, name: str, gaps: bool = True) -> Array:
+    def numbers(self, name: str, of: str = "", gaps: bool = True) -> Array:
         """The numbers of a column, shape (K,), NaN for an empty cell.
 
         Raises
@@ -118,7 +118,7 @@ class TextTable:
         ValueError
             If a cell is no finite number, or is empty though there may be no gaps.
         """
-        found = np.full(len(cells := self.column(name)), np.nan)
+        found = np.full(len(cells := self.column(name, of)), np.nan)
         for row, text in enumerate(cells):
             try:
                 found[row] = float(text) if text else np.nan
@@ -133,7 +133,7 @@ class TextTable:
     def seconds(self, name: str, clock: Clock) -> Array:
         """The times of a column in seconds, shape (K,)."""
         try:
-            return clock.seconds(self.column(name))
+            return clock.seconds(self.column(name, "time"))
         except ValueError as error:
             raise ValueError(f"{self.file}, column {name!r}: {error}") from None
 

@@ -48,7 +48,7 @@ def recordings_in(path: PathLike, motion: Motion, surface: ImagingSurface, colum
     time = table.seconds(columns.time, columns.clock)
     measured, outputs = _outputs(table, surface, columns)
     truth = _truth(table, surface, columns, measured, outputs)
-    others = {name: _distance(table, name) for name in columns.distances}
+    others = {name: _distance(table, name, "distances") for name in columns.distances}
     variance = None
     if columns.camera and columns.pixel_sigma is not None:
         variance = columns.camera.variance(columns.pixel_sigma)
@@ -70,7 +70,7 @@ def recordings_in(path: PathLike, motion: Motion, surface: ImagingSurface, colum
     known = _within(motion, time, file)
     if columns.point is None:
         return [part(np.flatnonzero(known), file)]
-    points = table.column(columns.point)
+    points = table.column(columns.point, "point")
     unnamed = [row for row, text in enumerate(points, 1) if not text]
     if unnamed:
         raise ValueError(f"{file}: row {unnamed[0]} has no {columns.point}; every row needs the name of its point")
@@ -96,7 +96,7 @@ def _outputs(table: TextTable, surface: ImagingSurface, columns: Columns) -> tup
     """Names of the image coordinates that the table has, and their numbers."""
     every = tuple(s.name for s in surface.image_coordinates)
     if columns.camera is not None:
-        pixels = np.stack([table.numbers(name) for name in columns.pixels], axis=-1)
+        pixels = np.stack([table.numbers(name, "pixels") for name in columns.pixels], axis=-1)
         try:
             image = columns.camera.image(pixels)
         except ValueError as error:
@@ -120,7 +120,7 @@ def _truth(
     """Measured image coordinates with the inverse distance, NaN for those that are not known."""
     inverse = surface.inverse_distance.name
     if columns.depth is not None:
-        last = 1 / _distance(table, columns.depth)
+        last = 1 / _distance(table, columns.depth, "depth")
     elif inverse in table.columns:
         last = table.numbers(inverse)
     else:
@@ -131,9 +131,9 @@ def _truth(
     return truth
 
 
-def _distance(table: TextTable, name: str) -> Array:
+def _distance(table: TextTable, name: str, of: str) -> Array:
     """A column of distances, which are positive or empty."""
-    found = table.numbers(name)
+    found = table.numbers(name, of)
     behind = np.flatnonzero(found <= 0)
     if len(behind):
         raise BehindCamera(
@@ -170,15 +170,16 @@ def _sightings(
     file: str, points: Sequence[str], time: Array, seen: Flags, known: Flags, columns: Columns
 ) -> Iterator[tuple[Indices, str]]:
     """Rows and name of each sighting of each point, from its first sample to its last, in the order of the points."""
-    found, short = 0, 0
+    found, short, names = 0, 0, np.array(points)
     for point in dict.fromkeys(points):
-        own = np.flatnonzero((np.array(points) == point) & known)
+        own = np.flatnonzero(names == point)
         back = np.flatnonzero(np.diff(time[own]) <= 0)
         if len(back):
             raise ValueError(
                 f"{file}: the times of the point {point} do not increase at row {own[back[0] + 1] + 1}; sort the rows "
                 f"by {columns.time} and remove repeated ones"
             )
+        own = own[known[own]]
         samples = np.flatnonzero(seen[own])
         long = np.diff(time[own][samples]) > columns.gap * (1 + 1e-9)
         runs = [run for run in np.split(samples, np.flatnonzero(long) + 1) if len(run)]
@@ -190,7 +191,8 @@ def _sightings(
             yield own[run[0] : run[-1] + 1], f"{file}, point {point}{part}"
     if not found:
         raise ValueError(
-            f"{file} has no point that is seen twice within {columns.gap:g} s and for {columns.shortest:g} s; is "
+            f"{file} has no point that is seen twice with a gap of at most {columns.gap:g} s, and at shortest "
+            f"for {columns.shortest:g} s; is "
             f"{columns.point!r} the column of the points, and are there samples?"
         )
     if short and not columns.shortest:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -127,6 +128,8 @@ def all_observers(
         raise ValueError("there are no recordings; give at least two, one to choose gains on and one to report on")
     if not len(references) or not len(after):
         raise ValueError(f"{len(references)} references and {len(after)} times after: at least one of each is needed")
+    if not all(math.isfinite(seconds) and seconds >= 0 for seconds in after):
+        raise ValueError(f"after is {list(after)!r}; the times must be finite and not negative, in seconds")
     first = recordings[0]
     system = PerspectiveSystem(first.motion, first.imaging_surface)
     form = system.partition(*first.names)
@@ -174,14 +177,14 @@ def _why_not(
     if form.view is None or not form.view.fits(recording.view):
         return f"it was seen on the {recording.view.name}, the first one on the {first.view.name}"
     if recording.motion.parameters != first.motion.parameters or recording.motion.A != first.motion.A:
-        return f"its motion is {recording.motion.name} with other coefficients than the first one's"
+        return f"its motion is {recording.motion.name} with other coefficients than that of the first"
     if not np.isfinite(recording.outputs[0]).all():
         return "its first sample was lost, and observers start from it: cut it with between()"
     lacking = [
         r for r in references if not (r in recording.distances or (r == "truth" and recording.truth is not None))
     ]
     if lacking:
-        return f"it has no {' and no '.join(lacking)} to compare with"
+        return f"it has no {' and no '.join(lacking)} to compare with; name other references"
     unknown = [name for name in references if np.isnan(recording.reference(name)).all()]
     if unknown:
         return f"its {' and '.join(unknown)} is known at no sample"

@@ -1,0 +1,392 @@
+"""Files of one's own become recordings: what is written is read back, and what is wrong is told before any work."""
+
+import shutil
+
+import numpy as np
+import pytest
+from camera_paths import poses, seen
+from utias_folder import utias_folder
+
+from percept_obs import BehindCamera, Clock, PixelCamera, Poses, Recording, pinhole, read_euroc, read_tum, sphere
+from percept_obs.recording import Unlikely
+from percept_obs.recording.pose_files import write_euroc, write_tum
+from percept_obs.recording.stereo_mat import DERIVATIVE, StereoTracks, read_stereo_mat, write_stereo_mat
+from percept_obs.recording.track_files import write_tracks
+from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
+
+TIME = np.arange(0, 2, 0.01)
+POSES = poses(TIME)
+MOTION = POSES.motion()
+CAMERA = PixelCamera((484.5, 480.0), (321.7, 247.5))
+LENS = PixelCamera((484.5, 480.0), (321.7, 247.5), distortion=(-0.28, 0.09, 0.001, -0.0005, 0.01))
+EXACT = {"rtol": 1e-12, "atol": 1e-12}
+
+
+def tracks(lost=5, stereo=True):
+    """Two points, irregularly sampled; the second is lost for a moment and has no truth there."""
+    rows = np.flatnonzero(np.random.default_rng(0).random(180) < 0.3)
+    found = []
+    for number, points in enumerate(seen(TIME)[:2]):
+        truth = pinhole().project(points[rows])
+        outputs = truth[:, :2].copy()
+        if number:
+            outputs[lost], truth[lost, 2] = np.nan, np.nan
+        distances = {"stereo": 1.01 * points[rows, 2]} if stereo else {}
+        found.append(Recording(TIME[rows], outputs, ("y1", "y2"), pinhole(), MOTION, truth, distances=distances))
+    return found
+
+
+def stereo(landmarks=True):
+    """A file of a stereo camera on a body, whose camera is the one of `POSES`."""
+    mount = Poses(
+        np.arange(2.0), np.tile([0.1, 0.0, -0.05], (2, 1)), np.tile([0, 0, np.sqrt(0.5), np.sqrt(0.5)], (2, 1))
+    )
+    images = np.random.default_rng(1).uniform(200, 300, (len(TIME), 3, 4))
+    images[..., 2] -= 150
+    images[50:60, 1] = np.nan
+    places = np.array([[0.1, 0, 2], [0, 0.1, 3], [0.2, 0.2, 2.5]]) if landmarks else None
+    return StereoTracks(POSES, mount, images, CAMERA, 0.24, places)
+
+
+# Written and read back.
+
+
+@pytest.mark.parametrize("clock", [Clock(), Clock(zero=1305031102, tick=0.5)], ids=repr)
+def test_tum_is_read_back(tmp_path, clock):
+    write_tum(tmp_path / "p", POSES, clock)
+    back = read_tum(tmp_path / "p", clock)
+    for name in ("time", "position", "orientation"):
+        np.testing.assert_allclose(getattr(back, name), getattr(POSES, name), **EXACT, err_msg=name)
+
+
+@pytest.mark.parametrize("clock", [Clock(tick=1e-9), Clock(zero=1403636579763555584, tick=1e-9)], ids=repr)
+def test_euroc_is_read_back(tmp_path, clock):
+    write_euroc(tmp_path / "p", POSES, clock)
+    assert (tmp_path / "p").read_text().startswith("#timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z\n")
+    back = read_euroc(tmp_path / "p", clock)
+    for name in ("time", "position", "orientation"):
+        np.testing.assert_allclose(getattr(back, name), getattr(POSES, name), **EXACT, err_msg=name)
+
+
+def test_the_orders_of_the_quaternions_are_those_of_the_formats(tmp_path):
+    (tmp_path / "tum").write_text("# a comment\n0 1 2 3 0.1 0.2 0.3 0.927361849549570\n1 1 2 3 0 0 0 1\n")
+    (tmp_path / "euroc").write_text(
+        "#time [ns], p, q_w q_x q_y q_z, v\n0,1,2,3,0.927361849549570,0.1,0.2,0.3,9,9\n1000,1,2,3,1,0,0,0,9,9\n"
+    )
+    for back in (read_tum(tmp_path / "tum"), read_euroc(tmp_path / "euroc")):
+        np.testing.assert_allclose(back.orientation, [[0.1, 0.2, 0.3, 0.92736184954957], [0, 0, 0, 1]])
+        assert back.position[0].tolist() == [1, 2, 3]
+    assert read_euroc(tmp_path / "euroc").time == pytest.approx([0, 1e-6])
+
+
+@pytest.mark.parametrize("landmarks", [True, False])
+def test_a_stereo_file_is_read_back(tmp_path, landmarks):
+    tracks = stereo(landmarks)
+    write_stereo_mat(tmp_path / "s.mat", tracks)
+    back = read_stereo_mat(tmp_path / "s.mat")
+    np.testing.assert_allclose(back.images, tracks.images, **EXACT)
+    for one, two in ((back.body, tracks.body), (back.poses, tracks.poses)):
+        for name in ("time", "position"):
+            np.testing.assert_allclose(getattr(one, name), getattr(two, name), **EXACT)
+        assert np.abs((one.rotation.inv() * two.rotation).as_rotvec()).max() < 1e-12
+    assert (back.camera, back.baseline) == (tracks.camera, tracks.baseline)
+    assert landmarks == (back.landmarks is not None)
+    recordings = back.tables(shortest=0.4, gap=0.1).recordings("mine")
+    assert [len(each.time) for each in recordings] == [50, 200, 200, 140]
+    assert recordings[0].distances["stereo"][0] == pytest.approx(
+        484.5 * 0.24 / (tracks.images[0, 1, 0] - tracks.images[0, 1, 2])
+    )
+    assert (recordings[0].truth is not None) == landmarks
+
+
+@pytest.mark.parametrize("camera", [None, CAMERA, LENS], ids=["image coordinates", "pixels", "pixels behind a lens"])
+@pytest.mark.parametrize("clock", [Clock(), Clock(zero=500, tick=1e-3)], ids=repr)
+def test_a_table_is_read_back(tmp_path, camera, clock):
+    written = tracks()
+    write_tracks(tmp_path / "t.csv", written, camera, clock)
+    depth = {"camera": camera, "point": "point_id", "depth": "depth", "distances": ["stereo"], "clock": clock}
+    back = Recording.from_csv(tmp_path / "t.csv", MOTION, **depth)
+    for one, two in zip(back, written, strict=True):
+        np.testing.assert_allclose(one.time, two.time, **EXACT)
+        np.testing.assert_allclose(one.outputs, two.outputs, **EXACT)
+        np.testing.assert_allclose(one.truth[:, 2], two.truth[:, 2], **EXACT)
+        np.testing.assert_allclose(one.distances["stereo"], two.distances["stereo"], **EXACT)
+
+
+def test_what_a_clock_reads_is_exact_however_late():
+    late = Clock(zero=1403636579763555584, tick=1e-9)
+    assert late.readings(np.array([1e-9, 3.0]), whole=True) == ["1403636579763555585", "1403636582763555584"]
+    assert late.seconds(["1403636579763555585"])[0] == 1e-9
+
+
+# The table of a class's own.
+
+
+def worked(**settings):
+    motion = read_tum(worked_folder() / "poses.txt").motion()
+    clock = {"clock": Clock(zero=500, tick=1e-3), "camera": WORKED_CAMERA, "point": "point_id"}
+    return Recording.from_csv(worked_folder() / "tracks.csv", motion, **(clock | settings))
+
+
+def test_the_worked_table_holds_everything():
+    near, far = worked(depth="depth", distances=["laser"], pixel_sigma=0.5)
+    assert (near.source, far.source) == ("tracks.csv, point near", "tracks.csv, point far")
+    assert near.time[0] == pytest.approx(0.1)
+    assert np.flatnonzero(np.isnan(near.outputs[:, 0])).tolist() == [5]
+    assert np.flatnonzero(np.isnan(far.truth[:, 2])).tolist() == [4]
+    assert np.diff(far.time).max() == pytest.approx(0.6)
+    assert np.isfinite(near.distances["laser"]).sum() == 6
+    assert near.noise_variance == pytest.approx((0.5 / 484.5) ** 2)
+    assert worked()[0].truth is None
+    parts = worked(gap=0.3)
+    assert [each.source.rpartition(", ")[2] for each in parts] == ["part 1", "part 2"] * 2
+    assert [each.source for each in worked(gap=0.5, shortest=1.5)] == [
+        "tracks.csv, point near",
+        "tracks.csv, point far",
+    ]
+
+
+@pytest.mark.parametrize("lost", ["", "nan", "NaN"])
+def test_nothing_and_nan_are_lost_samples(tmp_path, lost):
+    (tmp_path / "t.csv").write_text(f"time,y1,y2\n0,0.1,0.1\n0.1,{lost},0.1\n0.2,0.1,0.1\n")
+    assert Recording.from_csv(tmp_path / "t.csv", MOTION).seen.tolist() == [True, False, True]
+
+
+def test_pixels_become_rays_on_any_surface(tmp_path):
+    write_tracks(tmp_path / "t.csv", tracks(), LENS)
+    seen_flat, _ = Recording.from_csv(tmp_path / "t.csv", MOTION, camera=LENS, point="point_id", depth="depth")
+    seen_round, _ = Recording.from_csv(tmp_path / "t.csv", MOTION, sphere(), camera=LENS, point="point_id")
+    expected = sphere().project(seen_flat.points)[:, :2]
+    np.testing.assert_allclose(seen_round.outputs, expected, **EXACT)
+
+
+def test_rows_without_a_motion_are_left_out_and_told(tmp_path):
+    write_tracks(tmp_path / "t.csv", tracks())
+    known = poses(np.arange(0.5, 1.5, 0.01)).motion()
+    with pytest.warns(Unlikely, match=r"rows are left out; if these are two clocks, give clock=Clock\(zero="):
+        first, _ = Recording.from_csv(tmp_path / "t.csv", known, point="point_id")
+    assert first.time[0] >= 0.5
+    assert first.time[-1] < 1.5
+    (tmp_path / "t.csv").write_text("time,id,y1,y2\n0,a,0,0\n0.1,a,0,0\n0.1,b,0,0\n")
+    with pytest.warns(Unlikely, match="1 sightings of a single sample are left out"):
+        assert len(Recording.from_csv(tmp_path / "t.csv", MOTION, point="id")) == 1
+
+
+# The real recording, the way of one's own.
+
+USER = """
+from percept_obs import PixelCamera, Quadratic, Recording, read_tum
+from percept_obs.studies.all_observers import all_observers
+motion = read_tum("poses.txt").motion(Quadratic(0.3))
+camera = PixelCamera((484.49984741211, 484.4998474121), (321.68048095703, 247.4814453125))
+tracks = Recording.from_csv("tracks.csv", motion, camera=camera, point="point_id", depth="depth")
+found = all_observers(tracks, after=(1, 2))
+"""
+
+
+@pytest.fixture(scope="module")
+def utias_files(tmp_path_factory):
+    """The real recording as poses.txt and tracks.csv, with the poses as they were recorded."""
+    folder, recorded = tmp_path_factory.mktemp("own"), read_stereo_mat(utias_folder() / "dataset3.mat")
+    write_tum(folder / "poses.txt", recorded.poses)
+    recordings = recorded.tables().recordings("UTIAS")
+    write_tracks(folder / "tracks.csv", recordings, recorded.camera)
+    return folder, recordings
+
+
+def test_the_real_recording_rebuilt_is_the_same(utias_files):
+    folder, recordings = utias_files
+    motion = read_tum(folder / "poses.txt").motion(DERIVATIVE)
+    np.testing.assert_allclose(motion.signal.samples, recordings[0].motion.signal.samples, atol=1e-9)
+    camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
+    back = Recording.from_csv(
+        folder / "tracks.csv", motion, camera=camera, point="point_id", depth="depth", distances=["stereo"]
+    )
+    assert len(back) == 44
+    for one, two in zip(back, recordings, strict=True):
+        np.testing.assert_allclose(one.time, two.time, **EXACT)
+        np.testing.assert_allclose(one.outputs, two.outputs, **EXACT)
+        np.testing.assert_allclose(one.distance, two.distance, **EXACT)
+        np.testing.assert_allclose(one.distances["stereo"], two.distances["stereo"], **EXACT)
+
+
+@pytest.mark.slow
+def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(utias_files, monkeypatch):
+    folder, _ = utias_files
+    lines = (folder / "tracks.csv").read_text().splitlines()
+    few = [lines[0], *(line for line in lines[1:] if int(line.split(",")[1]) < 4)]
+    part = folder / "part"
+    part.mkdir()
+    shutil.copyfile(folder / "poses.txt", part / "poses.txt")
+    (part / "tracks.csv").write_text("\n".join(few))
+    monkeypatch.chdir(part)
+    assert len(USER.strip().splitlines()) <= 8
+    names = {}
+    exec(USER, names)
+    found = names["found"]
+    assert (len(found.choosing), len(found.reporting)) == (2, 2)
+    table = found.side_by_side
+    assert len(table) == 10
+    assert "needs a motion with constant coefficients" in table.loc["immersion and invariance", "remark"]
+    kalman = found.table[found.table["observer"] == "extended Kalman"].set_index("after")
+    assert kalman.loc[2.0, "median"] < 0.1
+
+
+# What is wrong with files.
+
+GOOD = "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"
+
+
+def in_tum(text):
+    return read_tum, text
+
+
+def in_euroc(text):
+    rows = [line.split() for line in text.splitlines()]
+    return read_euroc, "\n".join(",".join([*row[:4], *row[7:], *row[4:7]]) for row in rows)
+
+
+@pytest.mark.parametrize("written", [in_tum, in_euroc])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (GOOD, "", "is no table of text .*first row is such as"),
+        (GOOD, "# only comments\n", "is no table of text"),
+        (
+            "1 0 0 0 0 0 0 1",
+            "1 nan 0 0 0 0 0 1",
+            "'nan' in row 2 of the column '(tx|p_x)' is no number; write",
+        ),
+        ("1 0 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "'inf' in row 2 .* is infinite"),
+        ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)' is not a number"),
+        ("1 0 0 0 0 0 0 1", "when 0 0 0 0 0 0 1", "column 'timestamp': row 2 has the time 'when'; every row needs"),
+        ("1 0 0 0 0 0 0 1", "inf 0 0 0 0 0 0 1", "row 2 has the time 'inf'"),
+        ("2 0", "0.5 0", r"increase strictly; look at row 3, .*sort the rows"),
+        ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 2", "quaternion in row 2 has the length 2, expected 1"),
+        ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 0", "quaternion in row 2 has the length 0, expected 1"),
+        (GOOD, "0 0 0 0\n1 0 0 0\n", "has 4 columns; 8 are needed: timestamp, "),
+        (GOOD, GOOD[:16], "at least two seconds"),
+    ],
+)
+def test_files_of_poses_that_are_none_are_refused(tmp_path, written, old, new, message):
+    assert old in GOOD
+    read, text = written(GOOD.replace(old, new, 1))
+    (tmp_path / "poses.txt").write_text(text)
+    with pytest.raises(ValueError, match=f"(?s){message}"):
+        read(tmp_path / "poses.txt")
+
+
+TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (TABLE, "", "is no table of text .*first row is such as time,id,u,v"),
+        (TABLE, TABLE[:18], "header and no rows"),
+        ("301", "inf", "'inf' in row 2 of the column 'u' is infinite"),
+        ("301", "left", "'left' in row 2 of the column 'u' is not a number"),
+        ("0.1,a", ",a", "column 'time': row 2 has the time ''"),
+        ("0.1,a", "0.2,a", "times of the point a do not increase at row 3; sort the rows by time"),
+        ("0.1,a", "-0.1,a", "do not increase at row 2"),
+        ("0.1,a", "0.1,", "row 2 has no id; every row needs the name of its point"),
+        ("id,u", "id,x", "it needs 'u' for the pixels: rename the column, or say what it is called"),
+        ("id,u,v,", "id,u,u,", "names a column twice|needs 'v'"),
+        ("time,id,u,v,depth", "time,id,u,v", "rows with more cells than its header"),
+        ("301,200,2", "301,200,-2", "has the depth -2 in row 2; a point that is seen is in front of the camera"),
+        ("301,200,2", "301,200,0", "has the depth 0 in row 2"),
+        ("301,200,2\n", "301,200,2,7\n", "is no table of text"),
+        (
+            "0,a,300,200,2\n0.1,a,301,200,2\n0.2",
+            "50,a,300,200,2\n51,a,301,200,2\n52",
+            "the clocks do not overlap; bring",
+        ),
+        (TABLE, "time,id,u,v,depth\n0,a,300,200,2\n0.1,b,300,200,2\n", "no point that is seen twice"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::percept_obs.recording.Unlikely")
+def test_tables_that_are_none_are_refused(tmp_path, old, new, message):
+    assert old in TABLE
+    (tmp_path / "t.csv").write_text(TABLE.replace(old, new, 1))
+    with pytest.raises(ValueError, match=f"(?s){message}"):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, camera=CAMERA, point="id", depth="depth")
+
+
+def test_a_point_behind_the_camera_has_its_own_error(tmp_path):
+    (tmp_path / "t.csv").write_text(TABLE.replace("301,200,2", "301,200,-2"))
+    with pytest.raises(BehindCamera):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, camera=CAMERA, point="id", depth="depth")
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"gap": 0.0}, "gap is 0.0 s; it must be positive"),
+        ({"shortest": -1.0}, "shortest is -1.0 s"),
+        ({"pixels": ["u"]}, "pixels names the columns"),
+        ({"camera": None, "pixel_sigma": 1.0}, "pixel_sigma is in pixels; give also camera"),
+        ({"camera": None}, r"it needs 'time' and at least one of y1, y2, or a camera=PixelCamera"),
+        ({"point": None, "gap": 1.0}, "name the column of these"),
+        ({"point": "nobody"}, "it needs 'nobody'"),
+        ({"depth": "height"}, "it needs 'height'"),
+        ({"distances": ["laser"]}, "it needs 'laser'"),
+        ({"pixel_sigma": -1.0}, "the pixel sigma is -1"),
+        ({"camera": PixelCamera((500, 500), distortion=(-2, 0, 0, 0))}, "no direction is seen at the pixel"),
+    ],
+)
+def test_settings_that_no_table_meets_are_refused(tmp_path, settings, message):
+    (tmp_path / "t.csv").write_text(TABLE)
+    with pytest.raises(ValueError, match=message):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, **({"camera": CAMERA, "point": "id"} | settings))
+
+
+@pytest.mark.parametrize("clock", [{"tick": 0.0}, {"tick": float("nan")}, {"zero": float("inf")}])
+def test_a_clock_that_reads_no_time_is_refused(clock):
+    with pytest.raises(ValueError, match="reads no time"):
+        Clock(**clock)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("t", None, "has no variable t; it needs t, y_k_j"),
+        ("t", np.zeros((2, 2)), r"variable t of .* has the shape \(2, 2\)"),
+        ("t", TIME[::-1], "increase strictly"),
+        ("t", TIME[:50], r"variable y_k_j of .* has the shape|expected"),
+        ("theta_vk_i", np.full((3, len(TIME)), np.nan), "variable theta_vk_i of .* is not finite; -1 stands for"),
+        ("y_k_j", np.full((4, len(TIME), 3), np.inf), "variable y_k_j of .* is not finite"),
+        ("y_k_j", np.zeros((3, len(TIME), 3)), r"has the shape \(3, 200, 3\); expected \(4, 200, 'L'\)"),
+        ("rho_i_pj_i", np.zeros((3, 7)), r"has the shape \(3, 7\); expected \(3, 3\)"),
+        ("C_c_v", np.zeros((3, 3)), "row 1 is no rotation"),
+        ("fu", "wide", "expected real numbers"),
+        ("b", -1.0, "baseline b = -1.0 m; it must be positive"),
+    ],
+)
+def test_stereo_files_that_are_none_are_refused(tmp_path, name, value, message):
+    from scipy.io import loadmat, savemat
+
+    path = tmp_path / "s.mat"
+    write_stereo_mat(path, stereo())
+    values = {key: each for key, each in loadmat(path).items() if not key.startswith("__")}
+    values.pop(name)
+    savemat(path, values if value is None else values | {name: value})
+    with pytest.raises(ValueError, match=message):
+        read_stereo_mat(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"time,u,v\n0,1,2\n", b"MATLAB 7.3 MAT-file" + bytes(600)])
+def test_what_is_no_matlab_file_is_refused(tmp_path, content):
+    (tmp_path / "s.mat").write_bytes(content)
+    with pytest.raises(ValueError, match="which is no MATLAB file up to version 7"):
+        read_stereo_mat(tmp_path / "s.mat")
+    with pytest.raises(FileNotFoundError, match="there is no file"):
+        read_stereo_mat(tmp_path / "none.mat")
+
+
+@pytest.mark.parametrize("read", [read_tum, read_euroc, lambda path: Recording.from_csv(path, MOTION)])
+def test_what_is_no_text_or_not_there_is_refused(tmp_path, read):
+    (tmp_path / "b").write_bytes(bytes(range(256)) * 4)
+    with pytest.raises(ValueError, match=r"is no table of text|has a cell|it needs|has \d+ columns"):
+        read(tmp_path / "b")
+    with pytest.raises(FileNotFoundError, match="there is no file"):
+        read(tmp_path / "none")
