@@ -81,7 +81,7 @@ def choose_and_report(
         One row for an observer, a reference and a time, with relative errors of the distance over those reporting
         recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of those that are
         the smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
-        nine_in_ten (the 90 % quantile), behind (number of recordings whose estimate is not in front of the camera
+        nine_in_ten (the 90 % quantile), behind (number of recordings that have no estimate in front of the camera
         then), reset, diverged (numbers of recordings), cost (s of computing for a s of data), refusal: why the
         observer cannot follow these recordings, if it cannot; its numbers are then NaN; and doubt: that the steps were
         too long for it, if they were.
