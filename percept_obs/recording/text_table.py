@@ -61,7 +61,7 @@ class Clock:
         ValueError
             If a reading is not a finite number.
         """
-        zero, found = Decimal(self.zero), []
+        zero, found = Decimal(repr(self.zero)), []
         for row, text in enumerate(readings, 1):
             try:
                 reading = Decimal(text)
@@ -74,7 +74,8 @@ class Clock:
 
     def readings(self, seconds: Array, whole: bool = False) -> list[str]:
         """The readings, as text with all digits, at some seconds; rounded to whole ones if asked for."""
-        exact = [Decimal(second) / Decimal(self.tick) + Decimal(self.zero) for second in seconds.tolist()]
+        zero, tick = Decimal(repr(self.zero)), Decimal(repr(self.tick))
+        exact = [Decimal(repr(second)) / tick + zero for second in seconds.tolist()]
         return [str(round(each)) if whole else f"{each:f}" for each in exact]
 
 
