@@ -58,6 +58,15 @@ class Quadratic:
     ----------
     half_width : float
         Seconds to either side, positive; `fewest` poses are taken where fewer are so near.
+
+    Examples
+    --------
+    >>> from percept_obs.recording.pose_files import read_tum
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> poses = read_tum(worked_folder() / "poses.txt")
+    >>> wide, narrow = (poses.path(Quadratic(half_width)).velocity for half_width in (0.5, 0.1))
+    >>> bool(abs(wide - narrow).max() < 0.05)
+    True
     """
 
     half_width: float

@@ -120,6 +120,16 @@ def read_euroc(path: PathLike, clock: Clock = NANOSECONDS) -> Poses:
     Notes
     -----
     M. Burri et al., The EuRoC micro aerial vehicle datasets (International Journal of Robotics Research, 2016).
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "data.csv"
+    ...     write_euroc(file, read_tum(worked_folder() / "poses.txt"))
+    ...     read_euroc(file).position[1].tolist()
+    [0.011, 0.0044, 0.0025]
     """
     return EUROC.read(path, clock)
 

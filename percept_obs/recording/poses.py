@@ -43,6 +43,16 @@ class Poses:
     ------
     ValueError
         If shapes do not fit, values are not finite, times do not increase, or an orientation is no rotation.
+
+    Examples
+    --------
+    A camera that rises by 0.1 m in a second while it looks along the world's z axis:
+
+    >>> import numpy as np
+    >>> t = np.linspace(0, 1, 11)
+    >>> poses = Poses(t, np.outer(t, [0, -0.1, 0]), np.stack([np.eye(3)] * 11))
+    >>> poses.path().velocity[5].round(9).tolist()
+    [0.0, -0.1, 0.0]
     """
 
     time: Array
@@ -91,6 +101,15 @@ class Poses:
             Of the camera in the body's frame, in metres.
         orientation : array of shape (4,) or (3, 3)
             Of the camera in the body's frame, as in `Poses`.
+
+        Examples
+        --------
+        A camera 0.2 m in front of the body, which is at (1, 0, 0) and looks along the world's z axis:
+
+        >>> import numpy as np
+        >>> body = Poses(np.arange(2.0), np.array([[1.0, 0, 0]] * 2), np.stack([np.eye(3)] * 2))
+        >>> body.mounted([0, 0, 0.2], [0, 0, 0, 1]).position[0].tolist()
+        [1.0, 0.0, 0.2]
         """
         mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
         places = self.position + self.rotation.apply(mount.position[:1].copy())

@@ -215,6 +215,13 @@ def read_stereo_mat(path: str | os.PathLike[str]) -> StereoTracks:
     ValueError
         If it is no such file, a variable is missing or has another shape, values are not finite, or times do not
         increase.
+
+    Examples
+    --------
+    ::
+
+        tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat")
+        recordings = tracks.tables(shortest=1.0).recordings("KITTI 0036", pixel_sigma=0.5)
     """
     file = Path(path)
     if not file.is_file():

@@ -38,6 +38,16 @@ def write_tracks(
     -----
     The columns are time, point_id, the outputs, depth (of the surface, empty where it is not known; left out if no
     recording has a truth), and the measured distances by their names.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from percept_obs import Camera, record, scenarios
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "tracks.csv"
+    ...     write_tracks(file, [record(scenarios.ma2005_eq35(), 1, Camera(0.5))])
+    ...     print(file.read_text().splitlines()[0])
+    time,point_id,y1,y2,depth
     """
     if not len(recordings):
         raise ValueError("there are no recordings to write; give at least one")

@@ -158,7 +158,7 @@ def described(found: pd.DataFrame) -> str:
 
 
 def _known(value: float) -> float:
-    """An error, infinite where there is none, as in a run that diverged."""
+    """An error, infinite where a diverged run has none."""
     return float(value) if math.isfinite(value) else math.inf
 
 
@@ -196,7 +196,8 @@ def relative_distance_errors(
     Returns
     -------
     array of shape (number of sightings that last as long,)
-        |estimate - reference| / reference; infinite where there is no estimate in front of the camera.
+        |estimate - reference| / reference; infinite where the estimate is not in front of the camera, NaN
+        where there is none.
 
     Raises
     ------
@@ -221,8 +222,7 @@ def relative_distance_errors(
             later = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
             if len(later) and (points is None or sighting.point in points):
                 place = (later[0], sighting.point)
-                error = abs(run.distance.reshape(shape)[place] / known[place] - 1)
-                errors.append(_known(error))
+                errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
     if not errors:
         raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s; after must be shorter")
     return np.array(errors)
@@ -269,6 +269,7 @@ def best_setting(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
             runs = [follow(recording, observer) for recording in recordings]
-        return float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
+        total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
+        return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
     return min(candidates, key=score)

@@ -120,6 +120,7 @@ def choose_and_report(
         told["diverged"] = sum(run.diverged_at is not None for run in runs)
         for reference, seconds in questions:
             errors = relative_distance_errors(runs, seconds, reference)
+            errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
             # the quantile by rank, for infinite errors have no mean
             numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, SHARE, method="nearest")}
             numbers["behind"] = np.isinf(errors).sum()
