@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from camera_paths import carried, poses, seen
 
-from percept_obs import PerspectiveSystem, Recording, Scenario, ekf, pinhole, rigid, rigid_from_poses, track
+from percept_obs import PerspectiveSystem, Recording, Scenario, ekf, figures, pinhole, rigid, rigid_from_poses, track
 from percept_obs.recording.derivatives import Neighbours, Quadratic, SmoothingSpline
-from percept_obs.recording.poses import Poses
+from percept_obs.recording.poses import CameraPath, Poses
 from percept_obs.studies.comparison import relative_distance_errors
 
 TIME = np.arange(0, 8, 0.01)
@@ -154,3 +154,26 @@ def test_what_are_no_poses_is_refused(changes, message):
 def test_a_window_that_is_none_is_refused():
     with pytest.raises(ValueError, match="half_width is 0"):
         Quadratic(0)
+
+
+def test_velocities_are_drawn_and_told():
+    *_, velocity, turning = carried(TIME)
+    exact = CameraPath(TIME, poses(TIME).position, poses(TIME).orientation, velocity, turning)
+    wide = poses(TIME).path(Quadratic(0.5))
+    drawn = figures.velocities({"truth": exact, "wide": wide}, axis=2)
+    by_label = {line.get_label(): line for line in drawn.axes[0].lines}
+    np.testing.assert_array_equal(by_label["wide"].get_data(), [TIME, wide.velocity[:, 2]])
+    np.testing.assert_array_equal(by_label["truth"].get_data(), [TIME, velocity[:, 2]])
+    off = np.sqrt(np.mean((wide.velocity - velocity)[:, 2] ** 2))
+    assert f"off by {off:.2g} m/s" in drawn.text
+    assert "along its z axis" in drawn.text
+    fewer = poses(TIME[::2]).path()
+    for wrong, message in (
+        ({}, "paths are needed"),
+        ({"a": 1}, "paths are needed"),
+        ({"a": exact, "b": fewer}, "times"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            figures.velocities(wrong)
+    with pytest.raises(ValueError, match="the axis is 3"):
+        figures.velocities({"a": exact}, axis=3)
