@@ -131,6 +131,7 @@ def test_what_a_clock_reads_is_exact_however_late():
     late = Clock(zero=1403636579763555584, tick=1e-9)
     assert late.readings(np.array([1e-9, 3.0]), whole=True) == ["1403636579763555585", "1403636582763555584"]
     assert late.seconds(["1403636579763555585"])[0] == 1e-9
+    assert Clock(np.int64(1403636579763555584), np.float64(1e-9)) == late
 
 
 # The table of a class's own.

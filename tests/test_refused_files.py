@@ -34,6 +34,7 @@ def in_euroc(text):
         ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)' is not a number"),
         ("1 0 0 0 0 0 0 1", "when 0 0 0 0 0 0 1", "column 'timestamp': row 2 has the time 'when'; every row needs"),
         ("1 0 0 0 0 0 0 1", "inf 0 0 0 0 0 0 1", "row 2 has the time 'inf'"),
+        ("1 0 0 0 0 0 0 1", "1e9999999 0 0 0 0 0 0 1", "row 2 has the time '1e9999999'"),
         ("2 0", "0.5 0", r"increase strictly; look at row 3, .*sort the rows"),
         ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 2", "quaternion in row 2 has the length 2, expected 1"),
         ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 0", "quaternion in row 2 has the length 0, expected 1"),

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,9 @@ from percept_obs.border import checked, write_whole
 from percept_obs.compile import Array
 
 PathLike = str | os.PathLike[str]
+
+LARGEST_POWER = 300
+"""Power of ten from which on a reading is no number of a clock."""
 
 
 @checked
@@ -52,6 +56,8 @@ class Clock:
                 f"a clock with the zero {self.zero} and the tick {self.tick} s reads no time; give a finite zero and a "
                 "positive tick"
             )
+        object.__setattr__(self, "zero", int(self.zero) if isinstance(self.zero, Integral) else float(self.zero))
+        object.__setattr__(self, "tick", float(self.tick))
 
     def seconds(self, readings: list[str]) -> Array:
         """Seconds of readings in text, shape (K,); subtracted before they are rounded.
@@ -67,7 +73,7 @@ class Clock:
                 reading = Decimal(text)
             except InvalidOperation:
                 reading = Decimal("nan")
-            if not reading.is_finite():
+            if not reading.is_finite() or reading.adjusted() > LARGEST_POWER:
                 raise ValueError(f"row {row} has the time {text!r}; every row needs a finite number there")
             found.append(float(reading - zero) * self.tick)
         return np.array(found)
