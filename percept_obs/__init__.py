@@ -17,6 +17,11 @@ from percept_obs.observers import (
 )
 from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
+from percept_obs.recording.derivatives import Neighbours, Quadratic, SmoothingSpline
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.pose_files import read_euroc, read_tum
+from percept_obs.recording.poses import Poses, rigid_from_poses
+from percept_obs.recording.text_table import Clock
 from percept_obs.structure import StructureAndMotion
 from percept_obs.structure.stages import semigeneral
 from percept_obs.studies.consistency import check_consistency
@@ -34,21 +39,27 @@ __all__ = [
     "Camera",
     "CannotRead",
     "CanonicalForm",
+    "Clock",
     "DoesNotFit",
     "FirstSight",
     "Gaussian",
     "ImagingSurface",
     "Motion",
+    "Neighbours",
     "NotAffine",
     "Observer",
     "PartitionedSystem",
     "PerspectiveSystem",
+    "PixelCamera",
     "PointsForm",
     "PointsScenario",
+    "Poses",
+    "Quadratic",
     "Recording",
     "Review",
     "Run",
     "Scenario",
+    "SmoothingSpline",
     "StructureAndMotion",
     "TooMuchWork",
     "Uniform",
@@ -68,8 +79,11 @@ __all__ = [
     "luenberger",
     "pinhole",
     "plane",
+    "read_euroc",
+    "read_tum",
     "record",
     "rigid",
+    "rigid_from_poses",
     "scenarios",
     "semigeneral",
     "sliding_mode",

@@ -3,12 +3,15 @@
 As a program it makes the asked number of them, each within 5 s and all within 2 GiB, and prints what became of them.
 """
 
+import atexit
 import json
 import os
 import random
 import resource
+import shutil
 import signal
 import sys
+import tempfile
 import traceback
 import warnings
 from functools import cache
@@ -24,6 +27,9 @@ from percept_obs.observers.integral_sliding_mode import tolerable_amplification,
 from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.ray import ray_turning
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.pose_files import write_euroc, write_tum
+from percept_obs.recording.stereo_mat import StereoTracks, read_stereo_mat, write_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
@@ -66,9 +72,17 @@ def calls():
     choice = structure.StructureAndMotion(("v_p1", "v_p2", "v_p3"))
     case = structure_scenarios.chwa2019_simulation("IV.B")
     pictures = po.record(case, 0.1)
-    camera = pixels.PixelCamera((720, 720), (320, 240))
+    camera = PixelCamera((720, 720), (320, 240))
     square = np.array([[0, 0], [1, 0], [0, 1], [1, 1.0]])
     ismo = po.ismo(form)
+    poses = po.Poses(np.arange(9.0), np.zeros((9, 3)), np.tile([0, 0, 0, 1.0], (9, 1)))
+    folder = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, folder)
+    (folder / "tracks.csv").write_text("time,id,u,v,Z,laser\n0,a,320,240,2,2\n1,a,330,240,2,2\n2,a,340,250,2,2\n")
+    write_tum(folder / "poses.txt", poses)
+    write_euroc(folder / "data.csv", poses)
+    mount = po.Poses(np.arange(2.0), np.zeros((2, 3)), np.stack([np.eye(3)] * 2))
+    write_stereo_mat(folder / "s.mat", StereoTracks(poses, mount, np.ones((9, 2, 4)), camera, 0.1))
     good = [
         (po.affine, {"A": np.eye(3), "b": np.ones(3), "times": None}),
         (po.rigid, {"angular_velocity": [0, 0, 1], "camera_velocity": [0, 0, 1], "point_velocity": [0, 0, 0]}),
@@ -149,7 +163,7 @@ def calls():
             {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0},
         ),
         (structure.linear_view, {"recording": pictures}),
-        (pixels.PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480)}),
+        (PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480), "distortion": (0.1, 0, 0, 0)}),
         (camera.pixels, {"image": [[0.1, 0.2]]}),
         (camera.image, {"pixels": [[100.0, 200.0]]}),
         (camera.sees, {"pixels": [[100.0, 200.0]]}),
@@ -157,6 +171,26 @@ def calls():
         (pixels.SignalToNoise(60.0).sigma, {"pixels": [[100.0, 200.0]]}),
         (pixels.homography, {"reference": square, "images": square + 0.1}),
         (pixels.apparent_size, {"images": square}),
+        (po.Poses, {"time": poses.time, "position": poses.position, "orientation": poses.orientation}),
+        (po.Quadratic, {"half_width": 0.1}),
+        (po.Clock, {"zero": 5, "tick": 1e-3}),
+        (poses.mounted, {"position": [0.0, 0.0, 1.0], "orientation": [0.0, 0.0, 0.0, 1.0]}),
+        (poses.motion, {"derivative": po.Neighbours()}),
+        (
+            po.rigid_from_poses,
+            {"times": poses.time, "positions": poses.position, "orientations": poses.orientation}
+            | {"frame": "camera", "derivative": po.Quadratic(2.0)},
+        ),
+        (po.read_tum, {"path": folder / "poses.txt", "clock": po.Clock()}),
+        (po.read_euroc, {"path": folder / "data.csv", "clock": po.Clock()}),
+        (read_stereo_mat, {"path": folder / "s.mat"}),
+        (
+            po.Recording.from_csv,
+            {"path": folder / "tracks.csv", "motion": poses.motion(), "surface": po.pinhole(), "time": "time"}
+            | {"point": "id", "depth": "Z", "distances": ["laser"], "camera": camera, "pixels": ("u", "v")}
+            | {"pixel_sigma": 1.0, "clock": po.Clock(), "gap": 5.0, "shortest": 0.5},
+        ),
+        (camera.variance, {"sigma": 1.0}),
         (po.instantaneous, {"form": form}),
         (instantaneous(form).circle, {"threshold": 0.1}),
         (po.windowed, {"form": form, "recording": recording, "window": 1.0}),

@@ -82,6 +82,16 @@ MISTAKES = {
         "hide-the-first": ["a", "b", "d"],
         "noisy-point": [1 / 3, 1, 10],
     },
+    "07_your_own_recording": {
+        "lost-motion": [
+            "h^2 / 10",  # of a third derivative of 1, and here it is 6
+            "3 h^2",  # the velocity at the end of the window
+            "h^2",  # the slope of the chord
+            "3 h / 5",
+        ],
+        "half-the-poses": ["a", "b", "d"],
+        "own-window": [0.01, 0.03, 0.5, 1.0],
+    },
     "08_check_a_derivation": {
         "tilted": [
             "y1' = (b1 + y1 (n1 b1 + n2 b2 + n3 b3)) y3",

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise, apparent_size, homography
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise, apparent_size, homography
 from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 
 small = st.floats(-0.3, 0.3)
@@ -59,6 +60,36 @@ def test_the_points_of_the_paper_do_not_stay_in_an_ordinary_image():
 def test_a_camera_that_is_none_is_refused(settings, message):
     with pytest.raises(ValueError, match=message):
         PixelCamera(**settings)
+
+
+LENS = PixelCamera((500, 400), (320, 240), distortion=(-0.3, 0.1, 0.01, 0.02, 0.05))
+
+
+def test_a_lens_distorts_as_opencv_has_it():
+    """By hand, at (0.5, 0.25), where r^2 = 0.3125."""
+    radial = 1 - 0.3 * 0.3125 + 0.1 * 0.3125**2 + 0.05 * 0.3125**3
+    x = 0.5 * radial + 2 * 0.01 * 0.125 + 0.02 * (0.3125 + 2 * 0.25)
+    y = 0.25 * radial + 0.01 * (0.3125 + 2 * 0.0625) + 2 * 0.02 * 0.125
+    np.testing.assert_allclose(LENS.pixels([0.5, 0.25]), [320 + 500 * x, 240 + 400 * y], rtol=1e-14)
+    rational = PixelCamera((1, 1), distortion=(-0.3, 0.1, 0, 0, 0.05, 0.2, 0.3, 0.4))
+    below = 1 + 0.2 * 0.3125 + 0.3 * 0.3125**2 + 0.4 * 0.3125**3
+    np.testing.assert_allclose(rational.pixels([0.5, 0.25]), np.array([0.5, 0.25]) * radial / below, rtol=1e-14)
+
+
+@given(st.lists(st.tuples(st.floats(-0.7, 0.7), st.floats(-0.7, 0.7)), min_size=1, max_size=5))
+def test_what_a_lens_did_is_undone(images):
+    np.testing.assert_allclose(LENS.image(LENS.pixels(images)), images, rtol=1e-12, atol=1e-13)
+
+
+def test_a_lens_that_sees_nothing_there_says_so():
+    assert np.isnan(LENS.image([np.nan, np.nan])).all()
+    folds = PixelCamera((500, 500), distortion=(-2, 0, 0, 0))  # its images end at r = 0.272
+    np.testing.assert_allclose(folds.pixels(folds.image([100.0, 80.0])), [100, 80], rtol=1e-12)
+    with pytest.raises(ValueError, match=r"no direction is seen at the pixel \(300, 200\).*in the order k1, k2, p1"):
+        folds.image([[100.0, 80.0], [300.0, 200.0]])
+    for wrong in ((0.1,), (0.1, 0, 0, np.nan), (0.1,) * 6):
+        with pytest.raises(ValueError, match=r"the distortion is .*4, 5, 8 finite numbers"):
+            PixelCamera((1, 1), distortion=wrong)
 
 
 def test_a_ratio_of_powers():

@@ -20,6 +20,7 @@ from percept_obs import (
     track,
 )
 from percept_obs.observers import OBSERVERS, NotIntegrable, ekf, immersion_and_invariance, ismo
+from percept_obs.recording.pixels import PixelCamera
 from percept_obs.structure import (
     COROLLARIES,
     GivenDepth,
@@ -32,7 +33,7 @@ from percept_obs.structure import (
     linear_view,
     seen_as,
 )
-from percept_obs.structure.pixels import CHWA_CAMERA, PixelCamera, SignalToNoise
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 from percept_obs.studies.least_squares import moving_window_least_squares
 

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, ZERO
+from tqdm.auto import tqdm
 
 from percept_obs import record, scenarios, track
-from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, range_identification
+from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, integral_sliding_mode, range_identification
 from percept_obs.observers.gains import grid
 from percept_obs.studies.comparison import relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
@@ -57,6 +58,20 @@ def test_the_table_is_the_same_each_time():
     assert first.equals(second)
 
 
+def test_progress_counts_every_run_and_those_that_are_refused(monkeypatch):
+    bars = []
+
+    class Bar(tqdm):
+        def __init__(self, *args, **kwargs):
+            super().__init__(*args, **kwargs)
+            bars.append(self)
+
+    monkeypatch.setattr("tqdm.auto.tqdm", Bar)
+    reported(ONE)
+    (bar,) = bars
+    assert bar.n == bar.total == len(GAINS[de_luca]) * 2 + 2 + 1 * 2 + 2
+
+
 def test_a_refusal_is_told_in_words():
     table = reported(ONE)
     refused = table[table["observer"] == "range identification"]
@@ -87,6 +102,13 @@ def test_estimates_behind_the_camera_are_counted():
     lines = side_by_side(table)
     assert lines["behind"].tolist() == ["0", "2"]
     assert lines.loc["none", "truth 1 s"] == "none (none)"
+
+
+def test_an_observer_that_withholds_its_estimate_has_none():
+    """The start of the integral sliding mode observer may still be half of its estimate after 0.1 s."""
+    table = choose_and_report(CHOOSING, REPORTING, BOTH, follow, {integral_sliding_mode: ({},)}, after=(0.1,))
+    assert table[["median", "behind"]].to_numpy().tolist() == [[np.inf, 2]]
+    assert side_by_side(table).loc["integral sliding mode", "truth 0.1 s"] == "none (none)"
 
 
 @pytest.mark.parametrize(

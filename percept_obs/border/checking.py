@@ -22,6 +22,7 @@ Thing = TypeVar("Thing", bound=Callable[..., Any])
 EXAMPLES = MappingProxyType(
     {
         "Camera": "Camera(period=0.01)",
+        "Clock": "Clock(zero=0, tick=1e-3)",
         "CanonicalForm": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',
         "Consistency": "check_consistency(run)",
         "DepthSource": "GivenDepth()",
@@ -34,6 +35,8 @@ EXAMPLES = MappingProxyType(
         "PerspectiveSystem": "PerspectiveSystem(affine(), pinhole())",
         "PixelCamera": "PixelCamera((720, 720), (320, 240))",
         "PointsForm": "PointsForm(affine(A, b), np.eye(3))",
+        "Poses": 'read_tum("poses.txt")',
+        "Quadratic": "Quadratic(0.1)",
         "Recording": "record(scenarios.ma2005_eq35())",
         "Run": "track(recording, ibo(form))",
         "Scenario": "scenarios.ma2005_eq35()",

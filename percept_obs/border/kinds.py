@@ -122,6 +122,8 @@ def fits(value: Any, kind: Any) -> bool:
         return isinstance(value, Mapping) and all(fits(k, inside[0]) and fits(v, inside[1]) for k, v in value.items())
     if origin is not None and issubclass(origin, Iterable):
         return _each_fits(value, origin, inside)
+    if isinstance(origin, type):
+        return isinstance(value, origin)
     if kind is Any or not isinstance(kind, type):
         return True
     if getattr(kind, "_is_protocol", False):

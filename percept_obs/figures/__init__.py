@@ -9,6 +9,7 @@ from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
 from percept_obs.figures.structure import cases, quantities
+from percept_obs.figures.velocities import velocities
 from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
@@ -27,4 +28,5 @@ __all__ = [
     "runs_over_time",
     "scene",
     "signals",
+    "velocities",
 ]

@@ -10,7 +10,8 @@ import numpy as np
 from percept_obs.border import checked
 from percept_obs.points.bodies import independent_points
 from percept_obs.recording import Recording
-from percept_obs.recording.utias import LONGEST_GAP, utias_tables
+from percept_obs.recording.stereo_mat import LONGEST_GAP
+from percept_obs.recording.utias import PIXEL_SIGMA, utias_tables
 
 
 @checked
@@ -46,7 +47,8 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     rows = slice(min(track.first for track in tracks), max(track.last for track in tracks) + 1)
     truth = np.hstack([tables.points[rows, landmark] for landmark in chosen])
     source = f"UTIAS, {len(chosen)} landmarks, {len(tracks)} tracks"
-    return tables.recording(rows, chosen, independent_points(tables.motion, len(chosen)), truth, source)
+    view = independent_points(tables.motion, len(chosen))
+    return tables.recording(rows, chosen, view, truth, source, PIXEL_SIGMA)
 
 
 OUT_OF_SIGHT = LONGEST_GAP

@@ -2,8 +2,9 @@
 
 from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
-from percept_obs.recording.recording import Recording, Sighting, Unlikely
+from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
+from percept_obs.recording.track_table import Unlikely
 
 __all__ = [
     "NO_NOISE",

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from percept_obs.border import checked, warn
 from percept_obs.compile import Array, Flags
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.text_table import SECONDS, Clock, PathLike
+from percept_obs.recording.track_table import Columns, Unlikely, recordings_in
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
@@ -22,10 +26,6 @@ LARGEST_USUAL = 20.0
 
 HOLE = 10
 """Times the usual interval of a sampled motion that make a hole in it."""
-
-
-class Unlikely(UserWarning):
-    """What a recording holds can be followed, but is hardly what was meant."""
 
 
 @dataclass(frozen=True)
@@ -311,58 +311,86 @@ class Recording:
     @classmethod
     def from_csv(
         cls,
-        path: str | os.PathLike[str],
+        path: PathLike,
         motion: Motion,
         surface: ImagingSurface | None = None,
         time: str = "time",
-    ) -> Recording:
-        """Read a recording from a table with a header.
+        *,
+        point: str | None = None,
+        depth: str | None = None,
+        distances: Sequence[str] = (),
+        camera: PixelCamera | None = None,
+        pixels: Sequence[str] = ("u", "v"),
+        pixel_sigma: float | None = None,
+        clock: Clock = SECONDS,
+        gap: float = math.inf,
+        shortest: float = 0.0,
+    ) -> Any:
+        """Read the track of a point from a table with a header, or the tracks of several.
 
         Parameters
         ----------
         path : path
-            A column of times in seconds, columns named like the outputs (y1, y2), and if the truth is known a
-            column with the name of the inverse distance (y3 for the pinhole).  Empty cells are lost samples.
+            A row a sample and a column each for the times and for the outputs (y1, y2, or pixels).  A column with the
+            name of the inverse distance (y3 for the pinhole) is the truth.  Empty cells are lost samples, and lines
+            that begin with # are comments.
         motion : Motion
-            Known motion, with numbers.
+            Known motion, with numbers, for instance ``read_tum("poses.txt").motion()``.
         surface : ImagingSurface, optional
             The pinhole when left out.
         time : str
             Name of the column of times.
+        point : str, optional
+            Name of a column that tells several points apart, by numbers or text.
+        depth : str, optional
+            Name of a column with the true distance of the surface in metres, for the pinhole the depth Z.
+        distances : sequence of str
+            Names of columns with distances in metres that were measured independently, such as ("stereo",).
+        camera : PixelCamera, optional
+            What turns pixels into image coordinates, its lens included.
+        pixels : pair of str
+            Names of the columns of pixels; read with a camera only.
+        pixel_sigma : float, optional
+            Standard deviation of the noise in pixels, if it is known.
+        clock : Clock
+            How times are read, so that they are those of the motion.
+        gap : float
+            Seconds without a sample after which a point's track is another recording.
+        shortest : float
+            Seconds that a recording lasts at least.
+
+        Returns
+        -------
+        Recording, or a tuple of them if a column of points is named
+            One a point, from its first sample to its last, or several if there are longer gaps.  The image
+            coordinates of the truth are the measured ones.
+
+        Warns
+        -----
+        Unlikely
+            If rows are left out, because the motion is not known there or a point is seen once.
 
         Raises
         ------
         FileNotFoundError
             If there is no such file.
+        BehindCamera
+            If a distance is not positive.
         ValueError
-            If a column is missing, a cell is not a number, or the rows are no recording.
-        """
-        import pandas as pd
+            If a column is missing, a cell is not a number, the clocks do not overlap, or the rows are no recording.
 
-        surface = surface or pinhole()
-        try:
-            rows = pd.read_csv(path)
-        except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
-            raise ValueError(
-                f"{os.fspath(path)} is no table of text ({str(error).strip()}); the path must name a CSV file whose "
-                f"first row has the names of the columns, such as {time},y1,y2"
-            ) from None
-        names = tuple(s.name for s in surface.image_coordinates if s.name in rows)
-        if time not in rows or not names:
-            raise ValueError(
-                f"{os.fspath(path)} has the columns {', '.join(map(str, rows.columns))}; it needs {time!r} and "
-                f"at least one of {', '.join(s.name for s in surface.image_coordinates)}"
-            )
-        inverse = surface.inverse_distance.name
-        try:
-            values = rows[[time, *names, *([inverse] if inverse in rows else [])]].to_numpy(dtype=float)
-        except ValueError as error:
-            raise ValueError(f"{os.fspath(path)} has a cell that is not a number: {error}") from None
-        if not len(values):
-            raise ValueError(f"{os.fspath(path)} has a header and no rows; at least two samples are needed")
-        outputs, truth = values[:, 1 : 1 + len(names)], None
-        if inverse in rows:
-            truth = np.full((len(values), len(surface.coordinates)), np.nan)
-            columns = [s.name for s in surface.image_coordinates]
-            truth[:, [*map(columns.index, names), -1]] = values[:, 1:]
-        return cls(values[:, 0], outputs, names, surface, motion, truth, source=os.fspath(path))
+        Examples
+        --------
+        >>> from percept_obs.recording.pose_files import read_tum
+        >>> from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
+        >>> motion = read_tum(worked_folder() / "poses.txt").motion()
+        >>> near, far = Recording.from_csv(
+        ...     worked_folder() / "tracks.csv", motion, camera=WORKED_CAMERA, point="point_id", depth="depth",
+        ...     clock=Clock(zero=500, tick=1e-3),
+        ... )
+        >>> near.source, len(near.time)
+        ('tracks.csv, point near', 17)
+        """
+        columns = Columns(time, camera, pixels, pixel_sigma, point, depth, distances, clock, gap, shortest)
+        found = tuple(cls(**parts) for parts in recordings_in(path, motion, surface or pinhole(), columns))
+        return found[0] if point is None else found

@@ -1,68 +1,15 @@
-"""Pixels: the camera's intrinsic matrix, noise as a ratio of powers, and what several image points tell together."""
+"""Pixels of Chwa's cameras: noise as a ratio of powers, and what several image points tell together."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.border import checked, numbers
-from percept_obs.compile import Array, Flags
-
-
-@checked
-@dataclass(frozen=True)
-class PixelCamera:
-    """Pinhole camera with pixels: p = A_c m, m = (y1, y2, 1) (Chwa 2019, (1), p. 4).
-
-    Parameters
-    ----------
-    focal : pair of floats
-        Focal lengths in pixels, along a row and along a column; positive.
-    centre : pair of floats
-        Principal point in pixels.
-    size : pair of ints, optional
-        Width and height of the image in pixels; an image without borders when left out.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite, or a focal length or a size is not positive.
-    """
-
-    focal: Sequence[float]
-    centre: Sequence[float] = (0.0, 0.0)
-    size: Sequence[int] | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("focal", "centre", "size")[: 2 if self.size is None else 3]:
-            values, kind = np.asarray(getattr(self, name), dtype=float), "finite" if name == "centre" else "positive"
-            if values.shape != (2,) or not np.isfinite(values).all() or (kind == "positive" and not (values > 0).all()):
-                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
-            object.__setattr__(self, name, tuple(values.tolist()))
-
-    @property
-    def matrix(self) -> Array:
-        """The intrinsic matrix A_c, of shape (3, 3)."""
-        return np.array([[self.focal[0], 0, self.centre[0]], [0, self.focal[1], self.centre[1]], [0, 0, 1.0]])
-
-    def pixels(self, image: ArrayLike) -> Array:
-        """Pixel coordinates of image coordinates (y1, y2), shape (..., 2)."""
-        return numbers(image, "the image coordinates", 2) * self.focal + self.centre
-
-    def image(self, pixels: ArrayLike) -> Array:
-        """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2)."""
-        return (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
-
-    def sees(self, pixels: ArrayLike) -> Flags:
-        """Whether pixel coordinates lie in the image, shape (...)."""
-        pixels = numbers(pixels, "the pixels", 2)
-        if self.size is None:
-            return np.ones(pixels.shape[:-1], dtype=bool)
-        return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
-
+from percept_obs.compile import Array
+from percept_obs.recording.pixels import PixelCamera
 
 CHWA_CAMERA = PixelCamera((720, 720), (320, 240))
 """The camera of Chwa 2019, section VII.A; the paper states no size of the image."""

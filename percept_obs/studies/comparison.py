@@ -185,7 +185,7 @@ def relative_distance_errors(
     runs : iterable of Run
         Of one point or of several, on recordings with a truth or with measured distances.
     after : float
-        Seconds since the first sample of a sighting; the first sample from then on counts.
+        Seconds since the first sample of a sighting; the first sample from then on whose reference is known counts.
     reference : str
         "truth", or the name of a measured distance of the recordings, such as "stereo".
     absence : float
@@ -196,7 +196,8 @@ def relative_distance_errors(
     Returns
     -------
     array of shape (number of sightings that last as long,)
-        |estimate - reference| / reference; infinite where the estimate is not in front of the camera.
+        |estimate - reference| / reference; infinite where the estimate is not in front of the camera, NaN
+        where there is none.
 
     Raises
     ------
@@ -217,7 +218,7 @@ def relative_distance_errors(
             raise ValueError(f"the points {sorted(asked - there)} are not there; there are 0 to {max(there)}")
         known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
         for sighting in recording.sightings(absence):
-            samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
+            samples = np.flatnonzero((seen & np.isfinite(known))[: sighting.last + 1, sighting.point])
             later = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
             if len(later) and (points is None or sighting.point in points):
                 place = (later[0], sighting.point)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import product
@@ -16,7 +17,7 @@ from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import best_setting, relative_distance_errors, timed
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.tracking.following import DoesNotFit
+from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ USUAL_SPEED = 0.2
 
 COLUMNS = (
     *("observer", "gains", "at_edge", "reference", "after", "median", "nine_in_ten"),
-    *("behind", "reset", "diverged", "cost", "refusal"),
+    *("behind", "reset", "diverged", "cost", "refusal", "doubt"),
 )
 """Columns of the table."""
 
@@ -80,9 +81,10 @@ def choose_and_report(
         One row for an observer, a reference and a time, with relative errors of the distance over those reporting
         recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of those that are
         the smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
-        nine_in_ten (the 90 % quantile), behind (number of recordings whose estimate is not in front of the camera
-        then), reset, diverged (numbers of recordings), cost (s of computing for a s of data), and refusal: why the
-        observer cannot follow these recordings, if it cannot; its numbers are then NaN.
+        nine_in_ten (the 90 % quantile), behind (number of recordings that have no estimate in front of the camera
+        then), reset, diverged (numbers of recordings), cost (s of computing for a s of data), refusal: why the
+        observer cannot follow these recordings, if it cannot; its numbers are then NaN; and doubt: that the steps were
+        too long for it, if they were.
 
     Raises
     ------
@@ -108,38 +110,51 @@ def choose_and_report(
     rows: list[dict[str, Any]] = []
 
     def answer(label: str, gains: str, edge: str, estimate: Estimate) -> None:
-        runs, cost = timed(estimate, reporting)
-        told = {"observer": label, "gains": gains, "cost": cost, "refusal": ""}
+        with warnings.catch_warnings(record=True) as doubts:
+            warnings.simplefilter("always", StepTooLong)
+            runs, cost = timed(estimate, reporting)
+        chatters = [str(doubt.message) for doubt in doubts if issubclass(doubt.category, StepTooLong)]
+        told = {"observer": label, "gains": gains, "cost": cost, "refusal": "", "doubt": "".join(chatters[:1])}
         told["at_edge"] = edge
         told["reset"] = sum(len(run.resets) > 0 for run in runs)
         told["diverged"] = sum(run.diverged_at is not None for run in runs)
         for reference, seconds in questions:
             errors = relative_distance_errors(runs, seconds, reference)
+            errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
             # the quantile by rank, for infinite errors have no mean
             numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, SHARE, method="nearest")}
             numbers["behind"] = np.isinf(errors).sum()
             rows.append({**told, "reference": reference, "after": seconds, **numbers})
 
-    for make, settings in tqdm(candidates.items(), desc="choosing gains", delay=2, leave=False):
-        refusal, chosen = make.refusal(form), None
-        try:
-            observers = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
-            chosen = best_setting(choosing, observers, follow, after, references[0]) if observers else None
-        except DoesNotFit as misfit:
-            refusal = str(misfit)
-        if chosen is None:
-            told = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal}
-            rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
-            continue
-        values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
-        answer(
-            chosen.name,
-            ", ".join(f"{n} {v:.3g}" for n, v in values.items()),
-            ", ".join(_at_edge(values, observers)),
-            partial(_swapped, follow, chosen),
-        )
-    for label, estimate in (batch or {}).items():
-        answer(label, "", "", estimate)
+    runs_of = {make: len(settings) * len(choosing) + len(reporting) for make, settings in candidates.items()}
+    with tqdm(total=sum(runs_of.values()), desc="choosing gains", unit="run", delay=2, leave=False) as bar:
+
+        def counted(recording: Recording, observer: Observer) -> Run:
+            bar.update()
+            return follow(recording, observer)
+
+        for make, settings in candidates.items():
+            bar.set_postfix_str(make.name, refresh=False)
+            goal, refusal, chosen = bar.n + runs_of[make], make.refusal(form), None
+            try:
+                observers = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
+                chosen = best_setting(choosing, observers, counted, after, references[0]) if observers else None
+            except DoesNotFit as misfit:
+                refusal = str(misfit)
+            if chosen is None:
+                told = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal, "doubt": ""}
+                rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
+            else:
+                values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
+                answer(
+                    chosen.name,
+                    ", ".join(f"{n} {v:.3g}" for n, v in values.items()),
+                    ", ".join(_at_edge(values, observers)),
+                    partial(_swapped, counted, chosen),
+                )
+            bar.update(goal - bar.n)
+        for label, estimate in (batch or {}).items():
+            answer(label, "", "", estimate)
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
@@ -175,7 +190,8 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     pandas.DataFrame
         A column for each reference and time, with the median error and in brackets what nine in ten stay below;
         behind (recordings, at the time with the most), reset, diverged, cost (us for a s of data), and a remark: the
-        gains, those that lie at an edge of their candidates, or why the observer cannot follow.
+        gains, those that lie at an edge of their candidates, steps that are too long, or why the observer cannot
+        follow.
     """
     import pandas as pd
 
@@ -191,6 +207,7 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
         line["cost"] = "–" if refusal else f"{1e6 * rows['cost'].iloc[0]:.0f} us/s"
         gains, edge = rows["gains"].iloc[0], rows["at_edge"].iloc[0]
         remark = f"{gains}; at the edge of what was tried: {edge}" if edge else gains
+        remark = "; ".join(filter(None, [remark, rows["doubt"].iloc[0]]))
         lines[label] = line | {"remark": f"cannot: {refusal}" if refusal else remark}
     return pd.DataFrame.from_dict(lines, orient="index")
 

@@ -1,0 +1,164 @@
+"""Pixels and image coordinates: the camera's intrinsic matrix and the distortion of its lens."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from percept_obs.border import checked, numbers
+from percept_obs.compile import Array, Flags, vectorised
+
+LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
+"""Coefficients of a lens in OpenCV's order: k of the radius, p of a lens that is not centred."""
+
+LENS_COUNTS = (0, 4, 5, 8)
+"""How many of them OpenCV's files give."""
+
+MOST_TRIALS = 50
+"""Steps of Newton's method; about five are needed where the lens maps one to one."""
+
+
+@checked
+@dataclass(frozen=True)
+class PixelCamera:
+    """Pinhole camera with pixels: p = A_c m, m = (y1, y2, 1) (Chwa 2019, (1), p. 4), behind a lens that may distort.
+
+    Parameters
+    ----------
+    focal : pair of floats
+        Focal lengths in pixels, along a row and along a column; positive.
+    centre : pair of floats
+        Principal point in pixels.
+    size : pair of ints, optional
+        Width and height of the image in pixels; an image without borders when left out.
+    distortion : sequence of floats, optional
+        k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them; four, five or eight
+        numbers, or none for images that are rectified.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, a focal length or a size is not positive, or their number is wrong.
+
+    Notes
+    -----
+    The model is that of the OpenCV documentation, "Camera Calibration and 3D Reconstruction", without thin prisms,
+    tilted sensors and fisheyes.
+
+    Examples
+    --------
+    >>> lens = PixelCamera((500, 500), (320, 240), distortion=(-0.3, 0.1, 0, 0))
+    >>> lens.pixels([0.5, 0.0]).round(3).tolist()
+    [552.812, 240.0]
+    >>> lens.image([552.8125, 240.0]).round(9).tolist()
+    [0.5, 0.0]
+    """
+
+    focal: Sequence[float]
+    centre: Sequence[float] = (0.0, 0.0)
+    size: Sequence[int] | None = None
+    distortion: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("focal", "centre", "size")[: 2 if self.size is None else 3]:
+            values, kind = np.asarray(getattr(self, name), dtype=float), "finite" if name == "centre" else "positive"
+            if values.shape != (2,) or not np.isfinite(values).all() or (kind == "positive" and not (values > 0).all()):
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        lens = np.asarray(self.distortion, dtype=float)
+        if lens.size not in LENS_COUNTS or not np.isfinite(lens).all():
+            raise ValueError(
+                f"the distortion is {self.distortion!r}; it must be {', '.join(map(str, LENS_COUNTS[1:]))} finite "
+                f"numbers, {', '.join(map(str, LENS))}, or none"
+            )
+        object.__setattr__(self, "distortion", tuple(lens.tolist()))
+
+    @property
+    def matrix(self) -> Array:
+        """The intrinsic matrix A_c, of shape (3, 3)."""
+        return np.array([[self.focal[0], 0, self.centre[0]], [0, self.focal[1], self.centre[1]], [0, 0, 1.0]])
+
+    def pixels(self, image: ArrayLike) -> Array:
+        """Pixel coordinates of image coordinates (y1, y2), shape (..., 2)."""
+        image = numbers(image, "the image coordinates", 2)
+        if any(self.distortion):
+            image = np.stack(self._lens()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
+        return image * self.focal + self.centre
+
+    def image(self, pixels: ArrayLike) -> Array:
+        """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2); NaN where a pixel is.
+
+        Raises
+        ------
+        ValueError
+            If the lens maps no direction to a pixel, so that the coefficients do not fit the images.
+        """
+        distorted = (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
+        return self._undistorted(distorted) if any(self.distortion) else distorted
+
+    def variance(self, sigma: float) -> float:
+        """Variance of an image coordinate for noise of a standard deviation in pixels, the mean of both."""
+        variance = float(np.mean(np.square(sigma / np.array(self.focal))))
+        if not (math.isfinite(variance) and sigma >= 0):
+            raise ValueError(f"the pixel sigma is {sigma}; it must be finite and not negative")
+        return variance
+
+    def sees(self, pixels: ArrayLike) -> Flags:
+        """Whether pixel coordinates lie in the image, shape (...)."""
+        pixels = numbers(pixels, "the pixels", 2)
+        if self.size is None:
+            return np.ones(pixels.shape[:-1], dtype=bool)
+        return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
+
+    def _lens(self) -> Callable[..., list[Array]]:
+        """Distorted coordinates and their derivatives, as a function of undistorted ones."""
+        lens = np.zeros(len(LENS))
+        lens[: len(self.distortion)] = self.distortion
+        return lambda y1, y2: distortion()(y1, y2, *lens)
+
+    def _undistorted(self, distorted: Array) -> Array:
+        """Where a lens took its images from, by Newton's method from the distorted ones."""
+        found, lens = distorted.copy(), self._lens()
+        with np.errstate(all="ignore"):
+            for _ in range(MOST_TRIALS):
+                d1, d2, a, b, c, d = lens(*np.moveaxis(found, -1, 0))
+                off1, off2 = d1 - distorted[..., 0], d2 - distorted[..., 1]
+                step = np.stack([d * off1 - b * off2, a * off2 - c * off1], axis=-1) / (a * d - b * c)[..., None]
+                found = found - step
+                if not (np.abs(step) > 1e-15 * (1 + np.abs(found))).any():
+                    break
+            back = np.stack(lens(*np.moveaxis(found, -1, 0))[:2], axis=-1)
+            a, b, c, d = lens(*np.moveaxis(found, -1, 0))[2:]
+            lost = ~(np.abs(back - distorted) < 1e-9 * (1 + np.abs(distorted))).all(axis=-1)
+            lost |= ~((a * d > b * c) & (a + d > 0))  # where the lens has folded or mirrored the image
+        lost &= np.isfinite(distorted).all(axis=-1)
+        if lost.any():
+            pixel = np.atleast_2d((distorted * self.focal + self.centre)[lost])[0]
+            raise ValueError(
+                f"no direction is seen at the pixel ({pixel[0]:.6g}, {pixel[1]:.6g}) through a lens with the "
+                f"distortion {self.distortion}; are these the coefficients of this camera, in the order "
+                f"{', '.join(map(str, LENS))}?"
+            )
+        return found
+
+
+@lru_cache(maxsize=1)
+def distortion() -> Callable[..., list[Array]]:
+    """Distorted image coordinates and their four derivatives, of undistorted ones and of eight coefficients."""
+    y1, y2 = sp.symbols("y1 y2", real=True)
+    k1, k2, p1, p2, k3, k4, k5, k6 = LENS
+    r2 = y1**2 + y2**2
+    radial = (1 + k1 * r2 + k2 * r2**2 + k3 * r2**3) / (1 + k4 * r2 + k5 * r2**2 + k6 * r2**3)
+    seen = sp.Matrix(
+        [
+            y1 * radial + 2 * p1 * y1 * y2 + p2 * (r2 + 2 * y1**2),
+            y2 * radial + p1 * (r2 + 2 * y2**2) + 2 * p2 * y1 * y2,
+        ]
+    )
+    return vectorised((y1, y2, *LENS), [*seen, *seen.jacobian([y1, y2])])

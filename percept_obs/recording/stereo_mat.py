@@ -1,0 +1,302 @@
+"""Tracks of a stereo camera in the MATLAB files of the STARS Laboratory: its own recording, and drives of KITTI.
+
+The files hold t, y_k_j (4 x K x L: left u, v, right u, v; -1 where not seen), r_i_vk_i and theta_vk_i (position and
+rotation vector of the body), C_c_v and rho_v_c_v (how the camera is mounted), rho_i_pj_i (places of the landmarks,
+where they are known), fu, fv, cu, cv and b; see https://github.com/utiasSTARS/msckf-swf-comparison.
+"""
+
+from __future__ import annotations
+
+import os
+import zlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from scipy.io import loadmat, savemat
+from scipy.io.matlab import MatReadError
+from scipy.spatial.transform import Rotation
+
+from percept_obs.border import checked, numbers
+from percept_obs.compile import Array, Flags
+from percept_obs.recording import Recording, Sighting
+from percept_obs.recording.derivatives import Derivative, Quadratic
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.poses import CameraPath, Poses
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import pinhole
+from percept_obs.system.view import View
+
+NOT_SEEN = -1.0
+SHORTEST_TRACK = 3.0  # s
+LONGEST_GAP = 0.30  # s, between two samples of one track
+DERIVATIVE = Quadratic(0.30)  # of the camera's poses
+
+SHAPES = {
+    **{"t": ("K",), "y_k_j": (4, "K", "L"), "r_i_vk_i": (3, "K"), "theta_vk_i": (3, "K")},
+    **{"C_c_v": (3, 3), "rho_v_c_v": (3,), "fu": (), "fv": (), "cu": (), "cv": (), "b": ()},
+}
+"""Variables of a file and their shapes, for K samples and L landmarks."""
+LANDMARKS = "rho_i_pj_i"
+"""The variable with their places, of shape (3, L); a file of tracked corners has none."""
+
+
+@dataclass(frozen=True, eq=False)
+class StereoTracks:
+    """What a file holds: K samples of a stereo camera on a body, which follows L landmarks.
+
+    Parameters
+    ----------
+    body : Poses
+        Of the body, K of them.
+    mount : Poses
+        Of the left camera in the body's frame, twice the same.
+    images : array of shape (K, L, 4)
+        (u, v) in the left image and in the right one; NaN where not seen.
+    camera : PixelCamera
+        Of the left images, which are rectified.
+    baseline : float
+        Distance from the left to the right camera in metres.
+    landmarks : array of shape (L, 3), optional
+        Places in the world, in metres.
+    """
+
+    body: Poses
+    mount: Poses
+    images: Array
+    camera: PixelCamera
+    baseline: float
+    landmarks: Array | None = None
+
+    @cached_property
+    def poses(self) -> Poses:
+        """Those of the left camera."""
+        return self.body.mounted(self.mount.position[0], self.mount.orientation[0])
+
+    def tables(
+        self, derivative: Derivative = DERIVATIVE, shortest: float = SHORTEST_TRACK, gap: float = LONGEST_GAP
+    ) -> StereoTables:
+        """The camera's motion and the landmarks' tracks.
+
+        Parameters
+        ----------
+        derivative : Neighbours, Quadratic or SmoothingSpline
+            Of the poses.
+        shortest : float
+            Seconds that a track lasts at least.
+        gap : float
+            Seconds between two samples of a track at most.
+        """
+        path, time = self.poses.path(derivative), self.body.time
+        tracks = _tracks(time, np.asarray(np.isfinite(self.images).all(axis=-1)), shortest, gap)
+        followed = np.zeros(self.images.shape[:2], dtype=bool)
+        for track in tracks:
+            followed[track.first : track.last + 1, track.point] = True
+        images = np.where(followed[..., None], self.images, np.nan)
+        disparity = images[..., 0] - images[..., 2]
+        with np.errstate(divide="ignore"):
+            depth = np.where(disparity > 0, self.camera.focal[0] * self.baseline / disparity, np.nan)
+        return StereoTables(path, self.landmarks, tracks, images[..., :2], depth, self.camera, self.baseline)
+
+
+@dataclass(frozen=True, eq=False)
+class StereoTables:
+    """Tracks of the left camera, and how it moves.
+
+    Parameters
+    ----------
+    path : CameraPath
+        Poses and velocities at K samples.
+    landmarks : array of shape (L, 3) or None
+        Places in the world, in metres.
+    tracks : tuple of Sighting
+        When a landmark is seen without interruption, in the order in which they begin and end.
+    pixels : array of shape (K, L, 2)
+        Measured (u, v) in the left image; NaN outside the tracks.
+    stereo_depth : array of shape (K, L)
+        Depth fx baseline / (u_left - u_right) in metres; no pose enters, so it is an independent check.
+    camera : PixelCamera
+        Its images are rectified, without distortion.
+    baseline : float
+        Distance from the left to the right camera in metres.
+    """
+
+    path: CameraPath
+    landmarks: Array | None
+    tracks: tuple[Sighting, ...]
+    pixels: Array
+    stereo_depth: Array
+    camera: PixelCamera
+    baseline: float
+
+    @property
+    def time(self) -> Array:
+        """Seconds, increasing, not evenly spaced, shape (K,)."""
+        return self.path.time
+
+    @property
+    def motion(self) -> Motion:
+        """That of a point at rest in the camera's frame: X' = -v - w x X."""
+        return self.path.motion
+
+    @cached_property
+    def points(self) -> Array:
+        """The landmarks in the camera's frame, in metres, from the smoothed poses, shape (K, L, 3).
+
+        Raises
+        ------
+        ValueError
+            If the file does not tell where they are.
+        """
+        if self.landmarks is None:
+            raise ValueError(f"the file has no {LANDMARKS}, so it is not known where the landmarks are")
+        return self.path.sees(self.landmarks)
+
+    def recording(
+        self,
+        rows: slice,
+        columns: int | list[int],
+        view: View,
+        truth: Array | None,
+        source: str,
+        pixel_sigma: float | None,
+    ) -> Recording:
+        """Some samples of one landmark or of several, with what is known of them in all cases."""
+        return Recording(
+            self.time[rows],
+            self.camera.image(self.pixels)[rows, columns],
+            ("y1", "y2"),
+            view,
+            self.motion,
+            truth=truth,
+            noise_variance=None if pixel_sigma is None else self.camera.variance(pixel_sigma),
+            distances={"stereo": self.stereo_depth[rows, columns]},
+            source=source,
+        )
+
+    def recordings(self, name: str, pixel_sigma: float | None = None) -> tuple[Recording, ...]:
+        """One recording a track, with both image coordinates; its truth is the landmark seen from the smoothed pose.
+
+        Parameters
+        ----------
+        name : str
+            Of the whole, for the sources of the recordings.
+        pixel_sigma : float, optional
+            Standard deviation of the noise in pixels, if it is known.
+        """
+        surface, found = pinhole(), []
+        for number, track in enumerate(self.tracks):
+            rows = slice(track.first, track.last + 1)
+            truth = None if self.landmarks is None else surface.project(self.points[rows, track.point])
+            source = f"{name} track {number}, landmark {track.point}"
+            found.append(self.recording(rows, track.point, surface, truth, source, pixel_sigma))
+        return tuple(found)
+
+
+@checked
+def read_stereo_mat(path: str | os.PathLike[str]) -> StereoTracks:
+    """Read a MATLAB file of stereo tracks.
+
+    Parameters
+    ----------
+    path : path
+        Up to version 7 of the format.
+
+    Returns
+    -------
+    StereoTracks
+        ``read_stereo_mat(path).tables().recordings(name)`` makes recordings of it.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no such file, a variable is missing or has another shape, values are not finite, or times do not
+        increase.
+
+    Examples
+    --------
+    ::
+
+        tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat")
+        recordings = tracks.tables(shortest=1.0).recordings("KITTI 0036", pixel_sigma=0.5)
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise FileNotFoundError(f"the path names '{file}', where there is no file; name a MATLAB file of stereo tracks")
+    try:
+        recorded = loadmat(file, variable_names=(*SHAPES, LANDMARKS))
+    except (ValueError, TypeError, NotImplementedError, MatReadError, OSError, zlib.error) as error:
+        raise ValueError(
+            f"the path names '{file}', which is no MATLAB file up to version 7 ({error}); save it with -v7"
+        ) from None
+    sizes: dict[str, int] = {}
+    found = {name: _variable(recorded, name, shape, sizes, file) for name, shape in SHAPES.items()}
+    known = _variable(recorded, LANDMARKS, (3, "L"), sizes, file).T if LANDMARKS in recorded else None
+    images = np.moveaxis(found["y_k_j"], 0, -1)
+    images = np.where((images != NOT_SEEN).all(axis=-1, keepdims=True), images, np.nan)
+    body = Poses(found["t"], found["r_i_vk_i"].T, Rotation.from_rotvec(found["theta_vk_i"].T).as_quat())
+    mount = Poses(np.arange(2.0), np.stack([found["rho_v_c_v"]] * 2), np.stack([found["C_c_v"].T] * 2))
+    fx, fy, cx, cy, baseline = (float(found[name]) for name in ("fu", "fv", "cu", "cv", "b"))
+    if not baseline > 0:
+        raise ValueError(f"'{file}' has the baseline b = {baseline} m; it must be positive")
+    return StereoTracks(body, mount, images, PixelCamera((fx, fy), (cx, cy)), baseline, known)
+
+
+@checked
+def write_stereo_mat(path: str | os.PathLike[str], tracks: StereoTracks) -> None:
+    """Write a file that `read_stereo_mat` reads.
+
+    Parameters
+    ----------
+    path : path
+    tracks : StereoTracks
+    """
+    (fx, fy), (cx, cy) = tracks.camera.focal, tracks.camera.centre
+    images = np.where(np.isfinite(tracks.images), tracks.images, NOT_SEEN)
+    values = {
+        "t": tracks.body.time[None],
+        "y_k_j": np.moveaxis(images, -1, 0),
+        "r_i_vk_i": tracks.body.position.T,
+        "theta_vk_i": tracks.body.rotation.as_rotvec().T,
+        "C_c_v": tracks.mount.rotation[0].inv().as_matrix(),
+        "rho_v_c_v": tracks.mount.position[0][:, None],
+        **{"fu": fx, "fv": fy, "cu": cx, "cv": cy, "b": tracks.baseline},
+    }
+    savemat(path, values if tracks.landmarks is None else values | {LANDMARKS: tracks.landmarks.T})
+
+
+def _variable(
+    recorded: dict[str, object], name: str, shape: tuple[int | str, ...], sizes: dict[str, int], file: Path
+) -> Array:
+    """A variable of the file, whose letters in the shape are the same sizes in all of them."""
+    if name not in recorded:
+        raise ValueError(f"'{file}' has no variable {name}; it needs {', '.join(SHAPES)}")
+    array = numbers(recorded[name], f"the variable {name} of '{file}'")
+    wanted = tuple(sizes.get(size, size) if isinstance(size, str) else size for size in shape)
+    if (not shape and array.size == 1) or (len(shape) == 1 and array.size == max(array.shape)):
+        array = array.reshape((-1,) * len(shape))  # MATLAB has neither numbers nor vectors, only matrices,
+    elif array.ndim + 1 == len(shape):
+        array = array[..., None]  # and keeps no last dimension of 1
+    pairs = list(zip(wanted, array.shape, strict=False))
+    fits = array.ndim == len(wanted) and all(isinstance(size, str) or size == found for size, found in pairs)
+    if not fits or not array.size:
+        raise ValueError(f"the variable {name} of '{file}' has the shape {array.shape}; expected {wanted}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"the variable {name} of '{file}' is not finite; {NOT_SEEN:g} stands for what was not seen")
+    sizes.update({size: found for size, found in pairs if isinstance(size, str)})
+    return array
+
+
+def _tracks(time: Array, seen: Flags, shortest: float, gap: float) -> tuple[Sighting, ...]:
+    """Landmarks seen at consecutive samples, long enough and without a gap; `seen` has the shape (K, L)."""
+    tracks = []
+    for landmark, column in enumerate(seen.T):
+        samples = np.flatnonzero(column)
+        interrupted = (np.diff(samples) > 1) | (np.diff(time[samples]) > gap)
+        for run in np.split(samples, np.flatnonzero(interrupted) + 1):
+            if run.size > 1 and time[run[-1]] - time[run[0]] >= shortest:
+                tracks.append(Sighting(landmark, int(run[0]), int(run[-1])))
+    return tuple(sorted(tracks, key=lambda track: (track.first, track.last, track.point)))

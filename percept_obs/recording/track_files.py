@@ -1,0 +1,79 @@
+"""Writing recordings as a table that `Recording.from_csv` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from percept_obs.border import checked
+from percept_obs.recording import Recording
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.text_table import SECONDS, Clock, PathLike, write_table
+
+
+@checked
+def write_tracks(
+    path: PathLike, recordings: Sequence[Recording], camera: PixelCamera | None = None, clock: Clock = SECONDS
+) -> None:
+    """Write recordings of single points, so that ``Recording.from_csv(path, motion, point="point_id")`` reads them.
+
+    Parameters
+    ----------
+    path : path
+    recordings : sequence of Recording
+        With the same outputs and the same measured distances.
+    camera : PixelCamera, optional
+        Then columns u and v of pixels are written, as its lens shows them; image coordinates when left out.
+    clock : Clock
+        Of the file.
+
+    Raises
+    ------
+    ValueError
+        If there are no recordings, their outputs differ, or pixels are asked for and it is no pinhole with both image
+        coordinates.
+
+    Notes
+    -----
+    The columns are time, point_id, the outputs, depth (of the surface, empty where it is not known; left out if no
+    recording has a truth), and the measured distances by their names.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from percept_obs import Camera, record, scenarios
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "tracks.csv"
+    ...     write_tracks(file, [record(scenarios.ma2005_eq35(), 1, Camera(0.5))])
+    ...     print(file.read_text().splitlines()[0])
+    time,point_id,y1,y2,depth
+    """
+    if not len(recordings):
+        raise ValueError("there are no recordings to write; give at least one")
+    first = recordings[0]
+    for each in recordings:
+        if (each.names, set(each.distances)) != (first.names, set(first.distances)):
+            raise ValueError(
+                f"the recordings {first.source!r} and {each.source!r} have different outputs or distances: "
+                f"{', '.join((*first.names, *first.distances))}, and {', '.join((*each.names, *each.distances))}; "
+                "write them to files of their own"
+            )
+        if each.outputs.ndim != 2:
+            raise ValueError(f"the recording {each.source!r} is of several points; a table has recordings of one point")
+    if camera is not None and (first.imaging_surface.name, first.names) != ("pinhole", ("y1", "y2")):
+        raise ValueError(
+            f"the recordings have {', '.join(first.names)} of the {first.view.name}; pixels need y1 and y2 of the "
+            "pinhole: leave camera out"
+        )
+    known = any(each.truth is not None for each in recordings)
+    names = ("u", "v") if camera else first.names
+    header = ["time", "point_id", *names, *(["depth"] if known else []), *first.distances]
+    rows = []
+    for number, each in enumerate(recordings):
+        shown = camera.pixels(each.outputs) if camera else each.outputs
+        depth = [each.distance if each.truth is not None else np.full(len(each.time), np.nan)] if known else []
+        values = np.column_stack([shown, *depth, *(each.distances[name] for name in first.distances)])
+        for reading, row in zip(clock.readings(each.time), values.tolist(), strict=True):
+            rows.append([reading, str(number), *("" if value != value else repr(value) for value in row)])
+    write_table(path, [",".join(header)], rows)

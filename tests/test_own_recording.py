@@ -1,0 +1,256 @@
+"""Files of one's own become recordings: what is written is read back, and the real recording rebuilt is the same."""
+
+import ast
+import doctest
+import importlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from camera_paths import poses, seen
+from utias_folder import utias_folder
+
+from percept_obs import Clock, PixelCamera, Poses, Recording, pinhole, read_euroc, read_tum, sphere
+from percept_obs.recording import Unlikely
+from percept_obs.recording.pose_files import write_euroc, write_tum
+from percept_obs.recording.stereo_mat import DERIVATIVE, StereoTracks, read_stereo_mat, write_stereo_mat
+from percept_obs.recording.track_files import write_tracks
+from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
+
+TIME = np.arange(0, 2, 0.01)
+POSES = poses(TIME)
+MOTION = POSES.motion()
+CAMERA = PixelCamera((484.5, 480.0), (321.7, 247.5))
+LENS = PixelCamera((484.5, 480.0), (321.7, 247.5), distortion=(-0.28, 0.09, 0.001, -0.0005, 0.01))
+EXACT = {"rtol": 1e-12, "atol": 1e-12}
+
+
+def tracks(lost=5, stereo=True):
+    """Two points, irregularly sampled; the second is lost for a moment and has no truth there."""
+    rows = np.flatnonzero(np.random.default_rng(0).random(180) < 0.3)
+    found = []
+    for number, points in enumerate(seen(TIME)[:2]):
+        truth = pinhole().project(points[rows])
+        outputs = truth[:, :2].copy()
+        if number:
+            outputs[lost], truth[lost, 2] = np.nan, np.nan
+        distances = {"stereo": 1.01 * points[rows, 2]} if stereo else {}
+        found.append(Recording(TIME[rows], outputs, ("y1", "y2"), pinhole(), MOTION, truth, distances=distances))
+    return found
+
+
+def stereo(landmarks=True):
+    """A file of a stereo camera on a body, whose camera is the one of `POSES`."""
+    mount = Poses(
+        np.arange(2.0), np.tile([0.1, 0.0, -0.05], (2, 1)), np.tile([0, 0, np.sqrt(0.5), np.sqrt(0.5)], (2, 1))
+    )
+    images = np.random.default_rng(1).uniform(200, 300, (len(TIME), 3, 4))
+    images[..., 2] -= 150
+    images[50:60, 1] = np.nan
+    places = np.array([[0.1, 0, 2], [0, 0.1, 3], [0.2, 0.2, 2.5]]) if landmarks else None
+    return StereoTracks(POSES, mount, images, CAMERA, 0.24, places)
+
+
+EXAMPLES = ("derivatives", "poses", "pose_files", "pixels", "recording", "text_table", "track_files", "worked")
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_examples_of_the_docstrings_run(name):
+    module = importlib.import_module(f"percept_obs.recording.{name}")
+    failed, attempted = doctest.testmod(module)
+    assert attempted
+    assert not failed
+
+
+# Written and read back.
+
+
+@pytest.mark.parametrize("clock", [Clock(), Clock(zero=1305031102.1758, tick=0.5)], ids=repr)
+def test_tum_is_read_back(tmp_path, clock):
+    write_tum(tmp_path / "p", POSES, clock)
+    back = read_tum(tmp_path / "p", clock)
+    for name in ("time", "position", "orientation"):
+        np.testing.assert_allclose(getattr(back, name), getattr(POSES, name), **EXACT, err_msg=name)
+
+
+@pytest.mark.parametrize("clock", [Clock(tick=1e-9), Clock(zero=1403636579763555584, tick=1e-9)], ids=repr)
+def test_euroc_is_read_back(tmp_path, clock):
+    write_euroc(tmp_path / "p", POSES, clock)
+    assert (tmp_path / "p").read_text().startswith("#timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z\n")
+    back = read_euroc(tmp_path / "p", clock)
+    for name in ("time", "position", "orientation"):
+        np.testing.assert_allclose(getattr(back, name), getattr(POSES, name), **EXACT, err_msg=name)
+
+
+def test_the_orders_of_the_quaternions_are_those_of_the_formats(tmp_path):
+    (tmp_path / "tum").write_text("# a comment\n0 1 2 3 0.1 0.2 0.3 0.927361849549570\n1 1 2 3 0 0 0 1\n")
+    (tmp_path / "euroc").write_text(
+        "#time [ns], p, q_w q_x q_y q_z, v\n0,1,2,3,0.927361849549570,0.1,0.2,0.3,9,9\n1000,1,2,3,1,0,0,0,9,9\n"
+    )
+    for back in (read_tum(tmp_path / "tum"), read_euroc(tmp_path / "euroc")):
+        np.testing.assert_allclose(back.orientation, [[0.1, 0.2, 0.3, 0.92736184954957], [0, 0, 0, 1]])
+        assert back.position[0].tolist() == [1, 2, 3]
+    assert read_euroc(tmp_path / "euroc").time == pytest.approx([0, 1e-6])
+
+
+@pytest.mark.parametrize("landmarks", [True, False])
+def test_a_stereo_file_is_read_back(tmp_path, landmarks):
+    tracks = stereo(landmarks)
+    write_stereo_mat(tmp_path / "s.mat", tracks)
+    back = read_stereo_mat(tmp_path / "s.mat")
+    np.testing.assert_allclose(back.images, tracks.images, **EXACT)
+    for one, two in ((back.body, tracks.body), (back.poses, tracks.poses)):
+        for name in ("time", "position"):
+            np.testing.assert_allclose(getattr(one, name), getattr(two, name), **EXACT)
+        assert np.abs((one.rotation.inv() * two.rotation).as_rotvec()).max() < 1e-12
+    assert (back.camera, back.baseline) == (tracks.camera, tracks.baseline)
+    assert landmarks == (back.landmarks is not None)
+    recordings = back.tables(shortest=0.4, gap=0.1).recordings("mine")
+    assert [len(each.time) for each in recordings] == [50, 200, 200, 140]
+    assert recordings[0].distances["stereo"][0] == pytest.approx(
+        484.5 * 0.24 / (tracks.images[0, 1, 0] - tracks.images[0, 1, 2])
+    )
+    assert (recordings[0].truth is not None) == landmarks
+
+
+@pytest.mark.parametrize("camera", [None, CAMERA, LENS], ids=["image coordinates", "pixels", "pixels behind a lens"])
+@pytest.mark.parametrize("clock", [Clock(), Clock(zero=500, tick=1e-3)], ids=repr)
+def test_a_table_is_read_back(tmp_path, camera, clock):
+    written = tracks()
+    write_tracks(tmp_path / "t.csv", written, camera, clock)
+    depth = {"camera": camera, "point": "point_id", "depth": "depth", "distances": ["stereo"], "clock": clock}
+    back = Recording.from_csv(tmp_path / "t.csv", MOTION, **depth)
+    for one, two in zip(back, written, strict=True):
+        np.testing.assert_allclose(one.time, two.time, **EXACT)
+        np.testing.assert_allclose(one.outputs, two.outputs, **EXACT)
+        np.testing.assert_allclose(one.truth[:, 2], two.truth[:, 2], **EXACT)
+        np.testing.assert_allclose(one.distances["stereo"], two.distances["stereo"], **EXACT)
+
+
+def test_what_a_clock_reads_is_exact_however_late():
+    late = Clock(zero=1403636579763555584, tick=1e-9)
+    assert late.readings(np.array([1e-9, 3.0]), whole=True) == ["1403636579763555585", "1403636582763555584"]
+    assert late.seconds(["1403636579763555585"])[0] == 1e-9
+    assert Clock(np.int64(1403636579763555584), np.float64(1e-9)) == late
+
+
+# The table of a class's own.
+
+
+def worked(**settings):
+    motion = read_tum(worked_folder() / "poses.txt").motion()
+    clock = {"clock": Clock(zero=500, tick=1e-3), "camera": WORKED_CAMERA, "point": "point_id"}
+    return Recording.from_csv(worked_folder() / "tracks.csv", motion, **(clock | settings))
+
+
+def test_the_worked_table_holds_everything():
+    near, far = worked(depth="depth", distances=["laser"], pixel_sigma=0.5)
+    assert (near.source, far.source) == ("tracks.csv, point near", "tracks.csv, point far")
+    assert near.time[0] == pytest.approx(0.1)
+    assert np.flatnonzero(np.isnan(near.outputs[:, 0])).tolist() == [5]
+    assert np.flatnonzero(np.isnan(far.truth[:, 2])).tolist() == [4]
+    assert np.diff(far.time).max() == pytest.approx(0.6)
+    assert np.isfinite(near.distances["laser"]).sum() == 6
+    assert near.noise_variance == pytest.approx((0.5 / 484.5) ** 2)
+    assert worked()[0].truth is None
+    parts = worked(gap=0.3)
+    assert [each.source.rpartition(", ")[2] for each in parts] == ["part 1", "part 2"] * 2
+    assert [each.source for each in worked(gap=0.5, shortest=1.5)] == [
+        "tracks.csv, point near",
+        "tracks.csv, point far",
+    ]
+
+
+@pytest.mark.parametrize("lost", ["", "nan", "NaN"])
+def test_nothing_and_nan_are_lost_samples(tmp_path, lost):
+    (tmp_path / "t.csv").write_text(f"time,y1,y2\n0,0.1,0.1\n0.1,{lost},0.1\n0.2,0.1,0.1\n")
+    assert Recording.from_csv(tmp_path / "t.csv", MOTION).seen.tolist() == [True, False, True]
+
+
+def test_pixels_become_rays_on_any_surface(tmp_path):
+    write_tracks(tmp_path / "t.csv", tracks(), LENS)
+    seen_flat, _ = Recording.from_csv(tmp_path / "t.csv", MOTION, camera=LENS, point="point_id", depth="depth")
+    seen_round, _ = Recording.from_csv(tmp_path / "t.csv", MOTION, sphere(), camera=LENS, point="point_id")
+    expected = sphere().project(seen_flat.points)[:, :2]
+    np.testing.assert_allclose(seen_round.outputs, expected, **EXACT)
+
+
+def test_rows_without_a_motion_are_left_out_and_told(tmp_path):
+    write_tracks(tmp_path / "t.csv", tracks())
+    known = poses(np.arange(0.5, 1.5, 0.01)).motion()
+    with pytest.warns(Unlikely, match=r"rows are left out; if these are two clocks, give clock=Clock\(zero="):
+        first, _ = Recording.from_csv(tmp_path / "t.csv", known, point="point_id")
+    assert first.time[0] >= 0.5
+    assert first.time[-1] < 1.5
+    (tmp_path / "t.csv").write_text("time,id,y1,y2\n0,a,0,0\n0.1,a,0,0\n0.1,b,0,0\n")
+    with pytest.warns(Unlikely, match="1 sightings of a single sample are left out"):
+        assert len(Recording.from_csv(tmp_path / "t.csv", MOTION, point="id")) == 1
+
+
+# The real recording, the way of one's own.
+
+
+@pytest.fixture(scope="module")
+def utias_files(tmp_path_factory):
+    """The real recording as poses.txt and tracks.csv, with the poses as they were recorded."""
+    folder, recorded = tmp_path_factory.mktemp("own"), read_stereo_mat(utias_folder() / "dataset3.mat")
+    write_tum(folder / "poses.txt", recorded.poses)
+    recordings = recorded.tables().recordings("UTIAS")
+    write_tracks(folder / "tracks.csv", recordings, recorded.camera)
+    return folder, recordings
+
+
+def test_the_real_recording_rebuilt_is_the_same(utias_files):
+    folder, recordings = utias_files
+    motion = read_tum(folder / "poses.txt").motion(DERIVATIVE)
+    np.testing.assert_allclose(motion.signal.samples, recordings[0].motion.signal.samples, atol=1e-9)
+    camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
+    back = Recording.from_csv(
+        folder / "tracks.csv", motion, camera=camera, point="point_id", depth="depth", distances=["stereo"]
+    )
+    assert len(back) == 44
+    for one, two in zip(back, recordings, strict=True):
+        np.testing.assert_allclose(one.time, two.time, **EXACT)
+        np.testing.assert_allclose(one.outputs, two.outputs, **EXACT)
+        np.testing.assert_allclose(one.distance, two.distance, **EXACT)
+        np.testing.assert_allclose(one.distances["stereo"], two.distances["stereo"], **EXACT)
+
+
+def test_tracks_that_another_program_wrote_are_the_same(utias_files):
+    """It names its columns in its own way, and prints microseconds, thousandths of a pixel and tenths of a mm."""
+    folder, recordings = utias_folder("tracks.csv"), utias_files[1]
+    camera = read_stereo_mat(folder / "dataset3.mat").camera
+    named = {"time": "time_s", "pixels": ("u_px", "v_px"), "point": "point_id", "depth": "depth_m_truth"}
+    back = Recording.from_csv(folder / "tracks.csv", recordings[0].motion, camera=camera, **named)
+    assert len(back) == 44
+    for one, two in zip(back, recordings, strict=True):
+        np.testing.assert_allclose(one.time, two.time, atol=1e-6)
+        np.testing.assert_allclose(one.outputs, two.outputs, atol=2e-6)
+        np.testing.assert_allclose(one.distance, two.distance, atol=1e-4)
+
+
+@pytest.mark.slow
+def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(tmp_path, monkeypatch):
+    """The lines are those of the README."""
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    lines = readme.split("<!-- own recording -->\n```python\n")[1].split("```")[0]
+    assert len(list(filter(None, lines.splitlines()))) <= 8
+    *program, table = ast.parse(lines).body
+    names = {}
+    exec(compile(ast.Module(program[:2], []), "<README>", "exec"), names)
+    exec(compile(ast.Module([program[3]], []), "<README>", "exec"), names)
+    write_tum(tmp_path / "poses.txt", poses(TIME, noise=1e-4))
+    films = []
+    for points in seen(TIME)[:4]:
+        truth = pinhole().project(points[5:190:5])
+        films.append(Recording(TIME[5:190:5], truth[:, :2], ("y1", "y2"), pinhole(), MOTION, truth))
+    write_tracks(tmp_path / "tracks.csv", films, names["camera"])
+    monkeypatch.chdir(tmp_path)
+    exec(compile(ast.Module(program, []), "<README>", "exec"), names)
+    found = eval(compile(ast.Expression(table.value), "<README>", "eval"), names)
+    assert (len(found.choosing), len(found.reporting)) == (2, 2)
+    table = found.side_by_side
+    assert len(table) == 10
+    assert "needs a motion with constant coefficients" in table.loc["immersion and invariance", "remark"]
+    kalman = found.table[found.table["observer"] == "extended Kalman"].set_index("after")
+    assert kalman.loc[1.0, "median"] < 0.05

@@ -1,0 +1,166 @@
+"""A file that is none is refused before any work: what was wrong, in which row, what was expected, what to do."""
+
+import numpy as np
+import pytest
+from test_own_recording import CAMERA, MOTION, TIME, stereo
+
+from percept_obs import BehindCamera, Clock, PixelCamera, Recording, read_euroc, read_tum
+from percept_obs.recording.stereo_mat import read_stereo_mat, write_stereo_mat
+
+GOOD = "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"
+
+
+def in_tum(text):
+    return read_tum, text
+
+
+def in_euroc(text):
+    rows = [line.split() for line in text.splitlines()]
+    return read_euroc, "\n".join(",".join([*row[:4], *row[7:], *row[4:7]]) for row in rows)
+
+
+@pytest.mark.parametrize("written", [in_tum, in_euroc])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (GOOD, "", "is no table of text .*first row is such as"),
+        (GOOD, "# only comments\n", "is no table of text"),
+        (
+            "1 0 0 0 0 0 0 1",
+            "1 nan 0 0 0 0 0 1",
+            "'nan' in row 2 of the column '(tx|p_x)' is no number; write",
+        ),
+        ("1 0 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "'inf' in row 2 .* is infinite"),
+        ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)' is not a number"),
+        ("1 0 0 0 0 0 0 1", "when 0 0 0 0 0 0 1", "column 'timestamp': row 2 has the time 'when'; every row needs"),
+        ("1 0 0 0 0 0 0 1", "inf 0 0 0 0 0 0 1", "row 2 has the time 'inf'"),
+        ("1 0 0 0 0 0 0 1", "1e9999999 0 0 0 0 0 0 1", "row 2 has the time '1e9999999'"),
+        ("2 0", "0.5 0", r"increase strictly; look at row 3, .*sort the rows"),
+        ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 2", "quaternion in row 2 has the length 2, expected 1"),
+        ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 0", "quaternion in row 2 has the length 0, expected 1"),
+        (GOOD, "0 0 0 0\n1 0 0 0\n", "has 4 columns; 8 are needed: timestamp, "),
+        (GOOD, GOOD[:16], "at least two seconds"),
+    ],
+)
+def test_files_of_poses_that_are_none_are_refused(tmp_path, written, old, new, message):
+    assert old in GOOD
+    read, text = written(GOOD.replace(old, new, 1))
+    (tmp_path / "poses.txt").write_text(text)
+    with pytest.raises(ValueError, match=f"(?s){message}"):
+        read(tmp_path / "poses.txt")
+
+
+TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (TABLE, "", "is no table of text .*first row is such as time,id,u,v"),
+        (TABLE, TABLE[:18], "header and no rows"),
+        ("301", "inf", "'inf' in row 2 of the column 'u' is infinite"),
+        ("301", "left", "'left' in row 2 of the column 'u' is not a number"),
+        ("0.1,a", ",a", "column 'time': row 2 has the time ''"),
+        ("0.1,a", "0.2,a", "times of the point a do not increase at row 3; sort the rows by time"),
+        ("0.1,a", "-0.1,a", "do not increase at row 2"),
+        ("0.1,a", "0.1,", "row 2 has no id; every row needs the name of its point"),
+        ("id,u", "id,x", "it needs 'u' for the pixels: rename the column, or say what it is called"),
+        ("id,u,v,", "id,u,u,", "names a column twice|needs 'v'"),
+        ("time,id,u,v,depth", "time,id,u,v", "rows with more cells than its header"),
+        ("301,200,2", "301,200,-2", "has the depth -2 in row 2; a point that is seen is in front of the camera"),
+        ("301,200,2", "301,200,0", "has the depth 0 in row 2"),
+        ("301,200,2\n", "301,200,2,7\n", "is no table of text"),
+        (
+            "0,a,300,200,2\n0.1,a,301,200,2\n0.2",
+            "50,a,300,200,2\n51,a,301,200,2\n52",
+            "the clocks do not overlap; bring",
+        ),
+        (TABLE, "time,id,u,v,depth\n0,a,300,200,2\n0.1,b,300,200,2\n", "no point that is seen twice"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::percept_obs.recording.Unlikely")
+def test_tables_that_are_none_are_refused(tmp_path, old, new, message):
+    assert old in TABLE
+    (tmp_path / "t.csv").write_text(TABLE.replace(old, new, 1))
+    with pytest.raises(ValueError, match=f"(?s){message}"):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, camera=CAMERA, point="id", depth="depth")
+
+
+def test_a_point_behind_the_camera_has_its_own_error(tmp_path):
+    (tmp_path / "t.csv").write_text(TABLE.replace("301,200,2", "301,200,-2"))
+    with pytest.raises(BehindCamera):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, camera=CAMERA, point="id", depth="depth")
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"gap": 0.0}, "gap is 0.0 s; it must be positive"),
+        ({"shortest": -1.0}, "shortest is -1.0 s"),
+        ({"pixels": ["u"]}, "pixels names the columns"),
+        ({"camera": None, "pixel_sigma": 1.0}, "pixel_sigma is in pixels; give also camera"),
+        ({"camera": None}, r"it needs 'time' and at least one of y1, y2, or a camera=PixelCamera"),
+        ({"point": None, "gap": 1.0}, "name the column of these"),
+        ({"point": "nobody"}, "it needs 'nobody'"),
+        ({"depth": "height"}, "it needs 'height'"),
+        ({"distances": ["laser"]}, "it needs 'laser'"),
+        ({"pixel_sigma": -1.0}, "the pixel sigma is -1"),
+        ({"camera": PixelCamera((500, 500), distortion=(-2, 0, 0, 0))}, "no direction is seen at the pixel"),
+    ],
+)
+def test_settings_that_no_table_meets_are_refused(tmp_path, settings, message):
+    (tmp_path / "t.csv").write_text(TABLE)
+    with pytest.raises(ValueError, match=message):
+        Recording.from_csv(tmp_path / "t.csv", MOTION, **({"camera": CAMERA, "point": "id"} | settings))
+
+
+@pytest.mark.parametrize("clock", [{"tick": 0.0}, {"tick": float("nan")}, {"zero": float("inf")}])
+def test_a_clock_that_reads_no_time_is_refused(clock):
+    with pytest.raises(ValueError, match="reads no time"):
+        Clock(**clock)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("t", None, "has no variable t; it needs t, y_k_j"),
+        ("t", np.zeros((2, 2)), r"variable t of .* has the shape \(2, 2\)"),
+        ("t", TIME[::-1], "increase strictly"),
+        ("t", TIME[:50], r"variable y_k_j of .* has the shape|expected"),
+        ("theta_vk_i", np.full((3, len(TIME)), np.nan), "variable theta_vk_i of .* is not finite; -1 stands for"),
+        ("y_k_j", np.full((4, len(TIME), 3), np.inf), "variable y_k_j of .* is not finite"),
+        ("y_k_j", np.zeros((3, len(TIME), 3)), r"has the shape \(3, 200, 3\); expected \(4, 200, 'L'\)"),
+        ("rho_i_pj_i", np.zeros((3, 7)), r"has the shape \(3, 7\); expected \(3, 3\)"),
+        ("C_c_v", np.zeros((3, 3)), "row 1 is no rotation"),
+        ("fu", "wide", "expected real numbers"),
+        ("b", -1.0, "baseline b = -1.0 m; it must be positive"),
+    ],
+)
+def test_stereo_files_that_are_none_are_refused(tmp_path, name, value, message):
+    from scipy.io import loadmat, savemat
+
+    path = tmp_path / "s.mat"
+    write_stereo_mat(path, stereo())
+    values = {key: each for key, each in loadmat(path).items() if not key.startswith("__")}
+    values.pop(name)
+    savemat(path, values if value is None else values | {name: value})
+    with pytest.raises(ValueError, match=message):
+        read_stereo_mat(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"time,u,v\n0,1,2\n", b"MATLAB 7.3 MAT-file" + bytes(600)])
+def test_what_is_no_matlab_file_is_refused(tmp_path, content):
+    (tmp_path / "s.mat").write_bytes(content)
+    with pytest.raises(ValueError, match="which is no MATLAB file up to version 7"):
+        read_stereo_mat(tmp_path / "s.mat")
+    with pytest.raises(FileNotFoundError, match="there is no file"):
+        read_stereo_mat(tmp_path / "none.mat")
+
+
+@pytest.mark.parametrize("read", [read_tum, read_euroc, lambda path: Recording.from_csv(path, MOTION)])
+def test_what_is_no_text_or_not_there_is_refused(tmp_path, read):
+    (tmp_path / "b").write_bytes(bytes(range(256)) * 4)
+    with pytest.raises(ValueError, match=r"is no table of text|has a cell|it needs|has \d+ columns"):
+        read(tmp_path / "b")
+    with pytest.raises(FileNotFoundError, match="there is no file"):
+        read(tmp_path / "none")
