@@ -23,7 +23,7 @@ window.heard = (found) => {
 const model = {
     get: (name) => state[name],
     set: (name, value) => (state[name] = value),
-    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary })
+    save_changes: () => window.toPython?.({ asked: state.asked, settings: state.settings, summary: state.summary })
         .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
     on: (event, listener) => (listeners[event] = listener),
     off() {},
@@ -43,7 +43,7 @@ def stated_policy():
 
 def opened(browser, lab, policy=None, answers=None, **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
-    told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
+    told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")}
     told["texts"] = base64.b64encode(lab.texts).decode()
     files = {
         "/": ("text/html", PAGE),

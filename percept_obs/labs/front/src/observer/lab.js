@@ -50,12 +50,12 @@ export class ObserverLab extends Live {
   }
 
   chooseScenario(name) {
-    const { title: _title, ...fit } = this.model.scenarios[name] ?? {};
+    const { title: _title, track: _sampled, ...fit } = this.model.scenarios[name] ?? {};
     const track = this.model.recordings[name];
     if (!track) return this.change({ scenario: name, ...fit }, true);
     const { surface, outputs, duration, window } = track;
     const hold = this.settings.hold === "exact" ? "zero" : this.settings.hold;
-    return this.change({ scenario: name, surface, outputs, duration, window, hold, believed: null }, true);
+    return this.change({ scenario: name, surface, outputs, duration, window, hold, motion: "", believed: null }, true);
   }
 
   fitted(asked) {

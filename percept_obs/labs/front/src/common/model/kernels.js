@@ -3,7 +3,7 @@
 
 import { Modules } from "./modules.js";
 
-/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean}} Module */
+/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean, refusal?: string}} Module */
 
 /** Functions of a model; those of a lab say which modules settings need. */
 export class PrintedKernels {
@@ -36,7 +36,10 @@ export class PrintedKernels {
 
   /** Load what settings need. */
   async prepare(settings) {
-    await Promise.all([...this.limits, ...this.needed(settings)].map(({ key, texts }) => this.modules.prepare(key, texts)));
+    const wanted = [...this.limits, ...this.needed(settings)];
+    const lacking = wanted.find(({ refusal }) => refusal);
+    if (lacking) throw new Error(lacking.refusal);
+    await Promise.all(wanted.map(({ key, texts }) => this.modules.prepare(key, texts)));
   }
 
   /** The module of an observer's loop, without what it has no need of. */

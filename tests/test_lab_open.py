@@ -1,0 +1,110 @@
+"""An observer, a surface and a motion that somebody brings are computed by the page as Python does, or refused first."""
+
+import json
+
+import numpy as np
+import pytest
+import sympy as sp
+from lab_settings import run_in_node, whole_model
+from test_lab_engine import assert_same_recording, assert_same_run
+
+from percept_obs import Camera, Scenario, affine, extended_kalman, ibo, record
+from percept_obs.compile.equations import Equations
+from percept_obs.labs import observer_lab
+from percept_obs.observers import Observer
+from percept_obs.observers.family import Derived, family
+from percept_obs.observers.gains import Gain
+from percept_obs.observers.parts import hats, innovation, output_injection
+from percept_obs.system.motion import TIME
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole, plane
+
+X, Y, Z = POINT
+y1, y2 = sp.symbols("y1 y2", real=True)
+K, L = sp.symbols("K L", real=True)
+MOTION = "a12 = -0.2 - 0.1 sin(t); b = [0.4 cos(t), 0.3 sin(t/2), b3]"
+SHORT = {"duration": 1.0, "period": 0.04, "window": 0.3, "X0": [1.0, 0.5, 4.0]}
+CALM = {"A": np.zeros((3, 3)).tolist(), "b": [0.1, 0.1, 0.05]}
+
+
+@family(
+    name="cubic",
+    title="Observer with a cubic correction",
+    source="a reader",
+    needs="any outputs with a canonical form",
+    claim="none",
+    gains=(
+        Gain(K, "measured_gain", 8, 1, 40, "1/s", "pull on the outputs", K > 0, "it must pull towards the samples"),
+        Gain(L, "hidden_gain", 20, 1, 200, "1/m^2", "pull on what is hidden", L > 0, "it must pull as well"),
+    ),
+)
+def cubic(form):
+    """x1hat' = K (e + e^3) + w^T x2hat + phi, x2hat' = L w (e + e^3) + g, with e = x1 - x1hat."""
+    correction = innovation(form).applyfunc(lambda e: e + e**3)
+    return Derived(hats((*form.x1, *form.x2)), output_injection(form, correction, K, L))
+
+
+def slanted():
+    """The image plane Z + Y/5 = 1."""
+    depth = Z + Y / 5
+    return ImagingSurface("slanted", (X / depth, Y / depth), depth, (y1, y2, 1 - y2 / 5))
+
+
+def watched(form):
+    """An observer that is written as `Observer` itself, with another order of its state than the coordinates'."""
+    x = (*form.x2, *form.x1)
+    e = innovation(form)
+    known = dict(zip(form.x2, hats(form.x2), strict=True))
+    flow = [*(4 * form.w * e + form.g.subs(known)), *(6 * e + form.w.T * sp.Matrix(hats(form.x2)) + form.phi)]
+    equations = Equations(hats(x), tuple(flow), form.x1, form.parameters)
+    return Observer("watched", form, equations, hats(form.coordinates), (), hats(x))
+
+
+@pytest.fixture(scope="module")
+def lab():
+    return observer_lab(observers=[cubic, watched, "extended_kalman"], surface=slanted, motion=MOTION, **CALM, **SHORT)
+
+
+def test_what_is_brought_opens_the_lab_with_its_gains_and_its_texts(lab):
+    assert lab.settings["observers"] == ["cubic", "watched", "extended_kalman"]
+    assert lab.settings["surface"] == "slanted"
+    assert lab.settings["gains"]["cubic"] == {"measured_gain": 8.0, "hidden_gain": 20.0}
+    model = whole_model(lab)
+    assert model["surfaces"]["slanted"]["outputs"] == [["y1", "y2"], ["y1"], ["y2"]]
+    assert set(model["forms"]["slanted y1"]["observers"]) == {
+        *("cubic", "watched", "extended_kalman", "identifier_based"),
+    }
+    assert "open it with observers=" in model["forms"]["slanted y1"]["refused"]["sliding_mode"]
+    assert "cubic" in model["forms"]["pinhole y1"]["observers"]
+    assert json.dumps(model, allow_nan=False)
+    with pytest.raises(ValueError, match="K > 0 is needed; it must pull"):
+        lab.settings = {**lab.settings, "gains": {"cubic": {"measured_gain": -1}}}
+
+
+def tasks_of(lab):
+    """Settings on every surface that matters: typed and constant motions, one output, each hold."""
+    changes = [
+        {},
+        {"outputs": ["y1"], "hold": "first", "noise": {"kind": "uniform", "size": 0.01}, "dropout": 0.2},
+        {"surface": "sphere", "outputs": ["y1", "y2"], "observers": ["cubic"], "hold": "exact"},
+        {"motion": "", "gains": {"cubic": {"measured_gain": 11.5}}},
+        {"motion": "q = 0.3 t\nb3 = q^2 sqrt(1 + q) - b1", "start": {"mode": "zero", "values": [0.0] * 3}},
+        {"believed": {"A": [[0.1] * 3] * 3, "b": [0.1, 0.2, 0.3]}},
+    ]
+    return [lab.check({**lab.settings, **change}) for change in changes]
+
+
+@pytest.mark.node
+def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(lab, node):
+    tasks = tasks_of(lab)
+    for settings in tasks:
+        lab.write_down(settings)
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        namespace = {"cubic": cubic, "watched": watched, "slanted": slanted}
+        exec(answer["code"], namespace)
+        for name, run in lab.runs(settings).items():
+            assert_same_recording(answer, run.recording)
+            assert_same_run(answer["runs"][name], run, 1e-9)
+            assert answer["summary"]["verdicts"][name] == run.verdict()
+            copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+            np.testing.assert_allclose(copied.estimate, run.estimate, rtol=1e-8, atol=1e-9)
