@@ -5,13 +5,20 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
-from lab_settings import run_in_node, whole_model
+from lab_settings import as_array, run_in_node, whole_model
+from points_settings import run_in_node as points_in_node
+from structure_settings import structure_in_node
 from test_lab_engine import assert_same_recording, assert_same_run
+from test_points_lab import assert_same_run as assert_same_points
 
 from percept_obs import Camera, Scenario, affine, extended_kalman, ibo, record
 from percept_obs.compile.equations import Equations
-from percept_obs.labs import observer_lab
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs.points.lab import run_of as run_of_points
+from percept_obs.labs.structure.lab import runs as structure_runs
+from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
+from percept_obs.structure import ImpossibleChoice
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
@@ -108,3 +115,76 @@ def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(l
             assert answer["summary"]["verdicts"][name] == run.verdict()
             copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
             np.testing.assert_allclose(copied.estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+SPUN = "v_c1 = -0.22 - 0.1 sin(2t); w = [0.1 t, 0, w3]; v_p2 = 0.3 exp(-t)"
+
+
+@pytest.fixture(scope="module")
+def structure():
+    return structure_lab(observers=["ideal", cubic], duration=0.3, period=0.004, step=0.002, motion=SPUN)
+
+
+@pytest.mark.node
+def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, node):
+    changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
+    tasks = [structure.check({**structure.settings, **change}) for change in changes]
+    for settings, answer in zip(tasks, structure_in_node(node, structure, tasks), strict=True):
+        namespace = {"cubic": cubic}
+        exec(answer["code"], namespace)
+        for name, run in structure_runs(settings, {"cubic": structure._own["cubic"]}).items():
+            found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
+            np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose(namespace[f"run_{name}"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
+    assert "v_p2" not in unknowns_of(structure.settings).zero
+    zero = {**structure.settings, "motion": "v_c1 = 0 t", "v_c": [0.3, 0.0, 0.0]}
+    with pytest.raises(ImpossibleChoice, match="none is known that is not zero"):
+        unknowns_of(structure.check(zero))
+
+
+SWUNG = "w = [0, 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
+OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
+
+
+@pytest.mark.node
+def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
+    lab = points_lab()
+    places = [[0.1 * k, 1.2 - 0.1 * k, 2.5 + 0.05 * k] for k in range(12)]
+    typed = {"weight": "typed", "P": "P = P + exp(-t) / 2", "size": 0.7}
+    changes = [{"state": "origin", "spin": 0.3, "motion": SWUNG, **typed}, {"state": "independent", "motion": SWUNG}]
+    changes.append({"points": places, "hidden": [None] * 12, **typed, "P": "1 + t", "start": "error"})
+    tasks = [lab.check({**lab.settings, **OF_POINTS, **change}) for change in changes]
+    assert tasks[2]["P"] == "P = 1 + t"
+    for settings in tasks:
+        lab.write_down(settings)
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings)
+        assert_same_points(answer, run)
+        namespace = {}
+        exec(answer["code"], namespace)
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "settings", "reason"),
+    [
+        (observer_lab, {"motion": "a12 = 0.3 foo(t)"}, r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^'),
+        (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
+        (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
+        (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
+        (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
+        (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
+        (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
+        (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
+        (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
+        (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
+        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives w1; it must be one expression"),
+        (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    ],
+)
+def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        make(**settings)

@@ -22,7 +22,7 @@ from percept_obs.labs.observer.settings import (
     as_settings,
     schema_of,
 )
-from percept_obs.labs.observer.texts import BLOCKS, MOTION
+from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION
 from percept_obs.labs.observer.tracks import (
     VARIES,
     fitting,
@@ -42,7 +42,7 @@ from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
-from percept_obs.system.signal import Signal
+from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, plane
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
@@ -93,7 +93,7 @@ class ObserverLab(Lab):
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
-        asked, own = (None, {}) if observers is None else brought(observers)
+        asked, own = (None, {}) if observers is None else brought(observers, BY_NAME)
         refuse_other_motion(own)
         made_for = surface_of(own) if surface is None else None
         if made_for:
@@ -176,7 +176,7 @@ class ObserverLab(Lab):
             scenario = settings["scenario"]
             if scenario in self._recordings or scenario in self._tables:
                 raise ValueError(f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario")
-            self.typed(settings["motion"]).refuse_poles(_numbers(settings), settings["duration"])
+            self.typed(settings["motion"]).refuse_poles(settings["duration"], lambda _: _numbers(settings))
 
     def _varies(self, settings: Settings) -> bool:
         return bool(settings["motion"].strip()) or settings["scenario"] in self._tables
@@ -290,8 +290,8 @@ def _motion(text: str) -> Motion:
     """The motion of settings: constant, or as it was typed."""
     settings = json.loads(text)
     if settings["motion"].strip():
-        typed = read_motion(settings["motion"], BLOCKS)
-        return replace(MOTION, signal=Signal(typed.over_time(_numbers(settings))))
+        typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
+        return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers))))
     return affine(settings["A"], settings["b"])
 
 

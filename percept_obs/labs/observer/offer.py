@@ -19,14 +19,19 @@ from percept_obs.labs.observer.texts import (
     form_on,
     key_of,
     observer_on,
-    observers_for_the_page,
-    of_an_observer,
     surface_for_the_page,
     system_on,
 )
-from percept_obs.labs.shared.brought import Maker, OwnObserver, free, origin
+from percept_obs.labs.shared.brought import (
+    Maker,
+    OwnObserver,
+    free,
+    observers_for_the_page,
+    of_an_observer,
+    origin,
+)
 from percept_obs.labs.shared.observer_texts import with_all_gains
-from percept_obs.labs.shared.printed import Parts, Texts, compressed, file_of, part, unpacked
+from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
 from percept_obs.observers import Observer
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.surfaces import ImagingSurface
@@ -112,10 +117,7 @@ class Offer:
     @cached_property
     def packed(self) -> bytes:
         """All texts of the page, compressed."""
-        if not self.brought:
-            return file_of(LAB).read_bytes()
-        added = {place: json.dumps(texts, allow_nan=False) for place, texts in self._added.items()}
-        return compressed(unpacked(file_of(LAB).read_bytes()) | added, level=1)
+        return with_texts(LAB, self._added)
 
     def for_the_page(self) -> Texts:
         """How copied code names what was brought."""

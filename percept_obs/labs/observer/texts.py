@@ -10,10 +10,8 @@ from types import MappingProxyType
 import sympy as sp
 
 from percept_obs.compile import function_source, source
-from percept_obs.labs.shared.brought import Maker
-from percept_obs.labs.shared.equations import IN_MATRICES, abstract_form, equations_in_scalars, equations_of
+from percept_obs.labs.shared.brought import Maker, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.markup import dotted, formula, markup
-from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
@@ -108,13 +106,6 @@ def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, .
     }
 
 
-def of_an_observer(make: Maker, ways: Mapping[str, Observer]) -> Texts:
-    """What is known about an observer, with its equations: for any w, phi and g, or else as they are in `ways`."""
-    if make in IN_MATRICES or not make.refusal(abstract_form()):
-        return observer_for_the_page(ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways})
-    return observer_for_the_page(ways, {way: equations_in_scalars(observer) for way, observer in ways.items()})
-
-
 def form_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
     """A form, and the loops of its observers; one that does not exist is among the `refused`, with the reason."""
     names = [s.name for s in form.coordinates]
@@ -128,20 +119,6 @@ def form_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> T
         **told,
         **observers_for_the_page(form, makers),
     }
-
-
-def observers_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
-    """The loops of a form's observers, and why it has no others."""
-    kernels: dict[str, Texts] = {}
-    refused: dict[str, str] = {}
-    for name, make in makers.items():
-        if refusal := make.refusal(form):
-            refused[name] = refusal
-        else:
-            ways = make.switches or ("",)
-            made = {way: make(form, **({"switch": way} if way else {})) for way in ways}
-            kernels[name] = {way: kernel_for_the_page(observer) for way, observer in made.items()}
-    return {"observers": kernels, "refused": refused}
 
 
 def _rates(form: PartitionedSystem) -> Iterable[tuple[sp.Symbol, sp.Expr]]:

@@ -8,13 +8,23 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
+from percept_obs.compile import Array, vectorised
 from percept_obs.labs.points.settings import PICTURES, SCHEMA
-from percept_obs.labs.points.texts import form_of, state_of
+from percept_obs.labs.points.texts import (
+    BLOCKS,
+    STATES,
+    coefficients_for_the_page,
+    form_of,
+    state_of,
+    typed_velocities,
+)
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points import (
@@ -30,9 +40,11 @@ from percept_obs.points import (
     scheduled,
 )
 from percept_obs.points.form import JUDGED, PointsForm, points_form
-from percept_obs.points.manoeuvre import Manoeuvre
+from percept_obs.points.manoeuvre import Manoeuvre, velocities
 from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
+from percept_obs.system.motion import TIME
+from percept_obs.system.signal import OverTime
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
@@ -49,11 +61,17 @@ _WEIGHTS: Mapping[str, Callable[[Settings], LyapunovMatrix]] = MappingProxyType(
     {
         "constant": lambda s: constant(s["size"]),
         "scheduled": lambda s: scheduled(lambda t: s["size"] * (s["final"] / s["size"]) ** (t / s["duration"])),
+        "typed": lambda s: scheduled(OverTime(lambda times: _typed_P(s, times)[:, None])),
         "lyapunov": lambda s: lyapunov(s["size"], s["decrease"]),
         "riccati": lambda s: riccati(s["size"], s["forgetting"]),
     }
 )
 """P by its name in the settings; a scheduled one grows or shrinks by the same factor in equal times."""
+
+
+def _typed_P(settings: Settings, times: Array) -> Array:
+    """A typed P at some times, shape (T,)."""
+    return read_motion(settings["P"], BLOCKS).rows(times, np.array([*[0.0] * 9, settings["size"]]))[:, -1]
 
 
 class PointsLab(Lab):
@@ -87,6 +105,19 @@ class PointsLab(Lab):
         """The run of the same settings in Python."""
         return run_of(self.settings)
 
+    def typed(self, text: str) -> Typed:
+        """The motion, or the P, that a text describes; a ValueError if it cannot be read."""
+        return read_motion(text, BLOCKS)
+
+    def typed_for_the_page(self, text: str) -> Settings:
+        """The coefficients of each state with a typed motion."""
+        typed = self.typed(text)
+        moved = typed_velocities(typed, velocities())
+        states = {state: coefficients_for_the_page(state, moved) for state in STATES}
+        functions = {str(f.func) for entry in typed.changed.values() for f in entry.atoms(sp.Function)}
+        told = {name: sp.sstr(entry) for name, entry in typed.changed.items()}
+        return {**typed.for_the_page(), "states": states, "sympy": told, "functions": sorted(functions)}
+
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong; points without a word on hiding are seen."""
         points = settings.get("points") if isinstance(settings, Mapping) else None
@@ -99,6 +130,7 @@ class PointsLab(Lab):
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")
+        _refuse_typed(settings)
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
                 raise ValueError(f"hidden {k} is {times!r}; it must begin at 0 s or later and end after that")
@@ -119,12 +151,41 @@ class PointsLab(Lab):
 points_lab = PointsLab
 
 
+def _refuse_typed(settings: Settings) -> None:
+    """Refuse a typed motion or P that has no numbers, or gives what the other is for."""
+    duration = settings["duration"]
+    if settings["motion"].strip():
+        typed = read_motion(settings["motion"], BLOCKS)
+        if "P" in typed.changed:
+            raise ValueError('motion gives P; choose weight="typed" and type it there')
+        moved = (*(entry for vector in _manoeuvre(settings).velocities for entry in vector), sp.S.One)
+        function = vectorised((TIME,), moved)
+        typed.refuse_poles(duration, lambda times: np.stack(function(times), axis=-1))
+    if settings["weight"] != "typed":
+        return
+    if "=" not in settings["P"]:
+        settings["P"] = f"P = {settings['P']}"
+    changed = set(read_motion(settings["P"], BLOCKS).changed) - {"P"}
+    if changed:
+        raise ValueError(f"P gives {', '.join(sorted(changed))}; it must be one expression, such as P = 1 + exp(-t)")
+    times = np.linspace(0, duration, INSTANTS)
+    with np.errstate(all="ignore"):
+        found = _typed_P(settings, times)
+    bad = np.flatnonzero(~((found > 1e-9) & (found < 1e9)))
+    if len(bad):
+        raise ValueError(f"P is {found[bad[0]]:.4g} at {times[bad[0]]:.4g} s; it must be from 1e-9 to 1e9 at all times")
+
+
+def _manoeuvre(settings: Settings) -> Manoeuvre:
+    return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
+
+
 def form_of_settings(settings: Settings) -> PointsForm:
     """The form of the settings' points."""
-    manoeuvre = Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
+    typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnseenDirection)  # the lab says so in its own place
-        return form_of(settings["state"], len(settings["points"]), manoeuvre)
+        return form_of(settings["state"], len(settings["points"]), _manoeuvre(settings), typed)
 
 
 def recording_of(settings: Settings) -> Recording:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Protocol
 
 from percept_obs.compile import NotCompilable
-from percept_obs.labs.shared.observer_texts import kernel_for_the_page
+from percept_obs.labs.shared.equations import IN_MATRICES, abstract_form, equations_in_scalars, equations_of
+from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
 from percept_obs.labs.shared.printed import Texts
-from percept_obs.observers import OBSERVERS, Observer
+from percept_obs.observers import Observer
 from percept_obs.observers.family import Family
 from percept_obs.system.forms import PartitionedSystem
 
@@ -117,13 +118,14 @@ def origin(value: object, name: str) -> Texts:
     return {"name": name, "module": module.__name__ if there and module else ""}
 
 
-def brought(values: Sequence[Any], ours: Collection[Family] = OBSERVERS) -> tuple[list[str], dict[str, OwnObserver]]:
+def brought(values: Sequence[Any], ours: Mapping[str, Maker]) -> tuple[list[str], dict[str, OwnObserver]]:
     """Observers that were asked for: the names of all, and those that are not the lab's, by their names.
 
     Parameters
     ----------
     values : sequence of names, functions of a form, or observers
-    ours : families that the lab has
+    ours : mapping of names to what makes observers
+        What the lab has.
 
     Raises
     ------
@@ -133,30 +135,51 @@ def brought(values: Sequence[Any], ours: Collection[Family] = OBSERVERS) -> tupl
     Examples
     --------
     >>> from percept_obs import ibo
-    >>> brought(["sliding_mode", ibo])
+    >>> brought(["sliding_mode", ibo], {"identifier_based": ibo})
     (['sliding_mode', 'identifier_based'], {})
     """
     names: list[str] = []
     own: dict[str, OwnObserver] = {}
-    taken = {make.key for make in OBSERVERS}
+    names_of = {make: name for name, make in ours.items()}
     if isinstance(values, str) or not isinstance(values, Sequence):
         raise ValueError(f"observers is {values!r}; it must be a list of names, functions of a form, or observers")
     for value in values:
-        if isinstance(value, str) or value in ours:
-            names.append(value if isinstance(value, str) else value.key)
+        if isinstance(value, str) or (callable(value) and value in names_of):
+            names.append(value if isinstance(value, str) else names_of[value])
             continue
         if isinstance(value, Observer):
-            name = free(value.name, taken | set(own), "my_observer")
+            name = free(value.name, {*ours, *own}, "my_observer")
             own[name] = OwnObserver(name, lambda form, observer=value: observer, value.form)
         elif callable(value):
             name = named(getattr(value, "__name__", ""), "my_observer")
-            if name in taken or name in own:
+            if name in ours or name in own:
                 raise ValueError(f"there is an observer {name} already; give yours another name")
             own[name] = OwnObserver(name, value)
         else:
             raise ValueError(f"{value!r} is no observer; bring its name, a function of a form, or an Observer")
         names.append(name)
     return names, own
+
+
+def of_an_observer(make: Maker, ways: Mapping[str, Observer]) -> Texts:
+    """What is known about an observer, with its equations: for any w, phi and g, or else as they are in `ways`."""
+    if make in IN_MATRICES or not make.refusal(abstract_form()):
+        return observer_for_the_page(ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways})
+    return observer_for_the_page(ways, {way: equations_in_scalars(observer) for way, observer in ways.items()})
+
+
+def observers_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
+    """The loops of a form's observers, and why it has no others."""
+    kernels: dict[str, Texts] = {}
+    refused: dict[str, str] = {}
+    for name, make in makers.items():
+        if refusal := make.refusal(form):
+            refused[name] = refusal
+        else:
+            ways = make.switches or ("",)
+            made = {way: make(form, **({"switch": way} if way else {})) for way in ways}
+            kernels[name] = {way: kernel_for_the_page(observer) for way, observer in made.items()}
+    return {"observers": kernels, "refused": refused}
 
 
 def named(text: str, otherwise: str) -> str:

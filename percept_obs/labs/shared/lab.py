@@ -36,6 +36,9 @@ ValueError
     If a setting is unknown or makes no sense."""
 """The end of every lab's docstring."""
 
+TYPED = ("motion", "P")
+"""The settings that are typed as expressions of time."""
+
 MOST_WRITTEN = 50
 """How many typed motions are kept ready for the page."""
 
@@ -121,16 +124,20 @@ class Lab(anywidget.AnyWidget):
         """The motion that a text describes; a ValueError if it cannot be read."""
         raise ValueError("no motion is typed in this lab")
 
+    def typed_for_the_page(self, text: str) -> Settings:
+        """What the page needs of a typed motion; a ValueError if it cannot be read."""
+        return self.typed(text).for_the_page()
+
     def write_down(self, settings: Settings) -> None:
         """Have the typed motions of settings ready for the page."""
-        for each in (settings, settings.get("kept") or {}):
-            text = each.get("motion", "")
+        kept = settings.get("kept") or {}
+        for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
             if text.strip() and "source" not in self.written.get(text, {}):
                 self._write(text)
 
     def _write(self, text: str) -> None:
         try:
-            answer = self.typed(text).for_the_page()
+            answer = self.typed_for_the_page(text)
         except ValueError as error:
             answer = {"refusal": str(error), "position": getattr(error, "position", None)}
         kept = [item for item in self.written.items() if item[0] != text][1 - MOST_WRITTEN :]

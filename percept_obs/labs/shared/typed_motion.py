@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,7 +16,6 @@ from percept_obs.compile import Array, function_source, vectorised
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Text
 from percept_obs.system.motion import TIME
-from percept_obs.system.signal import OverTime
 
 MOST = 400
 INSTANTS = 501
@@ -55,16 +54,16 @@ class Typed:
         pairs = zip(self.symbols, self.expressions, strict=True)
         return {symbol.name: entry for symbol, entry in pairs if entry != symbol}
 
-    def over_time(self, values: Array) -> OverTime:
-        """The numbers as a function of time, for numbers that the lab sets."""
+    def rows(self, times: Array, numbers: Array) -> Array:
+        """The numbers at times, shape (T, n), where the lab sets these, shape (n,) or (T, n)."""
         function = vectorised((TIME, *self.symbols), self.expressions)
-        return OverTime(lambda times: np.stack(function(times, *values), axis=-1))
+        return np.stack(function(times, *numbers.T), axis=-1)
 
-    def refuse_poles(self, values: Array, duration: float) -> None:
-        """Refuse what has no number at some time of a run."""
+    def refuse_poles(self, duration: float, numbers: Callable[[Array], Array]) -> None:
+        """Refuse what has no number at some time of a run, for numbers that the lab sets, as a function of times."""
         times = np.linspace(0, duration, INSTANTS)
         with np.errstate(all="ignore"):
-            found = self.over_time(values).rows(times)
+            found = self.rows(times, numbers(times))
         bad = np.argwhere(~(np.abs(found) <= 1e6))
         if len(bad):
             row, column = bad[0]

@@ -1,5 +1,6 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
+import { withoutRefused } from "../common/model/kernels.js";
 import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
@@ -63,12 +64,8 @@ export class ObserverLab extends Live {
     const allowed = outputs.some((names) => same(names, asked.outputs));
     const settings = allowed ? asked : { ...asked, outputs: [...outputs[0]] };
     if (!allowed) this.view.notice(`The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`);
-    const refused = this.kernels.refused(settings);
-    const lost = settings.observers.filter((name) => refused[name]);
-    if (!lost.length) return settings;
-    const left = settings.observers.filter((name) => !refused[name]);
-    const why = lost.map((name) => `The ${this.model.observers[name].title} observer was dropped: ${refused[name]}.`);
-    this.view.notice(why.join(" "));
-    return { ...settings, observers: left.length ? left : [ALWAYS_POSSIBLE] };
+    const found = withoutRefused(settings, this.kernels.refused(settings), this.model.observers, ALWAYS_POSSIBLE);
+    if (found.why) this.view.notice(found.why);
+    return found.settings;
   }
 }

@@ -3,10 +3,11 @@
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { button, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
+import { typedField } from "../../common/page/typed.js";
 import { PointList } from "./point_list.js";
 
 /** What P begins with when a kind is chosen. */
-const OWN_SIZE = { constant: 1, scheduled: 0.3, lyapunov: 1, riccati: 0.01 };
+const OWN_SIZE = { constant: 1, scheduled: 0.3, typed: 1, lyapunov: 1, riccati: 0.01 };
 
 /** What the page calls the settings. */
 export const WORDS = {
@@ -19,7 +20,7 @@ export const WORDS = {
   },
   points: { depth: { label: "depth", unit: "m", low: 0.5, high: 6, step: 0.05, above: 0 } },
   hidden: { step: 0.5 },
-  weight: { choices: { constant: "constant", scheduled: "scheduled", lyapunov: "Lyapunov", riccati: "Riccati" } },
+  weight: { choices: { constant: "constant", scheduled: "scheduled", typed: "typed", lyapunov: "Lyapunov", riccati: "Riccati" } },
   velocity: { name: "velocity {}", label: "added to v, {}" },
   start: { choices: { rays: "on the first rays", error: "with a given error", zero: "at zero" } },
   noise: NOISE,
@@ -68,6 +69,7 @@ export class Panel extends Fieldsets {
       {},
       kind,
       size,
+      this.onlyIf(({ weight }) => weight === "typed", this.typed("P", "P = 1 + exp(-t)")),
       this.numberIf("final", ({ weight }) => weight === "scheduled"),
       this.numberIf("decrease", ({ weight }) => weight === "lyapunov"),
       this.numberIf("forgetting", ({ weight }) => weight === "riccati"),
@@ -87,7 +89,13 @@ export class Panel extends Fieldsets {
       share("spin", ({ state }) => state !== "independent"),
       share("input"),
       ...this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), ""),
+      this.typed("motion", "w3 = 0.5 cos(t)"),
       element("div", { class: "buttons" }, still, aim),
     );
+  }
+
+  typed(place, hint) {
+    const { label, most } = this.schema[place];
+    return this.add(typedField(this.lab, { ...this.bound(place, true), label, most, hint }));
   }
 }
