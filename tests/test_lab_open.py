@@ -8,10 +8,10 @@ import sympy as sp
 from lab_settings import as_array, run_in_node, whole_model
 from points_settings import run_in_node as points_in_node
 from structure_settings import structure_in_node
-from test_lab_engine import assert_same_recording, assert_same_run
+from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_run as assert_same_points
 
-from percept_obs import Camera, Scenario, affine, extended_kalman, ibo, record
+from percept_obs import Camera, Scenario, affine, extended_kalman, ibo, record, rigid
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.points.lab import run_of as run_of_points
@@ -24,7 +24,7 @@ from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
 from percept_obs.system.motion import TIME
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole, plane
+from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
 X, Y, Z = POINT
 y1, y2 = sp.symbols("y1 y2", real=True)
@@ -65,6 +65,14 @@ def watched(form):
     flow = [*(4 * form.w * e + form.g.subs(known)), *(6 * e + form.w.T * sp.Matrix(hats(form.x2)) + form.phi)]
     equations = Equations(hats(x), tuple(flow), form.x1, form.parameters)
     return Observer("watched", form, equations, hats(form.coordinates), (), hats(x))
+
+
+def assert_same_recording(answer, recording):
+    """To 1e-9, for the page steps a motion that varies, and Python solves it to 1e-10 a step."""
+    assert answer["time"] == pytest.approx(recording.elapsed.tolist(), abs=1e-12)
+    for name in ("truth", "outputs"):
+        expected = getattr(recording, name)
+        np.testing.assert_allclose(as_array(answer[name], expected.shape[1]), expected, rtol=1e-9, atol=1e-10)
 
 
 @pytest.fixture(scope="module")
@@ -188,3 +196,66 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
 def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
     with pytest.raises(ValueError, match=reason):
         make(**settings)
+
+
+TIMES = np.array([0.0, 0.13, 0.4, 0.71])
+VARYING = {
+    "expressions of time": affine(sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]),
+    "samples": affine(np.zeros((3, 3)), np.column_stack([np.cos(9 * TIMES), 0.2 - TIMES, 0.1 * TIMES]), TIMES),
+    "a function": affine(lambda t: np.zeros((3, 3)), lambda t: [np.sin(t), 0.1, 0.1]),
+}
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("kind", VARYING)
+def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(kind, node):
+    scenario = Scenario("own", VARYING[kind], (0.5, 0.2, 5.0), 0.6, pinhole())
+    lab = observer_lab(scenario, period=0.04, window=0.2)
+    assert bool(lab.settings["motion"]) == (kind == "expressions of time")
+    settings = lab.settings
+    (answer,) = run_in_node(node, lab, [settings])
+    (run,) = lab.runs(settings).values()
+    assert_same_recording(answer, run.recording)
+    assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
+    asked = record(scenario, camera=Camera(0.04))
+    # a function is taken as samples every 10 ms
+    np.testing.assert_allclose(run.recording.truth, asked.truth, rtol=0, atol=1e-6 if kind == "a function" else 1e-9)
+    if kind != "expressions of time":
+        with pytest.raises(ValueError, match="'own' has its own; choose another scenario"):
+            lab.settings = {**settings, "motion": "b1 = t"}
+
+
+def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
+    def rounded(form):
+        whole = cubic(form)
+        flow = (sp.floor(whole.equations.flow[0]), *whole.equations.flow[1:])
+        return Observer("rounded", form, Equations(whole.equations.state, flow, form.x1, form.parameters, (K, L)),
+                        whole.estimate, whole.gains, whole.start)
+
+    def nothing(form):
+        return None
+
+    deep = ImagingSurface("deep", (X / Z, Y / Z, (X + Y) / Z), Z, (y1, y2, 1))
+    rigid_form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
+    for brought, reason in (
+        ({"observers": [rounded]}, "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed"),
+        ({"observers": [nothing]}, "nothing gave NoneType for a form; it must give an Observer"),
+        ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
+        ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),
+        ({"observers": "cubic"}, "it must be a list of names, functions of a form, or observers"),
+        ({"observers": [ibo(rigid_form)]}, r"made for a form with the parameters w1, .*PerspectiveSystem\(affine\(\)"),
+        ({"surface": deep}, "has 3 image coordinates; the lab draws images with two"),
+        ({"surface": 4}, "surface is 4; bring an ImagingSurface"),
+        ({"surface": "slanted"}, "surface is 'slanted'; it must be one of pinhole"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            observer_lab(**brought)
+
+
+def test_an_observer_of_one_form_opens_the_lab_there_and_a_partitioned_system_will_do():
+    bent = ImagingSurface("bent", (X / Z, Y / Z + (X / Z) ** 2), Z, (y1, y2 - y1**2, 1))
+    system = PerspectiveSystem(affine(), bent)
+    assert system.partition("y2").culprits
+    lab = observer_lab(observers=[extended_kalman(system.partition("y2"))], duration=1.0)
+    assert (lab.settings["surface"], lab.settings["outputs"]) == ("bent", ["y2"])
+    assert lab.settings["observers"] == ["extended_kalman"] or lab.settings["observers"] == ["my_extended_kalman"]

@@ -38,7 +38,7 @@ from percept_obs.labs.shared.brought import brought
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
 from percept_obs.labs.shared.schema import Choice, Settings
-from percept_obs.labs.shared.typed_motion import Typed, read_motion
+from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
@@ -176,7 +176,7 @@ class ObserverLab(Lab):
             scenario = settings["scenario"]
             if scenario in self._recordings or scenario in self._tables:
                 raise ValueError(f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario")
-            self.typed(settings["motion"]).refuse_poles(settings["duration"], lambda _: _numbers(settings))
+            typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda _: _numbers(settings))
 
     def _varies(self, settings: Settings) -> bool:
         return bool(settings["motion"].strip()) or settings["scenario"] in self._tables
@@ -220,10 +220,10 @@ class ObserverLab(Lab):
 
     def _work(self, settings: Settings) -> float:
         """What it takes to move the point, as `MOST_WORK` counts."""
-        duration, motion = settings["duration"], self._motion_of(settings)
-        times = np.linspace(0, duration, 50)
-        rows = np.abs(motion.known(times)[:, :9]).reshape(-1, 3, 3)
-        fastest = float(rows.sum(axis=2).max())
+        duration, A = settings["duration"], np.array([settings["A"]])
+        if self._varies(settings):
+            A = self._motion_of(settings).known(np.linspace(0, duration, 50))[:, :9].reshape(-1, 3, 3)
+        fastest = float(np.abs(A).sum(axis=2).max())
         moved = exact_path(duration, settings["period"], fastest)
         return moved + LOOK_WORK * looks(duration, fastest) if self._varies(settings) else moved
 

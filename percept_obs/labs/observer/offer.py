@@ -103,8 +103,11 @@ class Offer:
         """An observer in every way in which it switches, of the first form that it has."""
         make = self.observers[name]
         places = [(surface, tuple(outputs)) for surface in self._own_first() for outputs in self.outputs(surface)]
-        where = next(place for place in places if not make.refusal(form_on(self.surfaces[place[0]], place[1])))
-        return {way: self.observer(*where, name, way) for way in make.switches or ("",)}
+        for surface, outputs in places:
+            if not make.refusal(self.form(surface, outputs)):
+                return {way: self.observer(surface, outputs, name, way) for way in make.switches or ("",)}
+        surface, outputs = places[0]
+        raise ValueError(f"{name} cannot be used in this lab: {make.refusal(self.form(surface, outputs))}")
 
     def refused(self, surface: str, outputs: Iterable[str]) -> dict[str, str]:
         """Observers that a form does not have, with the reasons."""

@@ -24,7 +24,7 @@ from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points import (
@@ -155,7 +155,7 @@ def _refuse_typed(settings: Settings) -> None:
     """Refuse a typed motion or P that has no numbers, or gives what the other is for."""
     duration = settings["duration"]
     if settings["motion"].strip():
-        typed = read_motion(settings["motion"], BLOCKS)
+        typed = typed_in(settings, "motion", BLOCKS)
         if "P" in typed.changed:
             raise ValueError('motion gives P; choose weight="typed" and type it there')
         moved = (*(entry for vector in _manoeuvre(settings).velocities for entry in vector), sp.S.One)
@@ -165,7 +165,7 @@ def _refuse_typed(settings: Settings) -> None:
         return
     if "=" not in settings["P"]:
         settings["P"] = f"P = {settings['P']}"
-    changed = set(read_motion(settings["P"], BLOCKS).changed) - {"P"}
+    changed = set(typed_in(settings, "P", BLOCKS).changed) - {"P"}
     if changed:
         raise ValueError(f"P gives {', '.join(sorted(changed))}; it must be one expression, such as P = 1 + exp(-t)")
     times = np.linspace(0, duration, INSTANTS)

@@ -12,9 +12,9 @@ import sympy as sp
 from percept_obs.border import expression
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import read
-from percept_obs.compile import Array, function_source, vectorised
+from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
-from percept_obs.labs.shared.schema import Text
+from percept_obs.labs.shared.schema import Settings, Text
 from percept_obs.system.motion import TIME
 
 MOST = 400
@@ -76,11 +76,11 @@ class Typed:
         """A function of (t, numbers), what of them it makes 0, what it changes in Python; NotCompilable if there is none."""
         source = function_source((TIME, *self.symbols), self.expressions)
         zero = [name for name, entry in self.changed.items() if entry == 0]
-        python = {name: sp.pycode(entry) for name, entry in self.changed.items()}
+        python = {name: python_text(entry) for name, entry in self.changed.items()}
         return {"source": source, "zero": zero, "python": python}
 
 
-def read_motion(text: str, blocks: Blocks, units: str = "") -> Typed:
+def read_motion(text: str, blocks: Blocks) -> Typed:
     """Read a motion.
 
     Parameters
@@ -105,6 +105,14 @@ def read_motion(text: str, blocks: Blocks, units: str = "") -> Typed:
     return _read(text, tuple(blocks.items()))
 
 
+def typed_in(settings: Settings, name: str, blocks: Blocks) -> Typed:
+    """What is typed in a setting; a ValueError with its name if it cannot be read."""
+    try:
+        return read_motion(settings[name], blocks)
+    except ValueError as error:
+        raise ValueError(f"{name}: it must be expressions of t, but {error}") from None
+
+
 @lru_cache(maxsize=64)
 def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Typed:
     symbols = tuple(dict.fromkeys(symbol for _, block in blocks for symbol in block))
@@ -115,17 +123,17 @@ def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Type
         block = named.get(reading.name)
         if block is None:
             raise ValueError(
-                f"motion: each line begins with what it gives, such as {symbols[-1]} = ...; there are "
+                f"each line begins with what it gives, such as {symbols[-1]} = ...; there are "
                 f"{', '.join([*(letter for letter, _ in blocks), *map(str, symbols)])}"
             )
         value = reading.formula
         given = value if isinstance(value, sp.MatrixBase) else sp.ImmutableMatrix([value])
         if given.shape != block.shape:
-            raise ValueError(f"motion: {reading.name} has the shape {given.shape}; expected {block.shape}")
+            raise ValueError(f"{reading.name} has the shape {given.shape}; expected {block.shape}")
         twice = [str(symbol) for symbol in block if symbol in found]
         if twice:
-            raise ValueError(f"motion: {twice[0]} is given twice; give it once")
-        found |= {s: expression(e, f"motion: {s}") for s, e in zip(block, given, strict=True)}
+            raise ValueError(f"{twice[0]} is given twice; give it once")
+        found |= {s: expression(e, f"{s}") for s, e in zip(block, given, strict=True)}
     typed = Typed(text, symbols, tuple(found.get(symbol, symbol) for symbol in symbols))
     typed.for_the_page()
     return typed

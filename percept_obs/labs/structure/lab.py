@@ -19,7 +19,7 @@ from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, gains
-from percept_obs.labs.shared.typed_motion import Typed, read_motion
+from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
@@ -117,7 +117,7 @@ class StructureLab(Lab):
                 f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps"
             )
         if settings["motion"].strip():
-            self.typed(settings["motion"]).refuse_poles(settings["duration"], lambda times: _velocities(settings, times))
+            typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda times: _velocities(settings, times))
         count = len(settings["unknown"])
         refused = self._part(f"forms/{count}").get("refused", {}) if 1 <= count <= LARGEST else {}
         for name in settings["observers"]:
@@ -128,7 +128,9 @@ class StructureLab(Lab):
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
         duration = settings["duration"]
-        turning = np.abs(motion_of(settings).known(np.linspace(0, duration, 50))[:, :3])
+        turning = np.abs([settings["w"]])
+        if settings["motion"].strip():
+            turning = np.abs(motion_of(settings).known(np.linspace(0, duration, 50))[:, :3])
         fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
         moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings):
