@@ -12,8 +12,9 @@ START = """
 import bundle from "/lab.js";
 window.refused = [];
 document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
-const bytes = Uint8Array.from(atob(STATE.texts), (c) => c.charCodeAt(0));
-const state = { ...STATE, texts: new DataView(bytes.buffer) };
+const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+const films = Object.entries(STATE.frames).map(([name, film]) => [name, { ...film, images: film.images.map(binary) }]);
+const state = { ...STATE, texts: binary(STATE.texts), frames: Object.fromEntries(films) };
 const listeners = {};
 window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
@@ -45,6 +46,8 @@ def opened(browser, lab, policy=None, answers=None, **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
     told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")}
     told["texts"] = base64.b64encode(lab.texts).decode()
+    films = getattr(lab, "frames", {}).items()
+    told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}
     files = {
         "/": ("text/html", PAGE),
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import traitlets
 
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
@@ -40,7 +41,7 @@ from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, 
 from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
 from percept_obs.observers import Observer
-from percept_obs.recording import Camera, Recording, Scenario
+from percept_obs.recording import Camera, Frames, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, plane
@@ -66,6 +67,8 @@ class ObserverLab(Lab):
     observers : list, optional
         Names, and observers of your own: functions of a form such as `percept_obs.observers.family.family` makes, or
         an `Observer` of the one form that it is made for.
+    frames : Frames, or mapping of names of recordings to Frames, optional
+        A film behind the track of the recording that it opens with, or of others.
     surface : str or ImagingSurface, optional
         The name of an imaging surface, or one of your own, or a function that gives it.
     **settings
@@ -75,6 +78,7 @@ class ObserverLab(Lab):
     """
 
     schema = SCHEMA
+    frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
 
     def __init__(
         self,
@@ -83,6 +87,7 @@ class ObserverLab(Lab):
         *,
         observers: Sequence[Any] | None = None,
         surface: Any = None,
+        frames: Frames | Mapping[str, Frames] | None = None,
         **settings: Any,
     ) -> None:
         scenes = {name: make() for name, make in SCENARIOS.items()}
@@ -130,6 +135,10 @@ class ObserverLab(Lab):
             judged=DISTANCE,
             remedy=REMEDY,
         )
+        films = {opening: frames} if isinstance(frames, Frames) else dict(frames or {})
+        if strange := [name for name in films if name not in tracks]:
+            raise ValueError(f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording")
+        self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
 
     def _own_opening(self) -> Settings:
         return {name: self.schema[name].opening for name in ("gains", "switches")}
@@ -273,6 +282,17 @@ def _seen_on(name: str, recording: Recording) -> ImagingSurface:
             f"the recording {name!r} was seen as {recording.view.name}; the lab shows one point on an imaging surface"
         )
     return with_numbers(recording.view)
+
+
+def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
+    """A film with times that count from the recording's first sample."""
+    times = np.asarray(film.time) - recording.time[0]
+    if times[-1] < 0 or times[0] > recording.elapsed[-1]:
+        raise ValueError(
+            f"the frames are from {times[0]:.4g} to {times[-1]:.4g} s after the recording's first sample, and none is of "
+            f"its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
+        )
+    return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
 
 
 def _shaped(given: Any, name: str) -> Settings:

@@ -3,6 +3,7 @@
 import { withoutRefused } from "../common/model/kernels.js";
 import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
+import { Frames } from "../common/page/frames.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
@@ -34,6 +35,7 @@ export class ObserverLab extends Live {
       towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
+    plane.frames = new Frames(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
