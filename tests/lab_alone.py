@@ -44,7 +44,10 @@ def stated_policy():
 
 def opened(browser, lab, policy=None, answers=None, **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
-    told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")}
+    told = {
+        name: getattr(lab, name)
+        for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")
+    }
     told["texts"] = base64.b64encode(lab.texts).decode()
     films = getattr(lab, "frames", {}).items()
     told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}

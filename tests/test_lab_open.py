@@ -1,4 +1,4 @@
-"""An observer, a surface and a motion that somebody brings are computed by the page as Python does, or refused first."""
+"""An observer, a surface, a motion that somebody brings are computed by the page as by Python, or refused first."""
 
 import json
 
@@ -18,10 +18,10 @@ from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
-from percept_obs.structure import ImpossibleChoice
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
+from percept_obs.structure import ImpossibleChoice
 from percept_obs.system.motion import TIME
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
@@ -179,7 +179,11 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
 @pytest.mark.parametrize(
     ("make", "settings", "reason"),
     [
-        (observer_lab, {"motion": "a12 = 0.3 foo(t)"}, r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^'),
+        (
+            observer_lab,
+            {"motion": "a12 = 0.3 foo(t)"},
+            r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
+        ),
         (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
         (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
         (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
@@ -200,7 +204,9 @@ def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings
 
 TIMES = np.array([0.0, 0.13, 0.4, 0.71])
 VARYING = {
-    "expressions of time": affine(sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]),
+    "expressions of time": affine(
+        sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]
+    ),
     "samples": affine(np.zeros((3, 3)), np.column_stack([np.cos(9 * TIMES), 0.2 - TIMES, 0.1 * TIMES]), TIMES),
     "a function": affine(lambda t: np.zeros((3, 3)), lambda t: [np.sin(t), 0.1, 0.1]),
 }
@@ -229,8 +235,14 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
     def rounded(form):
         whole = cubic(form)
         flow = (sp.floor(whole.equations.flow[0]), *whole.equations.flow[1:])
-        return Observer("rounded", form, Equations(whole.equations.state, flow, form.x1, form.parameters, (K, L)),
-                        whole.estimate, whole.gains, whole.start)
+        return Observer(
+            "rounded",
+            form,
+            Equations(whole.equations.state, flow, form.x1, form.parameters, (K, L)),
+            whole.estimate,
+            whole.gains,
+            whole.start,
+        )
 
     def nothing(form):
         return None
@@ -238,7 +250,10 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
     deep = ImagingSurface("deep", (X / Z, Y / Z, (X + Y) / Z), Z, (y1, y2, 1))
     rigid_form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
     for brought, reason in (
-        ({"observers": [rounded]}, "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed"),
+        (
+            {"observers": [rounded]},
+            "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed",
+        ),
         ({"observers": [nothing]}, "nothing gave NoneType for a form; it must give an Observer"),
         ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
         ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),

@@ -1,4 +1,4 @@
-"""A motion is typed in the page: Python reads it and the page follows; a bad one, or no Python, is told in a sentence."""
+"""A motion is typed in the page: Python reads it, the page follows; a bad one, or no Python, is told in a sentence."""
 
 import numpy as np
 import pytest

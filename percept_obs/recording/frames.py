@@ -71,7 +71,9 @@ class Frames:
                 f"there are {len(images)} frames and times of shape {time.shape}; give each frame a time, increasing"
             )
         if extent.shape != (4,) or extent[0] == extent[1] or extent[2] == extent[3]:
-            raise ValueError(f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge")
+            raise ValueError(
+                f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge"
+            )
         for name, value in (("images", images), ("time", time), ("extent", tuple(extent.tolist()))):
             object.__setattr__(self, name, value)
 
@@ -97,7 +99,9 @@ def _encoded(pixels: np.ndarray) -> bytes:
     rows[:, 1:] = pixels.reshape(height, -1)
     header = struct.pack(">IIBBBBB", width, height, 8, 0 if pixels.ndim == 2 else 2, 0, 0, 0)
     parts = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 6)), (b"IEND", b""))
-    chunks = (struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in parts)
+    chunks = (
+        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in parts
+    )
     return SIGNATURE + b"".join(chunks)
 
 

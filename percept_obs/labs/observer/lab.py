@@ -137,7 +137,9 @@ class ObserverLab(Lab):
         )
         films = {opening: frames} if isinstance(frames, Frames) else dict(frames or {})
         if strange := [name for name in films if name not in tracks]:
-            raise ValueError(f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording")
+            raise ValueError(
+                f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording"
+            )
         self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
 
     def _own_opening(self) -> Settings:
@@ -184,7 +186,9 @@ class ObserverLab(Lab):
         if settings["motion"].strip():
             scenario = settings["scenario"]
             if scenario in self._recordings or scenario in self._tables:
-                raise ValueError(f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario")
+                raise ValueError(
+                    f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario"
+                )
             typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda _: _numbers(settings))
 
     def _varies(self, settings: Settings) -> bool:
@@ -289,8 +293,8 @@ def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
     times = np.asarray(film.time) - recording.time[0]
     if times[-1] < 0 or times[0] > recording.elapsed[-1]:
         raise ValueError(
-            f"the frames are from {times[0]:.4g} to {times[-1]:.4g} s after the recording's first sample, and none is of "
-            f"its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
+            f"the frames are from {times[0]:.4g} to {times[-1]:.4g} s after the recording's first sample, and none is "
+            f"of its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
         )
     return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
 

@@ -20,7 +20,6 @@ from percept_obs.labs.observer.texts import (
     key_of,
     observer_on,
     surface_for_the_page,
-    system_on,
 )
 from percept_obs.labs.shared.brought import (
     Maker,
@@ -141,10 +140,14 @@ class Offer:
         model = part(LAB)
         surfaces = {n: surface_for_the_page(s, map(tuple, self.outputs(n))) for n, s in self.own_surfaces.items()}
         observers = {name: of_an_observer(make, self.examples(name)) for name, make in self.own_observers.items()}
-        yield "", model | {
-            "surfaces": model["surfaces"] | surfaces,
-            "observers": model["observers"] | observers,
-        }
+        yield (
+            "",
+            model
+            | {
+                "surfaces": model["surfaces"] | surfaces,
+                "observers": model["observers"] | observers,
+            },
+        )
         for surface in self.surfaces:
             for outputs in self.outputs(surface):
                 place = f"forms/{key_of(surface, outputs)}"
@@ -161,8 +164,7 @@ class Offer:
         told = form_for_the_page(form, wanted)
         for name, make in left.items():
             told["refused"][name] = make.refusal(form) or (
-                "on a surface of your own it is printed when the lab opens; open it with observers=[..., "
-                f"{name!r}]"
+                f"on a surface of your own it is printed when the lab opens; open it with observers=[..., {name!r}]"
             )
         return told
 
@@ -187,7 +189,9 @@ def offer_of(surfaces: Sequence[Any], own: Mapping[str, OwnObserver], asked: Seq
         surface = given() if callable(given) else given
         if not isinstance(surface, ImagingSurface):
             raise ValueError(f"the surface is {given!r}; bring an ImagingSurface, or a function that gives one")
-        known = [n for n, make in SURFACES.items() if (surface.image, surface.distance, surface.ray) == _formulas(make())]
+        known = [
+            n for n, make in SURFACES.items() if (surface.image, surface.distance, surface.ray) == _formulas(make())
+        ]
         same = [n for n, other in found.items() if other == with_numbers(surface)]
         if known or same:
             names.append((known + same)[0])
@@ -215,8 +219,8 @@ def with_numbers(surface: ImagingSurface) -> ImagingSurface:
     if missing:
         raise ValueError(f"the surface {surface.name!r} has no values for {', '.join(missing)}; give it values=")
     numbers = {symbol: sp.Float(value, 17) for symbol, value in surface.values.items()}
-    put = {n: tuple(e.xreplace(numbers) for e in getattr(surface, n)) for n in ("image", "ray")}
-    return replace(surface, distance=surface.distance.xreplace(numbers), values={}, **put)
+    image, ray = (tuple(e.xreplace(numbers) for e in part) for part in (surface.image, surface.ray))
+    return replace(surface, image=image, distance=surface.distance.xreplace(numbers), ray=ray, values={})
 
 
 PACKAGE, _ = offer_of((), {}, ())

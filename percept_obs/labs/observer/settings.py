@@ -1,7 +1,6 @@
 """What may be set in the observer lab."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from percept_obs.labs.shared.schema import (
     Settings,
     gains,
     noise,
+    offering,
     vector,
 )
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -105,7 +105,6 @@ SCHEMA = Schema(
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
 
 
-
 def schema_of(offer: Offer, scenarios_and_recordings: Mapping[str, Any]) -> Schema:
     """The settings of a lab that offers something of its own."""
     own = offer.own_switch
@@ -113,8 +112,8 @@ def schema_of(offer: Offer, scenarios_and_recordings: Mapping[str, Any]) -> Sche
         SCHEMA
         | {
             "scenario": Choice(STANDARD["scenario"], tuple(scenarios_and_recordings)),
-            "surface": replace(SCHEMA["surface"], names=tuple(offer.surfaces)),
-            "observers": replace(SCHEMA["observers"], names=tuple(offer.observers)),
+            "surface": offering(SCHEMA["surface"], offer.surfaces),
+            "observers": offering(SCHEMA["observers"], offer.observers),
             "gains": gains(_gains_of(offer), offer.with_every_gain),
             "switches": Group({n: Choice(way, offer.observers[n].switches) for n, way in own.items()}, partial=True),
         }

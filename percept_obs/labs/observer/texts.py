@@ -15,8 +15,8 @@ from percept_obs.labs.shared.markup import dotted, formula, markup
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
-from percept_obs.system import surfaces
 from percept_obs.recording.simulation import point_in_motion
+from percept_obs.system import surfaces
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
@@ -87,7 +87,9 @@ def model_for_the_page() -> Texts:
     return {
         "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
         "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
-        "surfaces": {name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()},
+        "surfaces": {
+            name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
+        },
         "observers": {name: of_an_observer(make, ways_of(name)) for name, make in BY_NAME.items()},
     }
 

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 from percept_obs.compile import NotCompilable
 from percept_obs.labs.shared.equations import IN_MATRICES, abstract_form, equations_in_scalars, equations_of
@@ -17,24 +17,6 @@ from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Family
 from percept_obs.system.forms import PartitionedSystem
-
-
-class Maker(Protocol):
-    """What makes observers of forms: a family of the package, or what somebody brought."""
-
-    @property
-    def switches(self) -> tuple[str, ...]:
-        """Ways in which it switches, its own first; none if it does not switch."""
-
-    @property
-    def constant_motion(self) -> bool:
-        """Whether its equations hold for a motion with constant coefficients only."""
-
-    def refusal(self, form: PartitionedSystem, /) -> str:
-        """Why there is no such observer of this form; empty if there is one."""
-
-    def __call__(self, form: PartitionedSystem, /, **options: Any) -> Observer:
-        """The observer of this form."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +54,8 @@ class OwnObserver:
             return (
                 f"it was made for {', '.join(self.form.measured)} measured on the "
                 f"{self.form.view.name if self.form.view else 'system'} with the parameters "
-                f"{', '.join(map(str, self.form.parameters))}; bring a function of a form instead, def {self.name}(form)"
+                f"{', '.join(map(str, self.form.parameters))}; bring a function of a form instead, "
+                f"def {self.name}(form)"
             )
         try:  # what somebody wrote can be asked in no other way
             made = self(form)
@@ -90,6 +73,10 @@ class OwnObserver:
     def for_the_page(self) -> Texts:
         """How copied code calls it, and what it must import or add."""
         return {"call": self.name if self.form is not None else f"{self.name}(form)", **origin(self.make, self.name)}
+
+
+Maker = Family | OwnObserver
+"""What makes observers of forms: a family of the package, or what somebody brought."""
 
 
 @lru_cache(maxsize=64)
@@ -118,7 +105,9 @@ def origin(value: object, name: str) -> Texts:
     return {"name": name, "module": module.__name__ if there and module else ""}
 
 
-def brought(values: Sequence[Any], ours: Mapping[str, Maker]) -> tuple[list[str], dict[str, OwnObserver]]:
+def brought(
+    values: Sequence[Any], ours: Mapping[str, Callable[..., Observer]]
+) -> tuple[list[str], dict[str, OwnObserver]]:
     """Observers that were asked for: the names of all, and those that are not the lab's, by their names.
 
     Parameters
@@ -164,7 +153,9 @@ def brought(values: Sequence[Any], ours: Mapping[str, Maker]) -> tuple[list[str]
 def of_an_observer(make: Maker, ways: Mapping[str, Observer]) -> Texts:
     """What is known about an observer, with its equations: for any w, phi and g, or else as they are in `ways`."""
     if make in IN_MATRICES or not make.refusal(abstract_form()):
-        return observer_for_the_page(ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways})
+        return observer_for_the_page(
+            ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways}
+        )
     return observer_for_the_page(ways, {way: equations_in_scalars(observer) for way, observer in ways.items()})
 
 

@@ -91,7 +91,9 @@ class Lab(anywidget.AnyWidget):
     summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
     asked = traitlets.Unicode(help="A motion that somebody typed, to be read.").tag(sync=True)
-    written = traitlets.Dict(help="Typed motions, each as a function for the page, or why it cannot be read.").tag(sync=True)
+    written = traitlets.Dict(help="Typed motions, each as a function for the page, or why it cannot be read.").tag(
+        sync=True
+    )
     error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
 
     def __init__(

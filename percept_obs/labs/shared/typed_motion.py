@@ -68,12 +68,12 @@ class Typed:
         if len(bad):
             row, column = bad[0]
             raise ValueError(
-                f"motion: {self.symbols[column]} is {found[row, column]:.4g} at {times[row]:.4g} s; it must be a number "
-                "up to 1e6 at all times of the run"
+                f"motion: {self.symbols[column]} is {found[row, column]:.4g} at {times[row]:.4g} s; it must be a "
+                "number up to 1e6 at all times of the run"
             )
 
     def for_the_page(self) -> Texts:
-        """A function of (t, numbers), what of them it makes 0, what it changes in Python; NotCompilable if there is none."""
+        """A function of (t, numbers), what of these it makes 0, and what it changes in Python."""
         source = function_source((TIME, *self.symbols), self.expressions)
         zero = [name for name, entry in self.changed.items() if entry == 0]
         python = {name: python_text(entry) for name, entry in self.changed.items()}

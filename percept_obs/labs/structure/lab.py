@@ -18,7 +18,7 @@ from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
-from percept_obs.labs.shared.schema import Schema, Settings, gains
+from percept_obs.labs.shared.schema import Schema, Settings, gains, offering
 from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
@@ -75,7 +75,7 @@ class StructureLab(Lab):
         printed = self._part("")["observers"]
         standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
         standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
-        named = replace(SCHEMA["observers"], names=tuple(printed))
+        named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of)})
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(
@@ -117,7 +117,9 @@ class StructureLab(Lab):
                 f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps"
             )
         if settings["motion"].strip():
-            typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda times: _velocities(settings, times))
+            typed_in(settings, "motion", BLOCKS).refuse_poles(
+                settings["duration"], lambda times: _velocities(settings, times)
+            )
         count = len(settings["unknown"])
         refused = self._part(f"forms/{count}").get("refused", {}) if 1 <= count <= LARGEST else {}
         for name in settings["observers"]:

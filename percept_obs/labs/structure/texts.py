@@ -128,7 +128,12 @@ def case_of(number: int) -> dict[str, Any]:
     """Settings in which a corollary holds: the paper's values where it states some, and velocities that swing."""
     corollary = COROLLARIES[number - 1]
     stated = corollary.choice()
-    fixed: dict[str, Any] = {"motion": "", "unknown": list(stated.unknown), "earlier": "d_s" in stated.earlier, "w": [0.0] * 3}
+    fixed: dict[str, Any] = {
+        "motion": "",
+        "unknown": list(stated.unknown),
+        "earlier": "d_s" in stated.earlier,
+        "w": [0.0] * 3,
+    }
     if number in (3, 5):
         swings = [[0.3, 0.3, -0.1], [0.2, 0.2, 0.1 if number == 5 else 0.0]]
         return fixed | {
