@@ -79,7 +79,7 @@ def python_runs(settings):
     """Python's runs of settings, chattering or not."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StepTooLong)
-        return runs(settings, {})
+        return runs(settings)
 
 
 def as_array(numbers, width):

@@ -73,11 +73,15 @@ class Typed:
             )
 
     def for_the_page(self) -> Texts:
-        """A function of (t, numbers), what of these it makes 0, and what it changes in Python."""
-        source = function_source((TIME, *self.symbols), self.expressions)
+        """A function of (t, numbers) of those it changes, their places, what it uses and makes 0, and what it is in Python."""
+        names = [symbol.name for symbol in self.symbols]
+        source = function_source((TIME, *self.symbols), tuple(self.changed.values()))
         zero = [name for name, entry in self.changed.items() if entry == 0]
         python = {name: python_text(entry) for name, entry in self.changed.items()}
-        return {"source": source, "zero": zero, "python": python}
+        columns = [names.index(name) for name in python]
+        used = set().union(*(entry.free_symbols for entry in self.changed.values()))
+        uses = [place for place, symbol in enumerate(self.symbols) if symbol in used]
+        return {"source": source, "columns": columns, "uses": uses, "zero": zero, "python": python}
 
 
 def read_motion(text: str, blocks: Blocks) -> Typed:

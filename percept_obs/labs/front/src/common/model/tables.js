@@ -137,17 +137,13 @@ export function arriving(columns, index, count, room = fresh) {
 
 /** Numbers known at the instants of a grid's steps, or the one row that is constant. */
 export function known(motion, shape, grid) {
+  if (motion.along) return { rows: motion.along(grid, shape), width: motion.count + shape.length, varying: true };
   return knownAt(motion, shape, motion.times?.length === 1 ? grid : instants(grid));
 }
 
 /** Rows of known numbers at some times. */
 export function knownAt(motion, shape, places) {
-  if (motion.over) {
-    const width = motion.count + shape.length;
-    const rows = motion.over(places, width);
-    shape.forEach((value, p) => places.forEach((_, k) => (rows[k * width + motion.count + p] = value)));
-    return { rows, width, varying: true };
-  }
+  if (motion.over) return { rows: motion.over(places, shape), width: motion.count + shape.length, varying: true };
   const width = motion.rows[0].length + shape.length;
   if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
   const rows = new Float64Array(places.length * width);

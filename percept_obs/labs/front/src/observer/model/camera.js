@@ -1,12 +1,14 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
-import { instants, knownAt } from "../../common/model/tables.js";
-import { isTyped, typedRows } from "../../common/model/typed.js";
+import { known } from "../../common/model/tables.js";
+import { isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
 export class Camera extends PointCamera {
   constructor(model, memory) {
     super(model, memory, 2, "move its start X, Y, Z in front of it");
+    /** Rows of typed motions by the grids that they are along. */
+    this.along = new WeakMap();
   }
 
   record(settings, functions) {
@@ -35,7 +37,17 @@ export class Camera extends PointCamera {
     if (motion.times?.length === 1) return { start, known: { rows: motion.rows[0], varying: false }, shape };
     const { A, b, motion: text, scenario } = settings;
     const place = [A, b, text, scenario, lines.grid.length, lines.grid.at(-1)];
-    return { start, known: this.memory.once("path", place, () => knownAt(motion, [], instants(lines.grid))), shape };
+    return { start, known: this.memory.once("path", place, () => known(motion, [], lines.grid)), shape };
+  }
+
+  /** A motion that was typed: numbers at any times, and along the steps of a grid. */
+  typedMotion({ A, b }, { typed }) {
+    const numbers = [...A.flat(), ...b];
+    return {
+      count: numbers.length,
+      over: (times, shape) => typedRows(typed, [...numbers, ...shape], times),
+      along: (grid, shape) => typedAlong(this.along, typed, [...numbers, ...shape], grid),
+    };
   }
 
   sampled({ truth }, { noise, dropout }, { shape, loss }) {
@@ -56,7 +68,7 @@ export class Camera extends PointCamera {
     const table = recorded?.motion ?? this.sampledMotion(settings.scenario);
     const shape = recorded ? [] : shapeOf(settings);
     if (table) return { motion: this.memory.once("table", [settings.scenario], () => withColumns(table)), shape };
-    return { motion: isTyped(settings) ? typedMotion(settings, functions) : constantMotion(settings), shape };
+    return { motion: isTyped(settings) ? this.typedMotion(settings, functions) : constantMotion(settings), shape };
   }
 }
 
@@ -69,11 +81,6 @@ export function varies(settings, { recordings, scenarios }) {
   return settings.scenario in recordings || Boolean(scenarios[settings.scenario]?.track) || isTyped(settings);
 }
 
-/** A motion that was typed: numbers at any times. */
-function typedMotion({ A, b }, { typed }) {
-  const numbers = [...A.flat(), ...b];
-  return { count: numbers.length, over: (times, width) => typedRows(typed, numbers, times, width) };
-}
 
 export function shapeOf(settings) {
   return settings.surface === "plane" ? settings.normal : [];

@@ -53,7 +53,8 @@ export class StructureCamera extends PointCamera {
       if (!typed) continue;
       given[0] = times[k];
       given.set(rows.subarray(9 * k, 9 * k + 9), 1);
-      rows.set(typed(given, moved), 9 * k);
+      typed(given, moved);
+      typed.columns.forEach((column, c) => (rows[9 * k + column] = moved[c]));
     }
     return { rows, varying };
   }
