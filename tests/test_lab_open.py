@@ -22,7 +22,8 @@ from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
 from percept_obs.structure import ImpossibleChoice
-from percept_obs.system.motion import TIME
+from percept_obs.points import PointsForm
+from percept_obs.system.motion import TIME, linear
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 
@@ -274,3 +275,34 @@ def test_an_observer_of_one_form_opens_the_lab_there_and_a_partitioned_system_wi
     lab = observer_lab(observers=[extended_kalman(system.partition("y2"))], duration=1.0)
     assert (lab.settings["surface"], lab.settings["outputs"]) == ("bent", ["y2"])
     assert lab.settings["observers"] == ["extended_kalman"] or lab.settings["observers"] == ["my_extended_kalman"]
+
+
+def own_form(coupled=False):
+    """Two points that turn around a vertical axis and drift, as nothing of the package does."""
+    turn = sp.Matrix([[0, 0, sp.cos(TIME) / 3], [0, 0, 0], [-sp.cos(TIME) / 3, 0, 0]])
+    A = sp.diag(turn, turn)
+    A[0, 3] = int(coupled)
+    v = [0.1, 0.2 * sp.sin(TIME), 0.3, 0.1, 0.2 * sp.sin(TIME), 0.3]
+    return PointsForm(linear(A, v), np.eye(6).reshape(2, 3, 6))
+
+
+@pytest.mark.node
+def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
+    form = own_form()
+    lab = points_lab(form, **OF_POINTS)
+    assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
+    tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings, form)
+        assert_same_points(answer, run)
+        namespace = {"form": form}
+        exec(answer["code"], namespace)
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    for brought, settings, reason in (
+        (own_form(coupled=True), {}, "blocks of 3 x 3 on its diagonal only"),
+        (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
+        (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
+        (form, {"motion": "w1 = t"}, "it must be empty with your own form"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            points_lab(brought, **settings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -17,13 +18,15 @@ from percept_obs.labs.points.texts import (
     STATES,
     coefficients_for_the_page,
     form_of,
+    own_state_for_the_page,
     state_of,
     typed_velocities,
 )
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
-from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.schema import Schema, Settings, offering
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
@@ -79,6 +82,8 @@ class PointsLab(Lab):
 
     Parameters
     ----------
+    form : PointsForm, optional
+        A form of your own that can be chosen as well, with a motion in numbers or expressions of time.
     **settings
         Those to open with, such as ``state="independent"``:
 
@@ -87,12 +92,21 @@ class PointsLab(Lab):
 
     schema = SCHEMA
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
+        self._form = form
+        printed: dict[str, Texts] = {}
+        opening = SCHEMA.opening
+        if form is not None:
+            model = part("points_lab")
+            printed = {"": {**model, "states": {**model["states"], "own": own_state_for_the_page(form)}}}
+            self.schema = Schema({**SCHEMA, "state": offering(SCHEMA["state"], (*STATES, "own"))})
+            opening |= {"state": "own", "points": _spread(form.points), "hidden": [None] * form.points}
         super().__init__(
             "points_lab",
             settings,
+            opening,
             SCHEMA.opening,
-            SCHEMA.opening,
+            texts=with_texts("points_lab", printed),
             pictures=PICTURES,
             error=ERROR,
             **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},
@@ -103,7 +117,7 @@ class PointsLab(Lab):
 
     def run(self) -> PointsRun:
         """The run of the same settings in Python."""
-        return run_of(self.settings)
+        return run_of(self.settings, self._form)
 
     def typed(self, text: str) -> Typed:
         """The motion, or the P, that a text describes; a ValueError if it cannot be read."""
@@ -113,7 +127,7 @@ class PointsLab(Lab):
         """The coefficients of each state with a typed motion."""
         typed = self.typed(text)
         moved = typed_velocities(typed, velocities())
-        states = {state: coefficients_for_the_page(state, moved) for state in STATES}
+        states = {state: coefficients_for_the_page(state, moved) for state in STATES if set(typed.changed) != {"P"}}
         functions = {str(f.func) for entry in typed.changed.values() for f in entry.atoms(sp.Function)}
         told = {name: sp.sstr(entry) for name, entry in typed.changed.items()}
         return {**typed.for_the_page(), "states": states, "sympy": told, "functions": sorted(functions)}
@@ -130,6 +144,11 @@ class PointsLab(Lab):
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")
+        if self._form is not None and settings["state"] == "own":
+            if points != self._form.points:
+                raise ValueError(f"there are {points} points; it must be {self._form.points}, as in your own form")
+            if settings["motion"].strip():
+                raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
         _refuse_typed(settings)
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
@@ -139,7 +158,7 @@ class PointsLab(Lab):
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
         settings = self.settings
         steps = settings["duration"] / min(settings["period"], settings["step"])
-        A, _ = form_of_settings(settings).coefficients(np.linspace(0, settings["duration"], 50))
+        A, _ = form_of_settings(settings, self._form).coefficients(np.linspace(0, settings["duration"], 50))
         paths = 2 if settings["hold"] == "exact" else 1
         moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()))
         each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
@@ -180,17 +199,25 @@ def _manoeuvre(settings: Settings) -> Manoeuvre:
     return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
 
 
-def form_of_settings(settings: Settings) -> PointsForm:
+def _spread(points: int) -> list[list[float]]:
+    """So many places in front of the camera: those that the lab opens with, and more around them."""
+    more = [[0.5 * math.cos(2.4 * k), 1 + 0.4 * math.sin(2.4 * k), 2.5 + 0.1 * k] for k in range(3, points)]
+    return [*SCHEMA.opening["points"], *more][:points]
+
+
+def form_of_settings(settings: Settings, own: PointsForm | None = None) -> PointsForm:
     """The form of the settings' points."""
+    if own is not None and settings["state"] == "own":
+        return own
     typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnseenDirection)  # the lab says so in its own place
         return form_of(settings["state"], len(settings["points"]), _manoeuvre(settings), typed)
 
 
-def recording_of(settings: Settings) -> Recording:
+def recording_of(settings: Settings, own: PointsForm | None = None) -> Recording:
     """What the camera records of the settings' points."""
-    form = form_of_settings(settings)
+    form = form_of_settings(settings, own)
     state = state_of(form, settings["points"]).tolist()
     scenario = PointsScenario("from the lab", form, state, settings["duration"])
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
@@ -202,9 +229,9 @@ def recording_of(settings: Settings) -> Recording:
     return recording
 
 
-def run_of(settings: Settings) -> PointsRun:
+def run_of(settings: Settings, own: PointsForm | None = None) -> PointsRun:
     """The run that lab settings stand for."""
-    recording = recording_of(settings)
+    recording = recording_of(settings, own)
     form = points_form(recording)
     assert recording.truth is not None
     begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None

@@ -118,12 +118,46 @@ def _state_for_the_page(name: str) -> Texts:
     }
 
 
+def own_state_for_the_page(form: PointsForm) -> Texts:
+    """The one layout of somebody's own form, and its coefficients.
+
+    Raises
+    ------
+    ValueError
+        If the page cannot move it: its motion is not known, is sampled, or couples vectors of three states.
+    """
+    motion, n = form.motion, form.states
+    rows, columns = form.layout.rows, form.layout.columns
+    if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():
+        raise ValueError(
+            f"the form has {n} states and {form.points} points; the lab moves vectors of three states, each by itself, "
+            f"of at most {MOST_POINTS} points: order the states so that A has blocks of 3 x 3 on its diagonal only"
+        )
+    expressions = tuple(expression.xreplace(motion.values) for expression in form.layout.expressions)
+    left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - {TIME}))
+    if left:
+        raise ValueError(
+            f"the form's motion has no expression in time for {', '.join(left)}; give it numbers, or expressions of TIME"
+        )
+    if form.surface != SURFACE:
+        raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")
+    layout = {**_arrays(form, n, form.points), "names": list(form.names)}
+    return {
+        "coefficients": function_source((TIME, *SHARES), expressions),
+        "width": len(expressions),
+        "layouts": [*[None] * (form.points - 1), layout],
+    }
+
+
 def _layout(form: PointsForm, extra: int, points: int) -> Texts:
     """Where a state's coefficients stand when it has so many of the points."""
-    states = np.arange(3 * points + extra)
-    part = arrays(form, states, np.arange(points))
-    numbers = {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
-    return {**numbers, "names": [form.names[k] for k in states]}
+    states = 3 * points + extra
+    return {**_arrays(form, states, points), "names": list(form.names[:states])}
+
+
+def _arrays(form: PointsForm, states: int, points: int) -> Texts:
+    part = arrays(form, np.arange(states), np.arange(points))
+    return {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
 
 
 def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:

@@ -10,9 +10,9 @@ let count = 0;
  * A field whose text takes effect once Python has read it; what it says of a text that it cannot read stands below.
  *
  * @param {any} lab
- * @param {{name: string, label: string, hint: string, most: number, get: () => string, set: (text: string) => void}} parts
+ * @param {{name: string, label: string, hint: string, most: number, prefix?: string, get: () => string, set: (text: string) => void}} parts
  */
-export function typedField(lab, { name, label, hint, most, get, set }) {
+export function typedField(lab, { name, label, hint, most, prefix = "", get, set }) {
   const { widget, model } = lab;
   const id = `percept-typed-${++count}`;
   const said = element("p", { class: "refusal", id: `${id}-said`, role: "status", hidden: true });
@@ -44,7 +44,8 @@ export function typedField(lab, { name, label, hint, most, get, set }) {
   };
 
   const take = () => {
-    const text = box.value.trim();
+    const typed = box.value.trim();
+    const text = typed && !typed.includes("=") ? prefix + typed : typed;
     if (text === get()) return tell("", false);
     if (!text) {
       tell("", false);

@@ -2,6 +2,7 @@
 
 import { imports, list, NOISES } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
+import { OWN } from "./kernels.js";
 
 const WEIGHTS = {
   constant: ({ size }) => [size, []],
@@ -13,15 +14,16 @@ const WEIGHTS = {
 
 export function pythonOf({ settings, truth, n, points, names: states }, model) {
   const { error } = model;
+  const own = settings.state === OWN;
   const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
   const [P, weights] = WEIGHTS[settings.weight](settings, model);
   const helpers = new Set(weights);
   const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
   const start = rounded(truth.subarray(0, n));
   const lines = [
-    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`,
+    ...(own ? [] : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
     ...(settings.weight === "typed" ? [`P = ${settings.size}`] : []),
-    ...movedAs(settings, model),
+    ...(own ? [] : movedAs(settings, model)),
     ...formOf(settings, points, names, helpers),
     `# the state is ${states.join(", ")}`,
     `scenario = PointsScenario("from the lab", form, ${list(start)}, ${duration})`,
@@ -42,7 +44,7 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
   const wanted = {
     percept_obs: names,
     "percept_obs.points": helpers,
-    "percept_obs.points.manoeuvre": ["Manoeuvre"],
+    "percept_obs.points.manoeuvre": own ? [] : ["Manoeuvre"],
     ...(isTyped(settings) && { "percept_obs.system.motion": ["TIME as t"], sympy: model.written[settings.motion].functions }),
   };
   const math = String(P).includes("math.") ? "import math\n\n" : "";
@@ -66,6 +68,7 @@ function movedAs(settings, { written }) {
 }
 
 function formOf({ state }, points, names, helpers) {
+  if (state === OWN) return ["# form = the PointsForm that you gave to the lab"];
   if (state === "independent") {
     names.add("rigid");
     helpers.add("independent_points");

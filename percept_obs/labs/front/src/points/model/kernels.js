@@ -4,6 +4,9 @@
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { typedModule } from "../../common/model/typed.js";
 
+/** The name of a state that somebody brought. */
+export const OWN = "own";
+
 /** All functions of a model; none follow after it has been opened. */
 export class PointsKernels extends PrintedKernels {
   needed({ state, motion, weight, P }) {
