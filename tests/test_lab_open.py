@@ -81,6 +81,7 @@ def lab():
     return observer_lab(observers=[cubic, watched, "extended_kalman"], surface=slanted, motion=MOTION, **CALM, **SHORT)
 
 
+@pytest.mark.slow
 def test_what_is_brought_opens_the_lab_with_its_gains_and_its_texts(lab):
     assert lab.settings["observers"] == ["cubic", "watched", "extended_kalman"]
     assert lab.settings["surface"] == "slanted"
@@ -110,6 +111,7 @@ def tasks_of(lab):
     return [lab.check({**lab.settings, **change}) for change in changes]
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(lab, node):
     tasks = tasks_of(lab)
@@ -134,6 +136,7 @@ def structure():
     return structure_lab(observers=["ideal", cubic], duration=0.3, period=0.004, step=0.002, motion=SPUN)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, node):
     changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
@@ -158,6 +161,7 @@ SWUNG = "w = [0, 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
 OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     lab = points_lab()
@@ -268,6 +272,7 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
             observer_lab(**brought)
 
 
+@pytest.mark.slow
 def test_an_observer_of_one_form_opens_the_lab_there_and_a_partitioned_system_will_do():
     bent = ImagingSurface("bent", (X / Z, Y / Z + (X / Z) ** 2), Z, (y1, y2 - y1**2, 1))
     system = PerspectiveSystem(affine(), bent)
