@@ -5,24 +5,27 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
+from hostile_messages import TYPED
 from lab_settings import as_array, run_in_node, whole_model
 from points_settings import run_in_node as points_in_node
 from structure_settings import structure_in_node
 from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_run as assert_same_points
 
-from percept_obs import Camera, Scenario, affine, extended_kalman, ibo, record, rigid
+from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.points.lab import run_of as run_of_points
+from percept_obs.labs.shared.lab import MOST_WRITTEN
+from percept_obs.labs.shared.typed_motion import MOST
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
-from percept_obs.structure import ImpossibleChoice
 from percept_obs.points import PointsForm
+from percept_obs.structure import ImpossibleChoice
 from percept_obs.system.motion import TIME, linear
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
@@ -311,3 +314,34 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     ):
         with pytest.raises(ValueError, match=reason):
             points_lab(brought, **settings)
+
+
+@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
+def test_whatever_the_page_asks_to_be_read_is_answered_and_never_run(make, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lab = make()
+    before = lab.settings
+    for text in (*TYPED, *(f"b1 = {k}" for k in range(2 * MOST_WRITTEN)), "y" * (MOST + 1)):
+        lab.set_state({"asked": text})
+        if text.strip() and len(text) <= MOST:
+            answer = lab.written[text]
+            assert set(answer) == {"refusal", "position"} or "source" in answer
+    assert len(lab.written) <= MOST_WRITTEN
+    assert lab.settings == before
+    assert json.dumps(lab.written, allow_nan=False)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_a_recording_on_a_surface_of_ones_own_is_followed_alike(node):
+    motion = affine(np.zeros((3, 3)), lambda t: [np.sin(t), 0.1, 0.1])
+    scenario = Scenario("walk", motion, (0.5, 0.2, 5.0), 1.0, slanted())
+    recording = record(scenario, camera=Camera(0.04, Uniform(0.001)), seed=3)
+    lab = observer_lab(recording, observers=[cubic, "identifier_based"])
+    assert lab.settings["surface"] == "slanted"
+    (answer,) = run_in_node(node, lab, [lab.settings])
+    assert "# recording = the one that you gave to the lab" in answer["code"]
+    for name, run in lab.run().items():
+        assert_same_recording(answer, recording)
+        assert_same_run(answer["runs"][name], run, 1e-9)

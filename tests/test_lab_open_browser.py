@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SETTINGS = "() => [...window.perceptObsLabs][0].settings"
 FIELD = control("motion")
-SAID = f".typed:has({FIELD}) .refusal"
+SAID = f".expression:has({FIELD}) .refusal"
 
 
 def following(lab):

@@ -20,7 +20,7 @@ export function typedField(lab, { name, label, hint, most, prefix = "", get, set
     ...{ type: "text", id, maxlength: most, placeholder: hint, autocomplete: "off", spellcheck: "false" },
     ...{ "data-control": name, "aria-describedby": `${id}-said` },
   });
-  const row = element("div", { class: "control block typed" }, element("label", { for: id }, label), box, said);
+  const row = element("div", { class: "expression" }, element("label", { for: id }, label), box, said);
   let waiting = /** @type {string | null} */ (null);
   let timer = /** @type {any} */ (0);
 
