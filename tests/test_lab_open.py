@@ -307,7 +307,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
         exec(answer["code"], namespace)
         np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
     for brought, settings, reason in (
-        (own_form(coupled=True), {}, "blocks of 3 x 3 on its diagonal only"),
+        (own_form(coupled=True), {}, "only blocks of 3 x 3 on its diagonal"),
         (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
         (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
         (form, {"motion": "w1 = t"}, "it must be empty with your own form"),

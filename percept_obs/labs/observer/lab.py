@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
+from percept_obs.border import TooMuchWork
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
 from percept_obs.labs.observer.settings import (
@@ -37,9 +38,17 @@ from percept_obs.labs.observer.tracks import (
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.brought import brought
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
+from percept_obs.labs.shared.sampling import (
+    as_far_as_seen,
+    exact_path,
+    looks,
+    swinging_at,
+    too_fast,
+    too_short,
+    within_reach,
+)
 from percept_obs.labs.shared.schema import Choice, Settings
-from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
@@ -213,7 +222,7 @@ class ObserverLab(Lab):
             return {"sentences": [refusal]}
         try:
             recording = self.recorded(settings)
-        except BehindCamera as error:
+        except (BehindCamera, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         talked_of = {
             name: len(chosen[0].equations.state)
@@ -233,12 +242,13 @@ class ObserverLab(Lab):
 
     def _work(self, settings: Settings) -> float:
         """What it takes to move the point, as `MOST_WORK` counts."""
-        duration, A = settings["duration"], np.array([settings["A"]])
+        duration, rows, looked = settings["duration"], np.array([_numbers(settings)]), 0.0
         if self._varies(settings):
-            A = self._motion_of(settings).known(np.linspace(0, duration, 50))[:, :9].reshape(-1, 3, 3)
-        fastest = float(np.abs(A).sum(axis=2).max())
+            known, times = self._motion_of(settings).known, np.linspace(0, duration, INSTANTS)
+            rows, looked = known(times), swinging_at(known, times)
+        fastest = float(np.abs(rows[:, :9].reshape(-1, 3, 3)).sum(axis=2).max())
         moved = exact_path(duration, settings["period"], fastest)
-        return moved + LOOK_WORK * looks(duration, fastest) if self._varies(settings) else moved
+        return moved + (LOOK_WORK * looks(duration, fastest, looked) if self._varies(settings) else 0.0)
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs that settings stand for, by the observers' names."""

@@ -25,7 +25,7 @@ from percept_obs.labs.points.texts import (
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
-from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
+from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, offering
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observability.gramian import UNSEEN
@@ -158,9 +158,12 @@ class PointsLab(Lab):
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
         settings = self.settings
         steps = settings["duration"] / min(settings["period"], settings["step"])
-        A, _ = form_of_settings(settings, self._form).coefficients(np.linspace(0, settings["duration"], 50))
+        form = form_of_settings(settings, self._form)
+        times = np.linspace(0, settings["duration"], 50)
+        A, _ = form.coefficients(times)
         paths = 2 if settings["hold"] == "exact" else 1
-        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()))
+        swings = swinging_at(form.numbers, times) if settings["motion"].strip() else 0.0
+        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()), swings)
         each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
         _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
         beyond = [refusal] if (refusal := too_fast(moved)) else beyond

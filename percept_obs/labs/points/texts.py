@@ -131,13 +131,13 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
     if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():
         raise ValueError(
             f"the form has {n} states and {form.points} points; the lab moves vectors of three states, each by itself, "
-            f"of at most {MOST_POINTS} points: order the states so that A has blocks of 3 x 3 on its diagonal only"
+            f"of at most {MOST_POINTS} points: order the states so that A has only blocks of 3 x 3 on its diagonal"
         )
     expressions = tuple(expression.xreplace(motion.values) for expression in form.layout.expressions)
     left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - {TIME}))
     if left:
         raise ValueError(
-            f"the form's motion has no expression in time for {', '.join(left)}; give it numbers, or expressions of TIME"
+            f"the form's motion has no expression in time for {', '.join(left)}; give numbers, or expressions of TIME"
         )
     if form.surface != SURFACE:
         raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")

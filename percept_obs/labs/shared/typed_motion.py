@@ -73,7 +73,7 @@ class Typed:
             )
 
     def for_the_page(self) -> Texts:
-        """A function of (t, numbers) of those it changes, their places, what it uses and makes 0, and what it is in Python."""
+        """A function of (t, numbers) of what it changes, its places, what it uses and makes 0, the same in Python."""
         names = [symbol.name for symbol in self.symbols]
         source = function_source((TIME, *self.symbols), tuple(self.changed.values()))
         zero = [name for name, entry in self.changed.items() if entry == 0]

@@ -12,14 +12,23 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.border import TooMuchWork
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
+from percept_obs.labs.shared.sampling import (
+    as_far_as_seen,
+    exact_path,
+    looks,
+    swinging_at,
+    too_fast,
+    too_short,
+    within_reach,
+)
 from percept_obs.labs.shared.schema import Schema, Settings, gains, offering
-from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
@@ -130,13 +139,15 @@ class StructureLab(Lab):
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
         duration = settings["duration"]
-        turning = np.abs([settings["w"]])
+        turning, swings = np.abs([settings["w"]]), settings["rate"]
         if settings["motion"].strip():
-            turning = np.abs(motion_of(settings).known(np.linspace(0, duration, 50))[:, :3])
+            times = np.linspace(0, duration, INSTANTS)
+            known = motion_of(settings).known
+            turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
         fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
         moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings):
-            moved += LOOK_WORK * looks(duration, fastest, settings["rate"])
+            moved += LOOK_WORK * looks(duration, fastest, swings)
         if refusal := too_short(duration, settings["period"]) or too_fast(moved):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]
@@ -146,7 +157,7 @@ class StructureLab(Lab):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
                 found = runs({**settings, "observers": told}, self._own) if told else {}
-        except (BehindCamera, ImpossibleChoice) as error:
+        except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
         return {"sentences": [*lines, *beyond]}
