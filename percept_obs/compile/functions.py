@@ -94,7 +94,7 @@ def python_text(expression: sp.Expr) -> str:
     Examples
     --------
     >>> python_text(sp.sin(2 * sp.Symbol("t")) / 5)
-    '(1.0/5.0)*math.sin(2.0*t)'
+    '((1.0/5.0))*math.sin(2.0*t)'
     """
     refuse_what_differs([expression])
     return Text("python").print(expression)
