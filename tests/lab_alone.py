@@ -12,8 +12,9 @@ START = """
 import bundle from "/lab.js";
 window.refused = [];
 document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
-const bytes = Uint8Array.from(atob(STATE.texts), (c) => c.charCodeAt(0));
-const state = { ...STATE, texts: new DataView(bytes.buffer) };
+const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+const films = Object.entries(STATE.frames).map(([name, film]) => [name, { ...film, images: film.images.map(binary) }]);
+const state = { ...STATE, texts: binary(STATE.texts), frames: Object.fromEntries(films) };
 const listeners = {};
 window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
@@ -23,7 +24,7 @@ window.heard = (found) => {
 const model = {
     get: (name) => state[name],
     set: (name, value) => (state[name] = value),
-    save_changes: () => window.toPython?.({ settings: state.settings, summary: state.summary })
+    save_changes: () => window.toPython?.({ asked: state.asked, settings: state.settings, summary: state.summary })
         .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
     on: (event, listener) => (listeners[event] = listener),
     off() {},
@@ -43,8 +44,13 @@ def stated_policy():
 
 def opened(browser, lab, policy=None, answers=None, **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
-    told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
+    told = {
+        name: getattr(lab, name)
+        for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")
+    }
     told["texts"] = base64.b64encode(lab.texts).decode()
+    films = getattr(lab, "frames", {}).items()
+    told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}
     files = {
         "/": ("text/html", PAGE),
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),

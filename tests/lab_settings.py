@@ -63,7 +63,7 @@ def whole_model(lab):
     for place, text in unpacked(lab.texts).items():
         group, _, name = place.partition("/")
         model.update({group: model.get(group, {}) | {name: json.loads(text)}} if name else json.loads(text))
-    return {**model, **json.loads(json.dumps(lab.model, allow_nan=False))}
+    return {**model, **json.loads(json.dumps({**lab.model, "written": lab.written}, allow_nan=False))}
 
 
 def run_in_node(node, lab, tasks):
@@ -79,7 +79,7 @@ def python_runs(settings):
     """Python's runs of settings, chattering or not."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StepTooLong)
-        return runs(settings, {})
+        return runs(settings)
 
 
 def as_array(numbers, width):

@@ -83,10 +83,10 @@ def test_sizes_that_differ_by_less_than_a_millionth_are_equal():
 
 
 def test_two_deviations_are_claimed_where_two_are_said():
-    chosen = ("pinhole", ("y1", "y2"), "extended_kalman", "")
+    observer = observer_of("pinhole", ("y1", "y2"), "extended_kalman")
     recording = record(scenarios.ma2005_eq35(), 1.0, Camera(0.05, Gaussian(0.01)))
-    run = track(recording, observer_of(*chosen), language="python")
-    claim, _ = run_in_words(chosen, run, 1.0)
+    run = track(recording, observer, language="python")
+    claim, _ = run_in_words((observer, ""), run, 1.0)
     assert f"{2 * math.sqrt(run.covariance[-1, -1, -1]):.2g} (2σ)" in claim
 
 

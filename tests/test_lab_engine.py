@@ -101,7 +101,7 @@ def test_random_settings_agree_as_far_as_numbers_decide_them(lab, node):
             seen += 1
         else:
             with pytest.raises(BehindCamera):
-                runs(settings, {})
+                runs(settings)
     assert seen > 10
 
 

@@ -63,7 +63,7 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder
             assert_follows_python(shown["settings"], told)
         else:
             with pytest.raises(BehindCamera):
-                runs(shown["settings"], {})
+                runs(shown["settings"])
     assert unused == set()
     fresh.click(control("reset"))
     rested(fresh, 60)

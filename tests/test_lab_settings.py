@@ -159,12 +159,6 @@ def test_an_own_scenario_and_a_recording_open_the_lab():
         observer_lab(alone, hold="exact")
 
 
-def test_a_motion_that_varies_needs_a_recording():
-    varying = affine(lambda t: np.zeros((3, 3)), lambda t: [np.sin(t), 0, 0])
-    with pytest.raises(ValueError, match="varies over time"):
-        observer_lab(Scenario("swing", varying, (0, 0, 5), 10, pinhole()))
-
-
 def test_a_real_track_gives_the_run_of_its_rigid_motion():
     recording = load_utias(utias_folder())[2]
     run = observer_lab(recording).run()["identifier_based"]

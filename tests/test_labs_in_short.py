@@ -33,7 +33,7 @@ def test_of_a_point(node):
     lab = observer_lab()
     tasks = [lab.check({**SHORT, **task}) for task in OF_A_POINT]
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        for name, run in runs(settings, {}).items():
+        for name, run in runs(settings).items():
             assert_same_recording(answer, run.recording)
             assert_same_run(answer["runs"][name], run, 1e-9)
             assert answer["runs"][name]["divergedAt"] == run.diverged_at

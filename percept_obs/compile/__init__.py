@@ -1,7 +1,7 @@
 """From sympy to code that runs, in Python, numba and JavaScript."""
 
 from percept_obs.compile.arrays import Array, Flags, Indices
-from percept_obs.compile.functions import executed, function_source, right_hand_side, vectorised
+from percept_obs.compile.functions import executed, function_source, python_text, right_hand_side, vectorised
 from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
 from percept_obs.compile.loop import source
 from percept_obs.compile.machine_code import machine_code
@@ -20,6 +20,7 @@ __all__ = [
     "executed",
     "function_source",
     "machine_code",
+    "python_text",
     "right_hand_side",
     "solve",
     "source",

@@ -88,6 +88,18 @@ def function_source(
     return str(text)
 
 
+def python_text(expression: sp.Expr) -> str:
+    """An expression in Python, with its functions as those of `math`.
+
+    Examples
+    --------
+    >>> python_text(sp.sin(2 * sp.Symbol("t")) / 5)
+    '((1.0/5.0))*math.sin(2.0*t)'
+    """
+    refuse_what_differs([expression])
+    return Text("python").print(expression)
+
+
 def executed(text: str) -> Callable[..., Any]:
     """The Python function that a text defines last."""
     namespace: dict[str, Any] = {"math": math}

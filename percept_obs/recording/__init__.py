@@ -2,6 +2,7 @@
 
 from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
+from percept_obs.recording.frames import Frames, render
 from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
 from percept_obs.recording.track_table import Unlikely
@@ -9,6 +10,7 @@ from percept_obs.recording.track_table import Unlikely
 __all__ = [
     "NO_NOISE",
     "Camera",
+    "Frames",
     "Gaussian",
     "Noise",
     "Recording",
@@ -18,6 +20,7 @@ __all__ = [
     "Uniform",
     "Unlikely",
     "record",
+    "render",
     "seeded",
     "step_grid",
 ]

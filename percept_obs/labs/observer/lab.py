@@ -4,28 +4,63 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import traitlets
 
+from percept_obs.border import TooMuchWork
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEMA, STANDARD, as_settings
-from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
-from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
+from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
+from percept_obs.labs.observer.settings import (
+    HOLDS,
+    PICTURES,
+    SCENARIOS,
+    SCHEMA,
+    STANDARD,
+    as_settings,
+    schema_of,
+)
+from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION
+from percept_obs.labs.observer.tracks import (
+    VARIES,
+    fitting,
+    refused_for,
+    table_for_the_page,
+    table_of,
+    track_for_the_page,
+    typed_text,
+    with_affine_motion,
+)
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
+from percept_obs.labs.shared.brought import brought
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, too_fast, too_short, within_reach
-from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
-from percept_obs.recording import Camera, Recording, Scenario
-from percept_obs.system.motion import affine
-from percept_obs.system.surfaces import BehindCamera, plane
+from percept_obs.labs.shared.sampling import (
+    as_far_as_seen,
+    exact_path,
+    looks,
+    swinging_at,
+    too_fast,
+    too_short,
+    within_reach,
+)
+from percept_obs.labs.shared.schema import Choice, Settings
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
+from percept_obs.observers import Observer
+from percept_obs.recording import Camera, Frames, Recording, Scenario
+from percept_obs.system.motion import Motion, affine
+from percept_obs.system.signal import OverTime, Signal
+from percept_obs.system.surfaces import BehindCamera, ImagingSurface, plane
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import REMEDY, for_the_page
+
+LOOK_WORK = 16
+"""What a look at a motion that varies costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
 class ObserverLab(Lab):
@@ -34,9 +69,17 @@ class ObserverLab(Lab):
     Parameters
     ----------
     scenario : str, Scenario or Recording
-        What to open with: the name of a scenario, or one of your own; its motion must be constant.
+        What to open with: the name of a scenario, or one of your own.  A motion in expressions of time is typed into
+        the lab; one that is sampled, or a function, is taken as samples that stay as they are after the last one.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
+    observers : list, optional
+        Names, and observers of your own: functions of a form such as `percept_obs.observers.family.family` makes, or
+        an `Observer` of the one form that it is made for.
+    frames : Frames, or mapping of names of recordings to Frames, optional
+        A film behind the track of the recording that it opens with, or of others.
+    surface : str or ImagingSurface, optional
+        The name of an imaging surface, or one of your own, or a function that gives it.
     **settings
         Those to open with, such as ``outputs=["y1"]``:
 
@@ -44,134 +87,252 @@ class ObserverLab(Lab):
     """
 
     schema = SCHEMA
+    frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
 
     def __init__(
         self,
         scenario: str | Scenario | Recording = STANDARD["scenario"],
         recordings: Mapping[str, Recording] | None = None,
+        *,
+        observers: Sequence[Any] | None = None,
+        surface: Any = None,
+        frames: Frames | Mapping[str, Frames] | None = None,
         **settings: Any,
     ) -> None:
-        offered = {name: make() for name, make in SCENARIOS.items()}
+        scenes = {name: make() for name, make in SCENARIOS.items()}
         tracks = dict(recordings or {})
         if isinstance(scenario, Scenario):
-            offered[scenario.name] = scenario
+            scenes[scenario.name] = scenario
             scenario = scenario.name
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
-        known = {name: as_settings(s) for name, s in offered.items()}
-        self._recordings = {name: with_affine_motion(name, r) for name, r in tracks.items()}
-        names = Choice(STANDARD["scenario"], (*known, *self._recordings))
-        self.schema = Schema(
-            SCHEMA | {"scenario": names, "gains": gains(standard_gains("observer_lab"), with_every_gain)}
-        )
-        opening = str(names.read("scenario", scenario))
-        fit = known.get(opening) or fitting(self._recordings[opening])
+        asked, own = (None, {}) if observers is None else brought(observers, BY_NAME)
+        refuse_other_motion(own)
+        made_for = surface_of(own) if surface is None else None
+        if made_for:
+            surface, outputs = made_for
+            settings = {"outputs": outputs, **settings}
+        given = [] if surface is None or isinstance(surface, str) else [surface]
+        seen = [*given, *(s.surface for s in scenes.values()), *(_seen_on(n, r) for n, r in tracks.items())]
+        self._offer, names = offer_of(seen, own, asked or STANDARD["observers"])
+        if given:
+            settings = _shaped(given[0], names[0]) | settings
+            surface = names[0]
+        on = dict(zip((*scenes, *tracks), names[len(given) :], strict=True))
+        self._tables = {n: t for n, s in scenes.items() if not typed_text(s.motion) and (t := table_of(s))}
+        known = {n: {"motion": typed_text(s.motion), **as_settings(s, on[n])} for n, s in scenes.items()}
+        self._recordings = {n: with_affine_motion(n, r, self._offer, on[n]) for n, r in tracks.items()}
+        self.schema = schema_of(self._offer, {**known, **tracks})
+        opening = str(self.schema["scenario"].read("scenario", scenario))
+        fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
+        chosen = {"observers": asked, "surface": surface}
         super().__init__(
             "observer_lab",
-            settings,
-            {**STANDARD, "gains": self.schema["gains"].opening, **fit, "scenario": opening},
-            STANDARD,
-            scenarios={name: {"title": s.name, **known[name]} for name, s in offered.items()},
-            recordings={n: track_for_the_page(r, tracks[n].motion.name) for n, r in self._recordings.items()},
+            {**settings, **{name: value for name, value in chosen.items() if value is not None}},
+            {**STANDARD, **self._own_opening(), **fit, "scenario": opening},
+            {**STANDARD, **self._own_opening()},
+            texts=self._offer.packed,
+            scenarios={n: {"title": s.name, **known[n], **self._sampled(n)} for n, s in scenes.items()},
+            recordings={
+                n: track_for_the_page(r, tracks[n].motion.name, on[n], self._offer) for n, r in self._recordings.items()
+            },
+            own=self._offer.for_the_page(),
+            varies={n: VARIES.format("motion") for n, make in self._offer.observers.items() if make.constant_motion},
             pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,
             remedy=REMEDY,
         )
+        films = {opening: frames} if isinstance(frames, Frames) else dict(frames or {})
+        if strange := [name for name in films if name not in tracks]:
+            raise ValueError(
+                f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording"
+            )
+        self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
+
+    def _own_opening(self) -> Settings:
+        return {name: self.schema[name].opening for name in ("gains", "switches")}
+
+    def _sampled(self, name: str) -> Settings:
+        return {"track": table_for_the_page(self._tables[name])} if name in self._tables else {}
+
+    def typed(self, text: str) -> Typed:
+        """The motion that a text describes; a ValueError if it cannot be read."""
+        return read_motion(text, BLOCKS)
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
-        return runs(self.settings, self._recordings)
+        return self.runs(self.settings)
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
         recording = self._recordings.get(settings["scenario"])
         surface, outputs = settings["surface"], settings["outputs"]
-        allowed = part("observer_lab")["surfaces"][surface]["outputs"]
+        allowed = self._offer.outputs(surface)
         if recording is not None:
             allowed = [o for o in allowed if set(o) <= set(recording.names)]
             Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
         if outputs not in allowed:
             told = ", ".join(map(str, allowed))
             raise ValueError(f"outputs is {outputs!r}; on the {surface} surface it must be one of {told}")
-        refused = dict(part("observer_lab", f"forms/{key_of(surface, outputs)}")["refused"])
+        self._refuse_motion(settings)
+        refused = self._offer.refused(surface, outputs)
         if recording is not None:
-            refused |= refused_for(recording)
+            refused |= refused_for(recording.motion, self._offer, "recording's")
+        elif self._varies(settings):
+            refused |= refused_for(self._motion_of(settings), self._offer, "motion")
         for name in settings["observers"]:
             if name in refused:
                 raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
-        if recording is not None and not recording.view.fits(SURFACES[surface]()):
+        if recording is not None and not recording.view.fits(self._offer.surfaces[surface]):
             raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
         if recording is not None and settings["believed"] is not None:
             raise ValueError("a recording's motion varies and is measured; believed must be None with it")
+
+    def _refuse_motion(self, settings: Settings) -> None:
+        """Refuse a typed motion that cannot be read, has no numbers, or stands beside another one."""
+        if settings["motion"].strip():
+            scenario = settings["scenario"]
+            if scenario in self._recordings or scenario in self._tables:
+                raise ValueError(
+                    f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario"
+                )
+            typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda _: _numbers(settings))
+
+    def _varies(self, settings: Settings) -> bool:
+        return bool(settings["motion"].strip()) or settings["scenario"] in self._tables
+
+    def _motion_of(self, settings: Settings) -> Motion:
+        """The true motion of a simulated point."""
+        if settings["scenario"] in self._tables:
+            return self._tables[settings["scenario"]]
+        return _motion(json.dumps({name: settings[name] for name in ("A", "b", "motion")}))
 
     def analyse(self) -> Settings:
         """Sentences on excitation, error dynamics and the bias of noise for the present settings."""
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
-        observers = {name: (*seen, name, _way(settings, name)) for name in settings["observers"]}
+        observers = {name: self._chosen(settings, name) for name in settings["observers"]}
         moved, refusal = 0.0, ""
         if settings["scenario"] not in self._recordings:
-            fastest = float(np.abs(settings["A"]).sum(axis=1).max())
-            moved = exact_path(settings["duration"], settings["period"], fastest)
+            moved = self._work(settings)
             refusal = too_short(settings["duration"], settings["period"]) or too_fast(moved)
         if refusal:
             return {"sentences": [refusal]}
         try:
-            recording = self._recordings.get(settings["scenario"]) or _simulated(settings)
-        except BehindCamera as error:
+            recording = self.recorded(settings)
+        except (BehindCamera, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         talked_of = {
-            name: len(observer_of(*chosen).equations.state)
+            name: len(chosen[0].equations.state)
             for name, chosen in observers.items()
             if recording.truth is None or has_words(chosen)
         }
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
         told, beyond = within_reach(steps, talked_of, moved)
         window = min(settings["window"], float(np.ptp(recording.time)))
-        sentences = [excitation_in_words(form_of(*seen), recording, window)]
+        sentences = [excitation_in_words(self._offer.form(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)
-            found = runs({**settings, "observers": told}, self._recordings)
+            found = self.runs({**settings, "observers": told})
         for name, run in found.items():
             sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
+
+    def _work(self, settings: Settings) -> float:
+        """What it takes to move the point, as `MOST_WORK` counts."""
+        duration, rows, looked = settings["duration"], np.array([_numbers(settings)]), 0.0
+        if self._varies(settings):
+            known, times = self._motion_of(settings).known, np.linspace(0, duration, INSTANTS)
+            rows, looked = known(times), swinging_at(known, times)
+        fastest = float(np.abs(rows[:, :9].reshape(-1, 3, 3)).sum(axis=2).max())
+        moved = exact_path(duration, settings["period"], fastest)
+        return moved + (LOOK_WORK * looks(duration, fastest, looked) if self._varies(settings) else 0.0)
+
+    def runs(self, settings: Settings) -> dict[str, Run]:
+        """Runs that settings stand for, by the observers' names."""
+        recording = self.recorded(settings)
+        believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
+        start: Any = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
+        found = {}
+        for name in settings["observers"]:
+            observer, _ = self._chosen(settings, name)
+            values = settings["gains"][name]
+            observer = observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
+            found[name] = track(recording, observer, start, settings["hold"], believed or None, language="python")
+        return found
+
+    def recorded(self, settings: Settings) -> Recording:
+        """What the camera records, as far as the point stays in front of it."""
+        if recording := self._recordings.get(settings["scenario"]):
+            return recording
+        keys = ("surface", "normal", "X0", "noise", "dropout", "seed", "period", "duration")
+        told = json.dumps({key: settings[key] for key in keys})
+        return _simulated(told, self._motion_of(settings), self._offer.surfaces[settings["surface"]])
+
+    def _chosen(self, settings: Settings, name: str) -> tuple[Observer, str]:
+        """An observer with its default gains, and how it switches."""
+        way = str(settings["switches"].get(name, ""))
+        return self._offer.observer(settings["surface"], settings["outputs"], name, way), way
 
 
 observer_lab = ObserverLab
 
 
-def runs(settings: Settings, recordings: Mapping[str, Recording]) -> dict[str, Run]:
-    """Runs that lab settings stand for, by the observers' names."""
-    recording = recordings.get(settings["scenario"]) or _simulated(settings)
-    believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
-    start: Any = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
-    found = {}
-    for name in settings["observers"]:
-        observer = observer_of(settings["surface"], tuple(settings["outputs"]), name, _way(settings, name))
-        values = settings["gains"][name]
-        observer = observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
-        found[name] = track(recording, observer, start, settings["hold"], believed or None, language="python")
-    return found
+def runs(settings: Settings) -> dict[str, Run]:
+    """Runs that settings of a lab of the package's own stand for, by the observers' names."""
+    return _plain_lab().runs(settings)
 
 
-def _way(settings: Settings, name: str) -> str:
-    """How an observer switches; nothing if it does not."""
-    return str(settings["switches"].get(name, ""))
+@lru_cache(maxsize=1)
+def _plain_lab() -> ObserverLab:
+    return ObserverLab()
 
 
-def _simulated(settings: Settings) -> Recording:
-    """What the camera records, as far as the point stays in front of it."""
-    keys = ("surface", "normal", "A", "b", "X0", "noise", "dropout", "seed", "period", "duration")
-    return _simulated_once(json.dumps({key: settings[key] for key in keys}))
+def _seen_on(name: str, recording: Recording) -> ImagingSurface:
+    if not isinstance(recording.view, ImagingSurface):
+        raise ValueError(
+            f"the recording {name!r} was seen as {recording.view.name}; the lab shows one point on an imaging surface"
+        )
+    return with_numbers(recording.view)
+
+
+def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
+    """A film with times that count from the recording's first sample."""
+    times = np.asarray(film.time) - recording.time[0]
+    if times[-1] < 0 or times[0] > recording.elapsed[-1]:
+        raise ValueError(
+            f"the frames are from {times[0]:.4g} to {times[-1]:.4g} s after the recording's first sample, and none is "
+            f"of its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
+        )
+    return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
+
+
+def _shaped(given: Any, name: str) -> Settings:
+    """The settings of a surface of the package that was given with numbers."""
+    values = given.values if isinstance(given, ImagingSurface) and name == "plane" else {}
+    return {"normal": list(values.values())} if values else {}
+
+
+def _numbers(settings: Settings) -> np.ndarray:
+    return np.array([*np.ravel(settings["A"]), *settings["b"]], dtype=float)
+
+
+@lru_cache(maxsize=16)
+def _motion(text: str) -> Motion:
+    """The motion of settings: constant, or as it was typed."""
+    settings = json.loads(text)
+    if settings["motion"].strip():
+        typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
+        return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers))))
+    return affine(settings["A"], settings["b"])
 
 
 @lru_cache(maxsize=4)
-def _simulated_once(text: str) -> Recording:
+def _simulated(text: str, motion: Motion, seen_on: ImagingSurface) -> Recording:
     settings = json.loads(text)
-    surface = plane(settings["normal"]) if settings["surface"] == "plane" else SURFACES[settings["surface"]]()
-    motion = affine(settings["A"], settings["b"])
+    surface = plane(settings["normal"]) if settings["surface"] == "plane" else seen_on
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])

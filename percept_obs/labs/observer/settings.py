@@ -1,9 +1,11 @@
 """What may be set in the observer lab."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from percept_obs.labs.observer.offer import Offer
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS
 from percept_obs.labs.shared.schema import (
     DROPOUT,
@@ -17,9 +19,12 @@ from percept_obs.labs.shared.schema import (
     Row,
     Schema,
     Settings,
+    gains,
     noise,
+    offering,
     vector,
 )
+from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.recording import Scenario, scenarios
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
@@ -36,25 +41,23 @@ def _translation(about: str = "") -> Row:
     return vector(("b1", "b2", "b3"), about, "m/s", usual=(-1, 1), step=0.01)
 
 
-def as_settings(scenario: Scenario) -> Settings:
-    """A scenario's motion, point, surface and duration.
+def as_settings(scenario: Scenario, surface: str = "") -> Settings:
+    """A scenario's motion, point, surface and duration; of a motion that varies what it is at time 0.
 
-    Raises
-    ------
-    ValueError
-        If the motion varies.
+    Parameters
+    ----------
+    scenario : Scenario
+    surface : str
+        The lab's name of its surface; the surface's own when left out.
     """
-    values = scenario.motion.values
-    if not values:
-        raise ValueError(
-            f"the motion of the scenario {scenario.name!r} varies over time; record() it and open the lab with the "
-            "recording"
-        )
-    A, b = (np.array(block.subs(values), dtype=float) for block in (scenario.motion.A, scenario.motion.b))
+    motion = scenario.motion
+    numbers = dict(zip(motion.parameters, motion.known(0.0)[0].tolist(), strict=True))
+    A, b = (np.array(block.subs(numbers), dtype=float) for block in (motion.A, motion.b))
     normal = list(scenario.surface.values.values())
-    surface = {"surface": scenario.surface.name, **({"normal": normal} if normal else {})}
-    X0, duration = list(map(float, scenario.position)), scenario.duration
-    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **surface}
+    surface = surface or scenario.surface.name
+    shaped = {"surface": surface, **({"normal": normal} if surface == "plane" and normal else {})}
+    X0, duration = list(map(float, scenario.position)), float(scenario.duration)
+    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **shaped}
 
 
 _TILT: Settings = {"usual": (-1, 1), "step": 0.05}
@@ -66,6 +69,7 @@ SCHEMA = Schema(
     scenario=Choice("ma2005_eq35", tuple(SCENARIOS), about="a name"),
     A=_matrix("of the true motion X' = A X + b"),
     b=_translation("of the true motion"),
+    motion=typed_setting("a12 = 0.4 cos(2t); b3 = b3 + 0.1 sin(t)"),
     X0=vector(("X", "Y", "Z"), "the point at time 0", "m", usual=(-5, 10), step=0.05),
     duration=Number(80.0, 0.1, 200, (2, 120), 1, unit="s"),
     surface=Choice("pinhole", tuple(SURFACES), label="Imaging surface"),
@@ -99,6 +103,27 @@ SCHEMA = Schema(
     kept=KEPT,
 )
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
+
+
+def schema_of(offer: Offer, scenarios_and_recordings: Mapping[str, Any]) -> Schema:
+    """The settings of a lab that offers something of its own."""
+    own = offer.own_switch
+    return Schema(
+        SCHEMA
+        | {
+            "scenario": Choice(STANDARD["scenario"], tuple(scenarios_and_recordings)),
+            "surface": offering(SCHEMA["surface"], offer.surfaces),
+            "observers": offering(SCHEMA["observers"], offer.observers),
+            "gains": gains(_gains_of(offer), offer.with_every_gain),
+            "switches": Group({n: Choice(way, offer.observers[n].switches) for n, way in own.items()}, partial=True),
+        }
+    )
+
+
+def _gains_of(offer: Offer) -> dict[str, dict[str, float]]:
+    printed = offer.part()["observers"].items()
+    return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
+
 
 STANDARD: dict[str, Any] = SCHEMA.opening | as_settings(scenarios.ma2005_eq35())
 """What every preset begins with."""

@@ -1,26 +1,26 @@
 """What the page needs to simulate and to observe: texts and formulas of the point, the surfaces, the observers.
 
-Printed when the package is built, see printing.py; one form, observer or surface can be printed by itself.
+Printed when the package is built, see printing.py; what somebody brings is printed when the lab opens, see offer.py.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 
 import sympy as sp
 
-from percept_obs.compile import function_source
-from percept_obs.labs.shared.equations import equations_of
-from percept_obs.labs.shared.markup import formula, markup
-from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
+from percept_obs.compile import function_source, source
+from percept_obs.labs.shared.brought import Maker, observers_for_the_page, of_an_observer
+from percept_obs.labs.shared.markup import dotted, formula, markup
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
+from percept_obs.recording.simulation import point_in_motion
 from percept_obs.system import surfaces
-from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT
+from percept_obs.system.surfaces import POINT, ImagingSurface
 
 SURFACES = {make.__name__: make for make in surfaces.SURFACES}
 BY_NAME = {make.key: make for make in OBSERVERS}
@@ -32,6 +32,8 @@ OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if w
 """The switch that each observer that switches has unless another is chosen."""
 
 MOTION = affine()
+BLOCKS = MappingProxyType({"A": MOTION.A, "b": MOTION.b})
+"""What a motion is made of, by the letters that may be typed."""
 
 
 def key_of(surface: str, outputs: Iterable[str]) -> str:
@@ -40,32 +42,43 @@ def key_of(surface: str, outputs: Iterable[str]) -> str:
 
 
 @lru_cache
-def system_of(surface: str) -> PerspectiveSystem:
+def system_on(surface: ImagingSurface) -> PerspectiveSystem:
     """Affine motion seen on a surface."""
-    return PerspectiveSystem(MOTION, SURFACES[surface]())
+    return PerspectiveSystem(MOTION, surface)
 
 
-@lru_cache
-def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
-    """The canonical form of affine motion on a surface."""
-    return system_of(surface).measure(*outputs)
+@lru_cache(maxsize=64)
+def form_on(surface: ImagingSurface, outputs: tuple[str, ...]) -> PartitionedSystem:
+    """Affine motion on a surface, in the canonical form if there is one."""
+    system = system_on(surface).partition(*outputs)
+    return system if system.culprits else system.canonical_form()
 
 
 @lru_cache(maxsize=256)
-def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = "") -> Observer:
+def observer_on(make: Maker, surface: ImagingSurface, outputs: tuple[str, ...], way: str = "") -> Observer:
     """An observer with its default gains, and its own way to switch unless another is named."""
-    switch = {"switch": way or OWN_SWITCH[name]} if name in OWN_SWITCH else {}
-    return BY_NAME[name](form_of(surface, outputs), **switch)
+    switch = {"switch": way or make.switches[0]} if make.switches else {}
+    return make(form_on(surface, outputs), **switch)
+
+
+def system_of(surface: str) -> PerspectiveSystem:
+    """Affine motion seen on a surface of the package."""
+    return system_on(SURFACES[surface]())
+
+
+def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
+    """The canonical form of affine motion on a surface of the package."""
+    return form_on(SURFACES[surface](), outputs).canonical_form()
+
+
+def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = "") -> Observer:
+    """An observer of the package, as `observer_on` makes it."""
+    return observer_on(BY_NAME[name], SURFACES[surface](), outputs, way)
 
 
 def ways_of(name: str) -> dict[str, Observer]:
-    """The observer for all image coordinates, in every way in which it switches."""
+    """An observer of the package for all image coordinates, in every way in which it switches."""
     return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
-
-
-def with_every_gain(name: str) -> Observer:
-    """The observer that has the gains of every way in which it switches."""
-    return with_all_gains(ways_of(name))
 
 
 @lru_cache
@@ -73,51 +86,54 @@ def model_for_the_page() -> Texts:
     """What does not depend on the form: the point's loop, the surfaces, the observers."""
     return {
         "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
-        "surfaces": {name: _surface_for_the_page(name) for name in SURFACES},
-        "observers": {name: _observer_for_the_page(name) for name in BY_NAME},
+        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
+        "surfaces": {
+            name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
+        },
+        "observers": {name: of_an_observer(make, ways_of(name)) for name, make in BY_NAME.items()},
     }
 
 
-def _surface_for_the_page(name: str) -> Texts:
-    system = system_of(name)
-    surface, shape = system.surface, system.surface.parameters
+def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, ...]]) -> Texts:
+    """A surface: where a point is seen, and what may be measured of it."""
+    system = system_on(surface)
+    shape = surface.parameters
     return {
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
-        "outputs": system.output_choices,
+        "outputs": tuple(outputs),
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
     }
 
 
-def _observer_for_the_page(name: str) -> Texts:
-    make = BY_NAME[name]
-    ways = ways_of(name)
-    return observer_for_the_page(ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways})
-
-
-@lru_cache
-def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
+def form_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
     """A form, and the loops of its observers; one that does not exist is among the `refused`, with the reason."""
-    form = form_of(surface, outputs)
     names = [s.name for s in form.coordinates]
     letters = {s.name: s for s in form.parameters}
+    told: Texts = {"w": None, "circle": None, "formulas": [formula(dotted(s), e, letters) for s, e in _rates(form)]}
+    if not form.culprits:
+        told = _of_canonical(form.canonical_form(), letters)
+    return {
+        "measured": [names.index(s.name) for s in form.x1],
+        "hidden": [names.index(s.name) for s in form.x2],
+        **told,
+        **observers_for_the_page(form, makers),
+    }
+
+
+def _rates(form: PartitionedSystem) -> Iterable[tuple[sp.Symbol, sp.Expr]]:
+    return zip((*form.x1, *form.x2), form.rate, strict=True)
+
+
+def _of_canonical(form: CanonicalForm, letters: Mapping[str, sp.Symbol]) -> Texts:
     threshold = sp.Symbol("threshold", real=True)
     found, circle = instantaneous(form), None
     if found.growth is not None:
         centre, radius = found.circle(threshold)
         circle = function_source((*form.parameters, threshold), (*centre, radius))
-    kernels: dict[str, Texts] = {}
-    refused: dict[str, str] = {}
-    for name, ways in WAYS.items():
-        if refusal := BY_NAME[name].refusal(form):
-            refused[name] = refusal
-        else:
-            kernels[name] = {way: kernel_for_the_page(observer_of(surface, outputs, name, way)) for way in ways}
     return {
-        "measured": [names.index(s.name) for s in form.x1],
-        "hidden": [names.index(s.name) for s in form.x2],
         "w": function_source((*form.x1, *form.parameters), tuple(form.w)),
         "circle": circle,
         "formulas": [
@@ -125,8 +141,6 @@ def form_for_the_page(surface: str, outputs: tuple[str, ...]) -> Texts:
             formula(sp.Symbol("phi"), form.phi, letters),
             formula(sp.Symbol("g"), form.g, letters),
         ],
-        "observers": kernels,
-        "refused": refused,
     }
 
 
@@ -135,4 +149,4 @@ def texts_for_the_page() -> Parts:
     yield "", model_for_the_page()
     for surface in SURFACES:
         for outputs in system_of(surface).output_choices:
-            yield f"forms/{key_of(surface, outputs)}", form_for_the_page(surface, outputs)
+            yield f"forms/{key_of(surface, outputs)}", form_for_the_page(form_of(surface, outputs), BY_NAME)

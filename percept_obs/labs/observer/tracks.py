@@ -1,65 +1,109 @@
-"""Recordings of a real camera, in the numbers that the page takes."""
+"""Recordings of a real camera, and motions that vary, in the numbers that the page takes."""
 
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.observer.texts import BY_NAME, SURFACES
+from percept_obs.compile.integrator import LONGEST_STEP
+from percept_obs.labs.observer.offer import Offer
+from percept_obs.labs.observer.texts import BLOCKS
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.recording import Recording
-from percept_obs.system.motion import affine
+from percept_obs.labs.shared.typed_motion import MOST, read_motion
+from percept_obs.recording import Recording, Scenario
+from percept_obs.system.motion import TIME, Motion, affine
+
+LONGEST = 200.0
+"""Seconds up to which a sampled motion is known; after its last sample it stays as it is there."""
+
+VARIES = "it needs a motion with constant coefficients, but the {} varies"
 
 
-def track_for_the_page(recording: Recording, motion: str) -> dict[str, Any]:
+def track_for_the_page(recording: Recording, motion: str, surface: str, offer: Offer) -> dict[str, Any]:
     """A recording in numbers, with the name of its own motion; times count from its first sample.
 
     A lost sample is null, since JSON knows no NaN.
     """
-    signal = recording.motion.signal
-    if signal is None or callable(signal.samples):
-        raise ValueError(f"the motion of {recording.source!r} has no sampled numbers; bind it to numbers first")
-    begun = recording.time[0]
-    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
     return {
         "names": recording.names,
         "time": recording.elapsed.tolist(),
         "samples": [[None if np.isnan(v) else v for v in row] for row in recording.outputs.tolist()],
         "truth": None if recording.truth is None else recording.truth.tolist(),
-        "motion": {"times": times, "rows": signal.samples.tolist()},
-        **fitting(recording),
+        "motion": table_for_the_page(recording.motion, float(recording.time[0])),
+        **fitting(recording, surface),
         "kind": motion,
-        "refused": refused_for(recording),
+        "refused": refused_for(recording.motion, offer, "recording's"),
     }
 
 
-def fitting(recording: Recording) -> Settings:
+def table_for_the_page(motion: Motion, begun: float = 0.0) -> dict[str, Any]:
+    """A sampled motion in numbers, with times from when it began."""
+    signal = motion.signal
+    assert signal is not None
+    assert not callable(signal.samples)
+    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
+    return {"times": times, "rows": signal.samples.tolist()}
+
+
+def fitting(recording: Recording, surface: str) -> Settings:
     """Settings that a recording brings with it."""
     duration = float(np.ptp(recording.time))
-    surface = next(kind for kind in SURFACES if recording.view.fits(SURFACES[kind]()))
     return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
 
 
-def refused_for(recording: Recording) -> dict[str, str]:
-    """Observers that cannot follow a recording, with the reasons."""
-    signal = recording.motion.signal
-    if signal is None or signal.constant:
+def refused_for(motion: Motion, offer: Offer, whose: str) -> dict[str, str]:
+    """Observers that cannot follow a motion, with the reasons."""
+    if motion.signal is None or motion.signal.constant:
         return {}
-    reason = "it needs a motion with constant coefficients, but the recording's varies"
-    return {name: reason for name, make in BY_NAME.items() if make.constant_motion}
+    return {name: VARIES.format(whose) for name, make in offer.observers.items() if make.constant_motion}
 
 
-def with_affine_motion(name: str, recording: Recording) -> Recording:
+def with_affine_motion(name: str, recording: Recording, offer: Offer, surface: str) -> Recording:
     """The same recording with the motion's A and b sampled, so that the lab's observers fit it."""
     motion, times = recording.motion, recording.time
     constant = motion.signal is not None and motion.signal.constant
     if motion.signal is not None and motion.signal.times is not None:
         inside = (motion.signal.times > times[0]) & (motion.signal.times < times[-1])
         times = np.unique(np.concatenate([times, motion.signal.times[inside]]))
-    entries = vectorised(motion.parameters, [*motion.A, *motion.b])(*motion.known(times).T)
-    rows = np.stack(entries, axis=-1)
-    if not any(recording.view.fits(SURFACES[kind]()) for kind in ("pinhole", "chained")):
-        raise ValueError(f"the recording {name!r} was seen on the {recording.view.name}; the lab knows the pinhole")
+    return replace(recording, view=offer.surfaces[surface], motion=sampled(motion, times[:1] if constant else times))
+
+
+def sampled(motion: Motion, times: np.ndarray) -> Motion:
+    """A motion's A and b in numbers at some times; one time stands for a constant motion."""
+    columns = motion.known(times).T if motion.parameters else [np.zeros(1)]
+    entries = vectorised(motion.parameters or (TIME,), [*motion.A, *motion.b])(*columns)
+    rows = np.broadcast_to(np.stack(entries, axis=-1), (len(times), 12))
     A, b = rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]
-    return replace(recording, motion=affine(A[0], b[0]) if constant else affine(A, b, times))
+    return affine(A[0], b[0]) if len(times) == 1 else affine(A, b, times)
+
+
+def typed_text(motion: Motion) -> str:
+    """A motion in expressions of time as somebody would type it; empty if it is none, or cannot be read."""
+    if motion.parameters != (TIME,):
+        return ""
+    symbols = [symbol for block in BLOCKS.values() for symbol in block]
+    given = zip(symbols, (*motion.A, *motion.b), strict=True)
+    text = "; ".join(f"{symbol} = {sp.sstr(entry)}" for symbol, entry in given if entry.has(TIME))
+    try:  # sympy writes more than is read; what is not is sampled
+        return text if len(text) <= MOST and read_motion(text, BLOCKS) else ""
+    except ValueError:
+        return ""
+
+
+def table_of(scenario: Scenario) -> Motion | None:
+    """The motion of a scenario in samples up to `LONGEST`, if it varies; a function of time is sampled every 10 ms."""
+    motion = scenario.motion
+    if motion.signal is None or motion.signal.constant:
+        return None
+    times = motion.signal.times
+    if times is None:
+        times = np.arange(0, scenario.duration + LONGEST_STEP / 2, LONGEST_STEP)
+    inside = np.unique(np.concatenate([[0.0], times[(times > 0) & (times < LONGEST)]]))
+    found = sampled(motion, inside)
+    signal = found.signal
+    assert signal is not None
+    assert not callable(signal.samples)
+    rows = np.concatenate([signal.samples, signal.samples[-1:]])
+    return affine(rows[:, :9].reshape(-1, 3, 3), rows[:, 9:], [*inside, LONGEST])

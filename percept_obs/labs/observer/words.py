@@ -8,25 +8,27 @@ import sympy as sp
 from scipy.linalg import expm
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.observer.texts import observer_of
 from percept_obs.observability import windowed
+from percept_obs.observers import Observer
 from percept_obs.observers.parts import hats
 from percept_obs.recording import Recording
 from percept_obs.studies.consistency import check_consistency
-from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import number
 
 INSTANTS = 200
 """At how many instants of the window the error dynamics are linearised, at most."""
 
-Chosen = tuple[str, tuple[str, ...], str, str]
-"""Names of a surface, of the measured outputs, of an observer, and of its way to switch."""
+Chosen = tuple[Observer, str]
+"""An observer with its default gains, and its way to switch."""
 
 
-def excitation_in_words(form: CanonicalForm, recording: Recording, window: float) -> str:
+def excitation_in_words(form: PartitionedSystem, recording: Recording, window: float) -> str:
     """What the outputs alone tell over any window of this length, in seconds."""
-    least = windowed(form, recording, window).least
+    if form.culprits:
+        return f"There is no canonical form, and so no w: {', '.join(form.culprits)} do not enter linearly."
+    least = windowed(form.canonical_form(), recording, window).least
     start = f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}"
     if least > 1e-6:
         return f"{start}: persistently excited, so the outputs alone tell the hidden part."
@@ -35,7 +37,7 @@ def excitation_in_words(form: CanonicalForm, recording: Recording, window: float
 
 def has_words(chosen: Chosen) -> bool:
     """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
-    observer = observer_of(*chosen)
+    observer, _ = chosen
     return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(chosen)
 
 
@@ -64,14 +66,16 @@ def _consistency_in_words(run: Run) -> str:
 
 def _can_be_linearised(chosen: Chosen) -> bool:
     """Whether the estimate is a part of the state, and the flow smooth where the error is zero."""
-    observer = observer_of(*chosen)
-    return set(hats(observer.form.coordinates)) <= set(observer.equations.state) and chosen[-1] != "sign"
+    observer, way = chosen
+    form = observer.form
+    estimate = hats((*form.x1, *form.x2))
+    return observer.equations.state[: len(estimate)] == estimate and way != "sign"
 
 
 @lru_cache
 def _at_the_truth(chosen: Chosen) -> Callable[..., list[np.ndarray]]:
     """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
-    observer = observer_of(*chosen)
+    observer, _ = chosen
     form, equations = observer.form, observer.equations
     truth = (*form.x1, *form.x2)
     estimate = equations.state[: len(truth)]

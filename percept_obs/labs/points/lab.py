@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
+from percept_obs.compile import Array, vectorised
 from percept_obs.labs.points.settings import PICTURES, SCHEMA
-from percept_obs.labs.points.texts import form_of, state_of
+from percept_obs.labs.points.texts import (
+    BLOCKS,
+    STATES,
+    coefficients_for_the_page,
+    form_of,
+    own_state_for_the_page,
+    state_of,
+    typed_velocities,
+)
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.sampling import looks, too_fast, within_reach
-from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.printed import Texts, part, with_texts
+from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
+from percept_obs.labs.shared.schema import Schema, Settings, offering
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points import (
@@ -30,9 +43,11 @@ from percept_obs.points import (
     scheduled,
 )
 from percept_obs.points.form import JUDGED, PointsForm, points_form
-from percept_obs.points.manoeuvre import Manoeuvre
+from percept_obs.points.manoeuvre import Manoeuvre, velocities
 from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
+from percept_obs.system.motion import TIME
+from percept_obs.system.signal import OverTime
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
@@ -49,6 +64,7 @@ _WEIGHTS: Mapping[str, Callable[[Settings], LyapunovMatrix]] = MappingProxyType(
     {
         "constant": lambda s: constant(s["size"]),
         "scheduled": lambda s: scheduled(lambda t: s["size"] * (s["final"] / s["size"]) ** (t / s["duration"])),
+        "typed": lambda s: scheduled(OverTime(lambda times: _typed_P(s, times)[:, None])),
         "lyapunov": lambda s: lyapunov(s["size"], s["decrease"]),
         "riccati": lambda s: riccati(s["size"], s["forgetting"]),
     }
@@ -56,11 +72,18 @@ _WEIGHTS: Mapping[str, Callable[[Settings], LyapunovMatrix]] = MappingProxyType(
 """P by its name in the settings; a scheduled one grows or shrinks by the same factor in equal times."""
 
 
+def _typed_P(settings: Settings, times: Array) -> Array:
+    """A typed P at some times, shape (T,)."""
+    return read_motion(settings["P"], BLOCKS).rows(times, np.array([*[0.0] * 9, settings["size"]]))[:, -1]
+
+
 class PointsLab(Lab):
     """The lab of many points, shown by the page; `settings` define everything, and may be set from Python as well.
 
     Parameters
     ----------
+    form : PointsForm, optional
+        A form of your own that can be chosen as well, with a motion in numbers or expressions of time.
     **settings
         Those to open with, such as ``state="independent"``:
 
@@ -69,12 +92,21 @@ class PointsLab(Lab):
 
     schema = SCHEMA
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
+        self._form = form
+        printed: dict[str, Texts] = {}
+        opening = SCHEMA.opening
+        if form is not None:
+            model = part("points_lab")
+            printed = {"": {**model, "states": {**model["states"], "own": own_state_for_the_page(form)}}}
+            self.schema = Schema({**SCHEMA, "state": offering(SCHEMA["state"], (*STATES, "own"))})
+            opening |= {"state": "own", "points": _spread(form.points), "hidden": [None] * form.points}
         super().__init__(
             "points_lab",
             settings,
+            opening,
             SCHEMA.opening,
-            SCHEMA.opening,
+            texts=with_texts("points_lab", printed),
             pictures=PICTURES,
             error=ERROR,
             **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},
@@ -85,7 +117,20 @@ class PointsLab(Lab):
 
     def run(self) -> PointsRun:
         """The run of the same settings in Python."""
-        return run_of(self.settings)
+        return run_of(self.settings, self._form)
+
+    def typed(self, text: str) -> Typed:
+        """The motion, or the P, that a text describes; a ValueError if it cannot be read."""
+        return read_motion(text, BLOCKS)
+
+    def typed_for_the_page(self, text: str) -> Settings:
+        """The coefficients of each state with a typed motion."""
+        typed = self.typed(text)
+        moved = typed_velocities(typed, velocities())
+        states = {state: coefficients_for_the_page(state, moved) for state in STATES if set(typed.changed) != {"P"}}
+        functions = {str(f.func) for entry in typed.changed.values() for f in entry.atoms(sp.Function)}
+        told = {name: sp.sstr(entry) for name, entry in typed.changed.items()}
+        return {**typed.for_the_page(), "states": states, "sympy": told, "functions": sorted(functions)}
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong; points without a word on hiding are seen."""
@@ -99,6 +144,12 @@ class PointsLab(Lab):
         points, hidden = len(settings["points"]), settings["hidden"]
         if len(hidden) != points:
             raise ValueError(f"hidden is {hidden!r}; it must have an entry for each of the {points} points")
+        if self._form is not None and settings["state"] == "own":
+            if points != self._form.points:
+                raise ValueError(f"there are {points} points; it must be {self._form.points}, as in your own form")
+            if settings["motion"].strip():
+                raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
+        _refuse_typed(settings)
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
                 raise ValueError(f"hidden {k} is {times!r}; it must begin at 0 s or later and end after that")
@@ -107,9 +158,12 @@ class PointsLab(Lab):
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
         settings = self.settings
         steps = settings["duration"] / min(settings["period"], settings["step"])
-        A, _ = form_of_settings(settings).coefficients(np.linspace(0, settings["duration"], 50))
+        form = form_of_settings(settings, self._form)
+        times = np.linspace(0, settings["duration"], 50)
+        A, _ = form.coefficients(times)
         paths = 2 if settings["hold"] == "exact" else 1
-        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()))
+        swings = swinging_at(form.numbers, times) if settings["motion"].strip() else 0.0
+        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()), swings)
         each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
         _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
         beyond = [refusal] if (refusal := too_fast(moved)) else beyond
@@ -119,17 +173,54 @@ class PointsLab(Lab):
 points_lab = PointsLab
 
 
-def form_of_settings(settings: Settings) -> PointsForm:
+def _refuse_typed(settings: Settings) -> None:
+    """Refuse a typed motion or P that has no numbers, or gives what the other is for."""
+    duration = settings["duration"]
+    if settings["motion"].strip():
+        typed = typed_in(settings, "motion", BLOCKS)
+        if "P" in typed.changed:
+            raise ValueError('motion gives P; choose weight="typed" and type it there')
+        moved = (*(entry for vector in _manoeuvre(settings).velocities for entry in vector), sp.S.One)
+        function = vectorised((TIME,), moved)
+        typed.refuse_poles(duration, lambda times: np.stack(function(times), axis=-1))
+    if settings["weight"] != "typed":
+        return
+    if "=" not in settings["P"]:
+        settings["P"] = f"P = {settings['P']}"
+    changed = set(typed_in(settings, "P", BLOCKS).changed) - {"P"}
+    if changed:
+        raise ValueError(f"P gives {', '.join(sorted(changed))}; it must be one expression, such as P = 1 + exp(-t)")
+    times = np.linspace(0, duration, INSTANTS)
+    with np.errstate(all="ignore"):
+        found = _typed_P(settings, times)
+    bad = np.flatnonzero(~((found > 1e-9) & (found < 1e9)))
+    if len(bad):
+        raise ValueError(f"P is {found[bad[0]]:.4g} at {times[bad[0]]:.4g} s; it must be from 1e-9 to 1e9 at all times")
+
+
+def _manoeuvre(settings: Settings) -> Manoeuvre:
+    return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
+
+
+def _spread(points: int) -> list[list[float]]:
+    """So many places in front of the camera: those that the lab opens with, and more around them."""
+    more = [[0.5 * math.cos(2.4 * k), 1 + 0.4 * math.sin(2.4 * k), 2.5 + 0.1 * k] for k in range(3, points)]
+    return [*SCHEMA.opening["points"], *more][:points]
+
+
+def form_of_settings(settings: Settings, own: PointsForm | None = None) -> PointsForm:
     """The form of the settings' points."""
-    manoeuvre = Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
+    if own is not None and settings["state"] == "own":
+        return own
+    typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnseenDirection)  # the lab says so in its own place
-        return form_of(settings["state"], len(settings["points"]), manoeuvre)
+        return form_of(settings["state"], len(settings["points"]), _manoeuvre(settings), typed)
 
 
-def recording_of(settings: Settings) -> Recording:
+def recording_of(settings: Settings, own: PointsForm | None = None) -> Recording:
     """What the camera records of the settings' points."""
-    form = form_of_settings(settings)
+    form = form_of_settings(settings, own)
     state = state_of(form, settings["points"]).tolist()
     scenario = PointsScenario("from the lab", form, state, settings["duration"])
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
@@ -141,9 +232,9 @@ def recording_of(settings: Settings) -> Recording:
     return recording
 
 
-def run_of(settings: Settings) -> PointsRun:
+def run_of(settings: Settings, own: PointsForm | None = None) -> PointsRun:
     """The run that lab settings stand for."""
-    recording = recording_of(settings)
+    recording = recording_of(settings, own)
     form = points_form(recording)
     assert recording.truth is not None
     begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None

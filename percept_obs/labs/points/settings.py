@@ -13,12 +13,14 @@ from percept_obs.labs.shared.schema import (
     Schema,
     Settings,
     Several,
+    Text,
     noise,
     vector,
 )
+from percept_obs.labs.shared.typed_motion import MOST, typed_setting
 
 PICTURES = ("error", "depth", "points", "gramian")
-WEIGHTS = ("constant", "scheduled", "lyapunov", "riccati")
+WEIGHTS = ("constant", "scheduled", "typed", "lyapunov", "riccati")
 _SHARE: Settings = {"low": -10, "high": 10, "usual": (-2, 2), "step": 0.05}
 _SIZE = (1.0, 1e-4, 1e4, (0.001, 100))
 _PLACES = [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9], [-0.5, 0.8, 2.7]]
@@ -38,9 +40,11 @@ SCHEMA = Schema(
     spin=Number(label="body turns", about="share of the body's turning", **_SHARE),
     input=Number(1.0, about="share of the input", **_SHARE),
     velocity=vector(("X", "Y", "Z"), "constant part of v", "m/s", usual=(-1, 1), step=0.02),
+    motion=typed_setting("w = [0, 0.3 cos(t), 0.2]; v1 = v1 + 0.5 sin(2t)"),
     weight=Choice("constant", WEIGHTS, label="P is"),
     size=Number(*_SIZE, label="P", about="P, or P at the beginning, times the identity"),
     final=Number(*_SIZE, label="P at the end"),
+    P=Text("P = 1 + exp(-t)", MOST, label="P over time", about="a typed P, times the identity; P stands for `size`"),
     decrease=Number(0.0, 0, 100, (0, 0.5), 0.005, unit="1/s", about="of a Lyapunov P"),
     forgetting=Number(0.3, 0, 100, (0, 2), 0.02, unit="1/s", about="of a Riccati P"),
     start=Choice(

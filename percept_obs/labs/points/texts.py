@@ -11,17 +11,25 @@ import sympy as sp
 from percept_obs.compile import function_source
 from percept_obs.labs.shared.markup import dotted, formula, markup, row
 from percept_obs.labs.shared.printed import Parts, Texts
+from percept_obs.labs.shared.typed_motion import Typed
 from percept_obs.points import PointsForm, body_with_origin, independent_points, point_block, rigid_body
 from percept_obs.points.kernel import arrays
-from percept_obs.points.manoeuvre import PATH, SHARES, SPIN, TURNING, Manoeuvre, velocities
+from percept_obs.points.manoeuvre import PATH, SHARES, SPIN, TURNING, Manoeuvre, Vectors, velocities
 from percept_obs.system.motion import TIME, rigid
 from percept_obs.system.surfaces import pinhole
 
-MOST_POINTS = 8
+MOST_POINTS = 12
 LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("spin", "beta"), ("input", "gamma"))}
 """Letters of a manoeuvre's shares in the equations."""
 
 SURFACE = pinhole()
+
+P = sp.Symbol("P", real=True)
+BLOCKS = MappingProxyType(
+    {name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "v", "w_b")}
+    | {"P": sp.ImmutableMatrix([P])}
+)
+"""What may be typed: how resting points turn and move in the camera's frame, how the body turns, and P."""
 
 
 def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
@@ -35,9 +43,10 @@ STATES: Mapping[str, Callable[..., PointsForm]] = MappingProxyType(
 """States to choose from: functions of the number of points and of velocities, as `rigid_body` takes them."""
 
 
-def form_of(state: str, points: int, manoeuvre: Manoeuvre) -> PointsForm:
-    """The form of a state whose camera and body move by a manoeuvre."""
-    return STATES[state](points, *manoeuvre.velocities)
+def form_of(state: str, points: int, manoeuvre: Manoeuvre, typed: Typed | None = None) -> PointsForm:
+    """The form of a state whose camera and body move by a manoeuvre, or as it was typed."""
+    moved = tuple(manoeuvre.velocities)
+    return STATES[state](points, *(typed_velocities(typed, moved) if typed else moved))
 
 
 def state_of(form: PointsForm, places: Any) -> np.ndarray:
@@ -74,27 +83,81 @@ def texts_for_the_page() -> Parts:
     yield "", model_for_the_page()
 
 
+_VECTORS = [sp.ImmutableMatrix(sp.symbols(f"{letter}1:4", real=True)) for letter in ("w_c", "v_c", "w_b")]
+
+
+@lru_cache
+def general_form(state: str) -> PointsForm:
+    """The form of a state with as many points as there may be, in symbols for the velocities."""
+    return STATES[state](MOST_POINTS, *_VECTORS)
+
+
+def coefficients_for_the_page(state: str, moved: Vectors) -> str:
+    """The coefficients of a state as a function of time and a manoeuvre's shares, for velocities of these."""
+    known = dict(zip((s for vector in _VECTORS for s in vector), (e for v in moved for e in v), strict=True))
+    expressions = general_form(state).layout.expressions
+    return function_source((TIME, *SHARES), tuple(expression.xreplace(known) for expression in expressions))
+
+
+def typed_velocities(typed: Typed, moved: Vectors) -> Vectors:
+    """Velocities of a manoeuvre, changed as it was typed."""
+    turning, velocity, spin = moved
+    base = dict(zip(typed.symbols, [*(-e for e in turning), *(-e for e in velocity), *spin], strict=False))
+    entries = [entry.xreplace(base) for entry in typed.expressions[:9]]
+    return tuple(-e for e in entries[:3]), tuple(-e for e in entries[3:6]), tuple(entries[6:])
+
+
 def _state_for_the_page(name: str) -> Texts:
     """The layouts of a state for each number of points, and its coefficients as a function of time."""
-    vectors = [sp.ImmutableMatrix(sp.symbols(f"{letter}1:4", real=True)) for letter in ("w_c", "v_c", "w_b")]
-    form = STATES[name](MOST_POINTS, *vectors)
-    entries = [entry for vector in velocities() for entry in vector]
-    known = dict(zip((s for vector in vectors for s in vector), entries, strict=True))
-    coefficients = tuple(expression.xreplace(known) for expression in form.layout.expressions)
+    form = general_form(name)
     extra = form.states - 3 * MOST_POINTS
     return {
-        "coefficients": function_source((TIME, *SHARES), coefficients),
-        "width": len(coefficients),
+        "coefficients": coefficients_for_the_page(name, velocities()),
+        "width": len(form.layout.expressions),
         "layouts": [_layout(form, extra, points) for points in range(1, MOST_POINTS + 1)],
+    }
+
+
+def own_state_for_the_page(form: PointsForm) -> Texts:
+    """The one layout of somebody's own form, and its coefficients.
+
+    Raises
+    ------
+    ValueError
+        If the page cannot move it: its motion is not known, is sampled, or couples vectors of three states.
+    """
+    motion, n = form.motion, form.states
+    rows, columns = form.layout.rows, form.layout.columns
+    if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():
+        raise ValueError(
+            f"the form has {n} states and {form.points} points; the lab moves vectors of three states, each by itself, "
+            f"of at most {MOST_POINTS} points: order the states so that A has only blocks of 3 x 3 on its diagonal"
+        )
+    expressions = tuple(expression.xreplace(motion.values) for expression in form.layout.expressions)
+    left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - {TIME}))
+    if left:
+        raise ValueError(
+            f"the form's motion has no expression in time for {', '.join(left)}; give numbers, or expressions of TIME"
+        )
+    if form.surface != SURFACE:
+        raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")
+    layout = {**_arrays(form, n, form.points), "names": list(form.names)}
+    return {
+        "coefficients": function_source((TIME, *SHARES), expressions),
+        "width": len(expressions),
+        "layouts": [*[None] * (form.points - 1), layout],
     }
 
 
 def _layout(form: PointsForm, extra: int, points: int) -> Texts:
     """Where a state's coefficients stand when it has so many of the points."""
-    states = np.arange(3 * points + extra)
-    part = arrays(form, states, np.arange(points))
-    numbers = {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
-    return {**numbers, "names": [form.names[k] for k in states]}
+    states = 3 * points + extra
+    return {**_arrays(form, states, points), "names": list(form.names[:states])}
+
+
+def _arrays(form: PointsForm, states: int, points: int) -> Texts:
+    part = arrays(form, np.arange(states), np.arange(points))
+    return {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
 
 
 def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:

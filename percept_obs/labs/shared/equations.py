@@ -37,9 +37,16 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
     if make in IN_MATRICES:
         observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
         lines = partial(IN_MATRICES[make], {gain.name: gain.symbol for gain in observer.gains})
-    else:
-        observer = make(abstract_form(), **switch)
-        lines = partial(in_scalars, observer)
+        return _without_zeros(observer, lines)
+    return equations_in_scalars(make(abstract_form(), **switch))
+
+
+def equations_in_scalars(observer: Observer) -> list[dict[str, Any]]:
+    """The same of an observer, written out for the form that it has."""
+    return _without_zeros(observer, partial(in_scalars, observer))
+
+
+def _without_zeros(observer: Observer, lines: Callable[..., list[str]]) -> list[dict[str, Any]]:
     optional = {gain.name: gain.symbol for gain in observer.gains if gain.value == 0}
     subsets = [names for size in range(len(optional), -1, -1) for names in combinations(optional, size)]
     return [{"zero": list(names), "lines": lines(zero=[optional[name] for name in names])} for names in subsets]

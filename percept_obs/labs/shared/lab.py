@@ -18,12 +18,14 @@ from IPython.utils.capture import capture_output
 
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.schema import Schema, Settings
+from percept_obs.labs.shared.typed_motion import MOST as MOST_TYPED
+from percept_obs.labs.shared.typed_motion import Typed
 from percept_obs.recording import Gaussian, Uniform
 
 BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""
 
-FROM_THE_PAGE = ("settings", "summary")
+FROM_THE_PAGE = ("asked", "settings", "summary")
 """What the page may set."""
 
 REFUSES = """
@@ -33,6 +35,12 @@ Raises
 ValueError
     If a setting is unknown or makes no sense."""
 """The end of every lab's docstring."""
+
+TYPED = ("motion", "P")
+"""The settings that are typed as expressions of time."""
+
+MOST_WRITTEN = 50
+"""How many typed motions are kept ready for the page."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
@@ -46,9 +54,11 @@ class _Checked(traitlets.TraitType[Settings, Settings]):
 
     def validate(self, lab: Any, value: Any) -> Settings:
         try:
-            return dict(lab.check(value))
+            checked = dict(lab.check(value))
         except ValueError as error:
             raise BadSettings(str(error)) from None
+        lab.write_down(checked)
+        return checked
 
 
 class Lab(anywidget.AnyWidget):
@@ -66,6 +76,8 @@ class Lab(anywidget.AnyWidget):
         Settings to open with otherwise.
     standard : dict
         What every preset begins with.
+    texts : bytes
+        What was printed for the page, where it is not what the package ships.
     **model
         What the page needs besides.
     """
@@ -78,13 +90,19 @@ class Lab(anywidget.AnyWidget):
     settings: Any = _Checked({}, help="Everything that defines what is shown.").tag(sync=True)
     summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
+    asked = traitlets.Unicode(help="A motion that somebody typed, to be read.").tag(sync=True)
+    written = traitlets.Dict(help="Typed motions, each as a function for the page, or why it cannot be read.").tag(
+        sync=True
+    )
     error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
 
-    def __init__(self, kind: str, settings: Settings, opening: Settings, standard: Settings, **model: Any) -> None:
+    def __init__(
+        self, kind: str, settings: Settings, opening: Settings, standard: Settings, texts: bytes = b"", **model: Any
+    ) -> None:
         self._opening = opening
         self._opening = self.check(settings)
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
-        super().__init__(kind=kind, texts=file_of(kind).read_bytes(), model=model, settings=self._opening)
+        super().__init__(kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening)
         _close_those_of_an_earlier_run(self)
 
     def __init_subclass__(cls) -> None:
@@ -103,6 +121,34 @@ class Lab(anywidget.AnyWidget):
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
+
+    def typed(self, text: str) -> Typed:
+        """The motion that a text describes; a ValueError if it cannot be read."""
+        raise ValueError("no motion is typed in this lab")
+
+    def typed_for_the_page(self, text: str) -> Settings:
+        """What the page needs of a typed motion; a ValueError if it cannot be read."""
+        return self.typed(text).for_the_page()
+
+    def write_down(self, settings: Settings) -> None:
+        """Have the typed motions of settings ready for the page."""
+        kept = settings.get("kept") or {}
+        for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
+            if text.strip() and "source" not in self.written.get(text, {}):
+                self._write(text)
+
+    def _write(self, text: str) -> None:
+        try:
+            answer = self.typed_for_the_page(text)
+        except ValueError as error:
+            answer = {"refusal": str(error), "position": getattr(error, "position", None)}
+        kept = [item for item in self.written.items() if item[0] != text][1 - MOST_WRITTEN :]
+        self.written = dict([*kept, (text, answer)])
+
+    @traitlets.observe("asked")
+    def _read(self, change: Mapping[str, Any]) -> None:
+        if change["new"].strip() and len(change["new"]) <= MOST_TYPED:
+            self._write(change["new"])
 
     def analyse(self) -> Settings:
         """Look deeper at the settings that the page has come to rest on."""

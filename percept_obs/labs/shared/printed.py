@@ -26,8 +26,21 @@ def file_of(kind: str) -> Path:
 
 def packed(parts: Parts) -> bytes:
     """Texts as a file holds them; the same texts are the same bytes."""
-    lines = [f"{place}\t{json.dumps(texts, allow_nan=False)}" for place, texts in parts]
-    return gzip.compress("\n".join(lines).encode(), mtime=0)
+    return compressed({place: json.dumps(texts, allow_nan=False) for place, texts in parts})
+
+
+def with_texts(kind: str, added: dict[str, Texts]) -> bytes:
+    """What was printed for a lab, with some places printed anew; quick rather than small."""
+    if not added:
+        return file_of(kind).read_bytes()
+    now = {place: json.dumps(texts, allow_nan=False) for place, texts in added.items()}
+    return compressed(_lines(kind) | now, level=1)
+
+
+def compressed(texts: dict[str, str], level: int = 9) -> bytes:
+    """JSON by its place as a file holds it."""
+    lines = [f"{place}\t{text}" for place, text in texts.items()]
+    return gzip.compress("\n".join(lines).encode(), level, mtime=0)
 
 
 def unpacked(data: bytes) -> dict[str, str]:

@@ -1,9 +1,10 @@
 """How long a simulated point can be seen, and how long a run Python follows for its words."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from percept_obs.compile import Array
 from percept_obs.recording import Camera, Recording, Scenario, record
 from percept_obs.system.surfaces import BehindCamera
 
@@ -48,6 +49,24 @@ def looks(duration: float, fastest: float, swings_at: float = 0.0) -> float:
         In rad/s.
     """
     return duration * (60 + 47 * fastest + 18 * swings_at)
+
+
+MOMENT = 1e-5
+"""Seconds over which the rate of a motion is seen; far less than a period of whatever Python can follow."""
+
+
+def swinging_at(known: Callable[[Array], Array], times: Array) -> float:
+    """About how fast numbers swing, in rad/s: their largest rate over their size.
+
+    Parameters
+    ----------
+    known : function of times
+        Gives the numbers at T times, shape (T, n).
+    times : array of shape (T,)
+    """
+    rows = known(times)
+    rates = np.abs(known(times[:-1] + MOMENT) - rows[:-1]).max(axis=0) / MOMENT
+    return float((rates / np.maximum(np.abs(rows).max(axis=0), 1e-12)).max())
 
 
 def too_fast(work: float) -> str:

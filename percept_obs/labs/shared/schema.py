@@ -7,9 +7,9 @@ setting's name and what is expected.  Dataclasses say this in less than a librar
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from numbers import Integral, Real
 from typing import Any
@@ -333,6 +333,12 @@ class Schema(dict[str, Kind]):
 def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:
     """A row of numbers of one kind, with their labels; it opens with zeros."""
     return Row([Number(label=label, unit=unit, **kind) for label in entries], about=about, unit=unit)
+
+
+def offering(kind: Kind, names: Iterable[str]) -> Kind:
+    """A choice of one or of several names, of other ones."""
+    assert isinstance(kind, Choice | Names)
+    return replace(kind, names=tuple(names))
 
 
 def gains(standard: Mapping[str, Mapping[str, float]], observer_of: Callable[[str], Observer]) -> Group:

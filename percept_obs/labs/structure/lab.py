@@ -4,21 +4,35 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from percept_obs.border import TooMuchWork
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
+from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, looks, too_fast, too_short, within_reach
-from percept_obs.labs.shared.schema import Schema, Settings, gains, standard_gains
+from percept_obs.labs.shared.printed import Texts, part, with_texts
+from percept_obs.labs.shared.sampling import (
+    as_far_as_seen,
+    exact_path,
+    looks,
+    swinging_at,
+    too_fast,
+    too_short,
+    within_reach,
+)
+from percept_obs.labs.shared.schema import Schema, Settings, gains, offering
+from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
-from percept_obs.labs.structure.texts import LARGEST, OBSERVERS, PHASES, observer_of, swinging
+from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
+from percept_obs.observers import Observer
 from percept_obs.recording import Recording
 from percept_obs.structure import (
     QUANTITIES,
@@ -51,6 +65,8 @@ class StructureLab(Lab):
 
     Parameters
     ----------
+    observers : list, optional
+        Names, and observers of your own: functions of a form, such as `percept_obs.observers.family.family` makes.
     **settings
         Those to open with, such as ``unknown=["v_p1", "v_p2", "v_p3"]``:
 
@@ -59,15 +75,25 @@ class StructureLab(Lab):
 
     schema = SCHEMA
 
-    def __init__(self, **settings: Any) -> None:
-        standard = {name: own | STANDARD_GAINS.get(name, {}) for name, own in standard_gains("structure_lab").items()}
-        self.schema = Schema(SCHEMA | {"gains": gains(standard, observer_of)})
+    def __init__(self, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
+        ours = {name: make for name, (_, make) in OBSERVERS.items()}
+        asked, self._own = (None, {}) if observers is None else brought(observers, ours)
+        if asked is not None:
+            settings["observers"] = asked
+        self._added = _printed_with(self._own)
+        printed = self._part("")["observers"]
+        standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
+        standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
+        named = offering(SCHEMA["observers"], printed)
+        self.schema = Schema(SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of)})
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(
             "structure_lab",
             settings,
             opening,
             opening,
+            texts=with_texts("structure_lab", self._added),
+            own={name: make.for_the_page() for name, make in self._own.items()},
             pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,
@@ -79,7 +105,17 @@ class StructureLab(Lab):
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
-        return runs(self.settings)
+        return runs(self.settings, self._own)
+
+    def typed(self, text: str) -> Typed:
+        """The motion that a text describes; a ValueError if it cannot be read."""
+        return read_motion(text, BLOCKS)
+
+    def _part(self, place: str) -> Texts:
+        return self._added.get(place) or part("structure_lab", place)
+
+    def _observer_of(self, name: str) -> Observer:
+        return observer_of(name) if name in OBSERVERS else _example(self._own[name])
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -89,30 +125,75 @@ class StructureLab(Lab):
             raise ValueError(
                 f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps"
             )
+        if settings["motion"].strip():
+            typed_in(settings, "motion", BLOCKS).refuse_poles(
+                settings["duration"], lambda times: _velocities(settings, times)
+            )
+        count = len(settings["unknown"])
+        refused = self._part(f"forms/{count}").get("refused", {}) if 1 <= count <= LARGEST else {}
+        for name in settings["observers"]:
+            if name in refused:
+                raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
 
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
-        duration, fastest = settings["duration"], sum(sorted(map(abs, settings["w"]))[1:])
+        duration = settings["duration"]
+        turning, swings = np.abs([settings["w"]]), settings["rate"]
+        if settings["motion"].strip():
+            times = np.linspace(0, duration, INSTANTS)
+            known = motion_of(settings).known
+            turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
+        fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
         moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings):
-            moved += LOOK_WORK * looks(duration, fastest, settings["rate"])
+            moved += LOOK_WORK * looks(duration, fastest, swings)
         if refusal := too_short(duration, settings["period"]) or too_fast(moved):
             return {"sentences": [refusal]}
-        printed = part("structure_lab", f"forms/{LARGEST}")["observers"]
-        states = {name: printed[name]["states"] for name in settings["observers"]}
+        printed = self._part(f"forms/{LARGEST}")["observers"]
+        states = {name: printed.get(name, {"states": 6})["states"] for name in settings["observers"]}
         told, beyond = within_reach(_steps(settings), states, moved)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = runs({**settings, "observers": told}) if told else {}
-        except (BehindCamera, ImpossibleChoice) as error:
+                found = runs({**settings, "observers": told}, self._own) if told else {}
+        except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
-        lines = [line for name, run in found.items() for line in late_errors(OBSERVERS[name][0], run)]
+        lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
         return {"sentences": [*lines, *beyond]}
 
 
 structure_lab = StructureLab
+
+
+def _title(name: str, run: Run) -> str:
+    return OBSERVERS[name][0] if name in OBSERVERS else run.observer.name
+
+
+def _example(make: OwnObserver) -> Observer:
+    """An observer of the first number of unknowns for which there is one."""
+    forms = [general_form(count) for count in range(LARGEST, 0, -1)]
+    refusals = [make.refusal(form) for form in forms]
+    if all(refusals):
+        raise ValueError(f"{make.name} cannot be used in this lab: {refusals[0]}")
+    return make(forms[refusals.index("")])
+
+
+def _printed_with(own: Mapping[str, OwnObserver]) -> dict[str, Texts]:
+    """What is printed besides what the package ships: the loops of somebody's own observers."""
+    if not own:
+        return {}
+    model = part("structure_lab")
+    told = {name: of_an_observer(make, {"": _example(make)}) for name, make in own.items()}
+    found: dict[str, Texts] = {"": {**model, "observers": {**model["observers"], **told}}}
+    for count in range(1, LARGEST + 1):
+        printed, added = part("structure_lab", f"forms/{count}"), observers_for_the_page(general_form(count), own)
+        kernels = {name: next(iter(ways.values())) for name, ways in added["observers"].items()}
+        found[f"forms/{count}"] = {
+            **{**printed, "observers": {**printed["observers"], **kernels}},
+            "refused": added["refused"],
+        }
+    return found
 
 
 def _steps(settings: Settings) -> float:
@@ -126,34 +207,39 @@ def unknowns_of(settings: Settings) -> StructureAndMotion:
         for name in ("v_c", "v_p")
         for axis in (1, 2, 3)
     }
+    if settings["motion"].strip():
+        changed = read_motion(settings["motion"], BLOCKS).changed
+        values |= {name: int(entry != 0) for name, entry in changed.items() if name in values}
     unknown = tuple(settings["unknown"])
     earlier = ("d_s",) if settings["earlier"] and "d_s" not in unknown else ()
     return StructureAndMotion(unknown, tuple(n for n, v in values.items() if v == 0 and n not in unknown), earlier)
 
 
-def runs(settings: Settings) -> dict[str, Run]:
+def runs(settings: Settings, own: Mapping[str, OwnObserver] = MappingProxyType({})) -> dict[str, Run]:
     """Runs that lab settings stand for, by the observers' names."""
     unknowns = unknowns_of(settings)
     recording = _recorded(settings, unknowns)
     start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
     found = {}
     for name in settings["observers"]:
-        observer = OBSERVERS[name][1](unknowns.form).with_gains(**settings["gains"][name])
+        make = OBSERVERS[name][1] if name in OBSERVERS else own[name]
+        observer = make(unknowns.form).with_gains(**settings["gains"][name])
         found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
     return found
 
 
 def _swings(settings: Settings) -> bool:
-    return bool(settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES]))
+    swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
+    return bool(swings or settings["motion"].strip())
 
 
 def motion_of(settings: Settings) -> Motion:
-    """The true motion, constant unless a velocity swings."""
-    around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
+    """The true motion, constant unless a velocity swings or is typed."""
+    typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
 
     def known(times: Array) -> Array:
-        swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
-        return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
+        rows = _velocities(settings, times)
+        return typed.rows(times, rows) if typed else rows
 
     if _swings(settings):
         return replace(rigid(), signal=Signal(OverTime(known)))
@@ -161,12 +247,19 @@ def motion_of(settings: Settings) -> Motion:
     return rigid(still[:3], still[3:6], still[6:])
 
 
+def _velocities(settings: Settings, times: Array) -> Array:
+    """Rows of w, v_c and v_p as numbers and swings set them, shape (T, 9)."""
+    around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
+    swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
+    return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
+
+
 _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 
 def _recorded(settings: Settings, unknowns: StructureAndMotion) -> Recording:
     """What is measured, as far as the point stays in front of the camera."""
-    keys = ("ybar", "scale", *VECTORS, "rate", "noise", "bias", "drift", "seed", "period", "duration")
+    keys = ("ybar", "scale", *VECTORS, "motion", "rate", "noise", "bias", "drift", "seed", "period", "duration")
     return _recorded_once(json.dumps({key: settings[key] for key in keys}), unknowns)
 
 

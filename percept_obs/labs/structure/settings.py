@@ -14,6 +14,7 @@ from percept_obs.labs.shared.schema import (
     noise,
     vector,
 )
+from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES
 from percept_obs.tracking.verdict import TOLERANCE
@@ -51,6 +52,7 @@ SCHEMA = Schema(
     v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
     w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
+    motion=typed_setting("v_c1 = 0.2 cos(t)^3; w3 = 0.1 sin(2t)"),
     rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),
     noise=noise(
         size=Number(0.0, 0, 1, (0, 1e-3), 5e-6, label="in y1, y2"),

@@ -29,6 +29,10 @@ from percept_obs.system.surfaces import POINT, pinhole
 
 MOTION = rigid()
 _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
+BLOCKS = MappingProxyType(
+    {letter: sp.ImmutableMatrix(block) for letter, block in (("w", _ROTATION), ("v_c", CAMERA), ("v_p", OBJECT))}
+)
+"""What a motion is made of, by the letters that may be typed."""
 LARGEST = 3
 """How many unknowns there are at most."""
 
@@ -124,7 +128,12 @@ def case_of(number: int) -> dict[str, Any]:
     """Settings in which a corollary holds: the paper's values where it states some, and velocities that swing."""
     corollary = COROLLARIES[number - 1]
     stated = corollary.choice()
-    fixed: dict[str, Any] = {"unknown": list(stated.unknown), "earlier": "d_s" in stated.earlier, "w": [0.0] * 3}
+    fixed: dict[str, Any] = {
+        "motion": "",
+        "unknown": list(stated.unknown),
+        "earlier": "d_s" in stated.earlier,
+        "w": [0.0] * 3,
+    }
     if number in (3, 5):
         swings = [[0.3, 0.3, -0.1], [0.2, 0.2, 0.1 if number == 5 else 0.0]]
         return fixed | {

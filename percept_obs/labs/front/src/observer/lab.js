@@ -1,7 +1,9 @@
 // The observer lab: a camera, a moving point, and observers that recover its distance.
 
+import { withoutRefused } from "../common/model/kernels.js";
 import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
+import { Frames } from "../common/page/frames.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
@@ -33,6 +35,7 @@ export class ObserverLab extends Live {
       towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
+    plane.frames = new Frames(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
@@ -50,12 +53,12 @@ export class ObserverLab extends Live {
   }
 
   chooseScenario(name) {
-    const { title: _title, ...fit } = this.model.scenarios[name] ?? {};
+    const { title: _title, track: _sampled, ...fit } = this.model.scenarios[name] ?? {};
     const track = this.model.recordings[name];
     if (!track) return this.change({ scenario: name, ...fit }, true);
     const { surface, outputs, duration, window } = track;
     const hold = this.settings.hold === "exact" ? "zero" : this.settings.hold;
-    return this.change({ scenario: name, surface, outputs, duration, window, hold, believed: null }, true);
+    return this.change({ scenario: name, surface, outputs, duration, window, hold, motion: "", believed: null }, true);
   }
 
   fitted(asked) {
@@ -63,12 +66,8 @@ export class ObserverLab extends Live {
     const allowed = outputs.some((names) => same(names, asked.outputs));
     const settings = allowed ? asked : { ...asked, outputs: [...outputs[0]] };
     if (!allowed) this.view.notice(`The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`);
-    const refused = this.kernels.refused(settings);
-    const lost = settings.observers.filter((name) => refused[name]);
-    if (!lost.length) return settings;
-    const left = settings.observers.filter((name) => !refused[name]);
-    const why = lost.map((name) => `The ${this.model.observers[name].title} observer was dropped: ${refused[name]}.`);
-    this.view.notice(why.join(" "));
-    return { ...settings, observers: left.length ? left : [ALWAYS_POSSIBLE] };
+    const found = withoutRefused(settings, this.kernels.refused(settings), this.model.observers, ALWAYS_POSSIBLE);
+    if (found.why) this.view.notice(found.why);
+    return found.settings;
   }
 }

@@ -26,6 +26,12 @@ class Formulas extends FormulaSheet {
   }
 }
 
+/** Where one more point is put, beside the first. */
+function placeBeside([x, y, z], k) {
+  const round = (value) => Number(value.toFixed(2));
+  return [x + 0.5 * Math.cos(2.4 * k), y + 0.4 * Math.sin(2.4 * k), Math.max(z, 1) + 0.1 * k].map(round);
+}
+
 export class PointsLab extends Live {
   constructor(widget, place, model) {
     const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
@@ -66,16 +72,28 @@ export class PointsLab extends Live {
   addPoint() {
     const { points, hidden } = this.settings;
     const k = points.length;
-    if (k === this.model.mostPoints) return;
-    const [x, y, z] = points[0];
-    const round = (value) => Number(value.toFixed(2));
-    const place = [x + 0.5 * Math.cos(2.4 * k), y + 0.4 * Math.sin(2.4 * k), Math.max(z, 1) + 0.1 * k].map(round);
-    this.change({ points: [...points, place], hidden: [...hidden, null] }, true);
+    if (k === this.model.mostPoints || !this.layouts[k]) return;
+    this.change({ points: [...points, placeBeside(points[0], k)], hidden: [...hidden, null] }, true);
+  }
+
+  /** The layouts of the state by the number of points; a form of one's own has one only. */
+  get layouts() {
+    return this.model.states[this.settings.state].layouts;
+  }
+
+  /** With as many points as the state may have. */
+  fitted(asked) {
+    const { layouts } = this.model.states[asked.state];
+    if (layouts[asked.points.length - 1]) return asked;
+    const count = layouts.findIndex(Boolean) + 1;
+    this.view.notice(`Your own form has ${count} point${count === 1 ? "" : "s"}.`);
+    const points = Array.from({ length: count }, (_, k) => asked.points[k] ?? placeBeside(asked.points[0], k));
+    return { ...asked, points, hidden: points.map((_, k) => asked.hidden[k] ?? null), motion: "" };
   }
 
   removePoint(k) {
     const { points, hidden } = this.settings;
-    if (points.length === 1 || k >= points.length) return;
+    if (points.length === 1 || k >= points.length || !this.layouts[points.length - 2]) return;
     this.change({ points: points.toSpliced(k, 1), hidden: hidden.toSpliced(k, 1) }, true);
   }
 

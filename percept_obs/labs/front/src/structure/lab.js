@@ -1,5 +1,6 @@
 // The lab of structure and motion: what is known, what can therefore be estimated, and how the estimates converge.
 
+import { withoutRefused } from "../common/model/kernels.js";
 import { settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
@@ -43,6 +44,12 @@ export class StructureLab extends Live {
 
   moveStart([y1, y2]) {
     if (Math.abs(y1) <= 1000 && Math.abs(y2) <= 1000) this.change({ ybar: [y1, y2, this.settings.ybar[2]] });
+  }
+
+  fitted(asked) {
+    const { settings, why } = withoutRefused(asked, this.kernels.refused(asked), this.model.observers, "ideal");
+    if (why) this.view.notice(why);
+    return settings;
   }
 
   chosen() {

@@ -13,10 +13,10 @@ function nothing(problem) {
 }
 
 /** The times of samples, and the steps of what moves before them. */
-export function clockOf(memory, period, duration) {
-  return memory.once("clock", [period, duration], () => {
+export function clockOf(memory, period, duration, name = "", breaks = /** @type {number[]} */ ([])) {
+  return memory.once("clock", [period, duration, name], () => {
     const time = sampleTimes(period, duration);
-    return { time, plant: plantGrid(time) };
+    return { time, plant: plantGrid(time, breaks) };
   });
 }
 
@@ -57,8 +57,14 @@ export class PointCamera {
     });
   }
 
+  /** When the motion has kinks, and under which name. */
+  kinks(_settings) {
+    return { name: "", breaks: /** @type {number[]} */ ([]) };
+  }
+
   see(settings, functions) {
-    const { time, plant } = clockOf(this.memory, settings.period, settings.duration);
+    const { name, breaks } = this.kinks(settings);
+    const { time, plant } = clockOf(this.memory, settings.period, settings.duration, name, breaks);
     const count = time.length;
     if (count < 2) return nothing(`a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`);
     const truth = new Float64Array(3 * count);
@@ -72,7 +78,7 @@ export class PointCamera {
   /** The exact coordinates at some times, a column each. */
   exact(settings, functions, times) {
     const found = new Float64Array(3 * times.length);
-    this.look(settings, functions, plantGrid(times), found);
+    this.look(settings, functions, plantGrid(times, this.kinks(settings).breaks), found);
     return [0, 1, 2].map((c) => column(found, 3, c));
   }
 

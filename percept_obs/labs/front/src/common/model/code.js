@@ -19,16 +19,29 @@ export function durationOf({ settings, time, leavesAt }) {
   return leavesAt === null ? settings.duration : time.at(-1);
 }
 
+/** What of the names is in modules, and a line for each that is in none and must be there already. */
+export function broughtBy(own, names) {
+  const brought = names.map((name) => own?.[name]).filter(Boolean);
+  const modules = {};
+  for (const { module, name } of brought) if (module) (modules[module] ??= []).push(name);
+  const lines = brought.filter(({ module }) => !module).map(({ name }) => `# ${name} = the one that you gave to the lab`);
+  return { modules, lines };
+}
+
 /** Lines in which each observer follows and says what happened; its maker comes with what it is told of its switch. */
-export function trackings(settings, { observers }, { makerOf, form, options, tolerance = "" }) {
+export function trackings(settings, { observers, own }, { makerOf, form, options, tolerance = "" }) {
   return settings.observers.flatMap((name) => {
     const { gains, ways } = observers[name];
     const [maker, way] = makerOf(name);
     const used = gains.filter((gain) => ways[switchOf(settings, name)].includes(gain.name));
     const changed = used.filter((gain) => settings.gains[name][gain.name] !== gain.value);
-    const given = changed.map((gain) => `, ${gain.name}=${settings.gains[name][gain.name]}`).join("");
+    const values = changed.map((gain) => `${gain.name}=${settings.gains[name][gain.name]}`);
+    const given = values.map((value) => `, ${value}`).join("");
+    const made = own?.[name]
+      ? own[name].call.replace("(form)", `(${form}${way})`) + (values.length ? `.with_gains(${values.join(", ")})` : "")
+      : `${maker}(${form}${way}${given})`;
     const result = settings.observers.length > 1 ? `run_${name}` : "run";
-    const call = ["recording", `${maker}(${form}${way}${given})`, ...options].join(", ");
+    const call = ["recording", made, ...options].join(", ");
     return [`${result} = track(${call})`, `print(${result}.verdict(${tolerance}))`];
   });
 }

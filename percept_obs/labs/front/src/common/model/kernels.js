@@ -3,7 +3,16 @@
 
 import { Modules } from "./modules.js";
 
-/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean}} Module */
+/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean, refusal?: string}} Module */
+
+/** Settings without the observers that are refused, and why those went; one that always exists takes the place of all. */
+export function withoutRefused(settings, refused, observers, always) {
+  const lost = settings.observers.filter((name) => refused[name]);
+  if (!lost.length) return { settings, why: "" };
+  const left = settings.observers.filter((name) => !refused[name]);
+  const why = lost.map((name) => `The ${observers[name].title} observer was dropped: ${refused[name]}.`);
+  return { settings: { ...settings, observers: left.length ? left : [always] }, why: why.join(" ") };
+}
 
 /** Functions of a model; those of a lab say which modules settings need. */
 export class PrintedKernels {
@@ -36,7 +45,10 @@ export class PrintedKernels {
 
   /** Load what settings need. */
   async prepare(settings) {
-    await Promise.all([...this.limits, ...this.needed(settings)].map(({ key, texts }) => this.modules.prepare(key, texts)));
+    const wanted = [...this.limits, ...this.needed(settings)];
+    const lacking = wanted.find(({ refusal }) => refusal);
+    if (lacking) throw new Error(lacking.refusal);
+    await Promise.all(wanted.map(({ key, texts }) => this.modules.prepare(key, texts)));
   }
 
   /** The module of an observer's loop, without what it has no need of. */

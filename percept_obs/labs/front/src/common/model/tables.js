@@ -31,11 +31,17 @@ export function withSteps({ grid, index }) {
   return { grid, index, steps: differences(grid) };
 }
 
-/** The steps in which the truth moves: from time 0 on, with an end at each of the times; the first is time 0. */
-export function plantGrid(times) {
-  const from = new Float64Array(times.length + 1);
-  from.set(times, 1);
-  return withSteps(stepGrid(from, PLANT_STEP));
+/**
+ * The steps in which the truth moves: from time 0 on, with an end at each of the times, and at each of the breaks, where
+ * its motion has a kink; index says where time 0 and the times stand.
+ */
+export function plantGrid(times, breaks = /** @type {number[]} */ ([])) {
+  const last = times[times.length - 1];
+  const places = [{ time: 0, wanted: true }, ...Array.from(times, (time) => ({ time, wanted: true }))];
+  for (const time of breaks) if (time > 0 && time < last) places.push({ time, wanted: false });
+  if (breaks.length) places.sort((one, other) => one.time - other.time);
+  const { grid, index } = stepGrid(Float64Array.from(places, ({ time }) => time), PLANT_STEP);
+  return withSteps({ grid, index: index.filter((_, k) => places[k].wanted) });
 }
 
 export function sampleTimes(period, duration) {
@@ -131,11 +137,13 @@ export function arriving(columns, index, count, room = fresh) {
 
 /** Numbers known at the instants of a grid's steps, or the one row that is constant. */
 export function known(motion, shape, grid) {
-  return knownAt(motion, shape, motion.times.length === 1 ? grid : instants(grid));
+  if (motion.along) return { rows: motion.along(grid, shape), width: motion.count + shape.length, varying: true };
+  return knownAt(motion, shape, motion.times?.length === 1 ? grid : instants(grid));
 }
 
 /** Rows of known numbers at some times. */
 export function knownAt(motion, shape, places) {
+  if (motion.over) return { rows: motion.over(places, shape), width: motion.count + shape.length, varying: true };
   const width = motion.rows[0].length + shape.length;
   if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
   const rows = new Float64Array(places.length * width);

@@ -79,6 +79,7 @@ export class Following {
     this.closed = true;
     cancelAnimationFrame(this.frame);
     clearTimeout(this.resting);
+    for (const control of this.panel?.controls ?? []) control.close?.();
     this.link?.close();
     this.leave();
   }

@@ -81,11 +81,16 @@ export class ImagePlane extends FramedImage {
     this.arrowsOf = arrowsOf;
     this.tag = tag;
     this.towardsOf = towardsOf;
+    /** @type {any} the film behind the track, if there is one */
+    this.frames = null;
   }
 
   draw(shown, ghost, cursor, theme) {
     const place = this.placeOf(shown);
-    const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
+    const inside = (pen, frame) => {
+      this.frames?.draw(pen, frame, shown.settings, cursor);
+      this.trace(pen, frame, shown, ghost, cursor, theme);
+    };
     const towards = this.towardsOf(shown);
     const placesIn = ({ centre, half }) => [place ?? (towards && centre.map((value, c) => value + 1.5 * half * towards[c]))];
     this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, inside, placesIn);

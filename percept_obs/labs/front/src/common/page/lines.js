@@ -3,6 +3,7 @@
 /** Dashes of the lines that are compared, in their order. */
 export const DASHES = [
   [7, 4], [2, 3], [10, 3, 2, 3], [16, 4], [9, 3, 2, 3, 2, 3], [4, 2, 4, 7], [2, 7], [16, 3, 5, 3], [13, 3, 2, 3, 7, 3],
+  [5, 2, 5, 8], [11, 2], [3, 6, 9, 6],
 ];
 
 /** Width of all lines, in pixels; thin ones while a hand moves, for a page draws wide dashes several times slower. */

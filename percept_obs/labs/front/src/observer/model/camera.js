@@ -1,10 +1,14 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
+import { known } from "../../common/model/tables.js";
+import { isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
 export class Camera extends PointCamera {
   constructor(model, memory) {
     super(model, memory, 2, "move its start X, Y, Z in front of it");
+    /** Rows of typed motions by the grids that they are along. */
+    this.along = new WeakMap();
   }
 
   record(settings, functions) {
@@ -13,13 +17,37 @@ export class Camera extends PointCamera {
     return super.record(settings, functions);
   }
 
-  placeOf({ surface, normal, A, b, X0, period, duration }) {
-    return [surface, normal, A, b, X0, period, duration];
+  placeOf({ surface, normal, A, b, motion, X0, period, duration, scenario }) {
+    return [surface, normal, A, b, motion, X0, period, duration, this.sampledMotion(scenario) ? scenario : ""];
   }
 
-  path(settings) {
-    const known = { rows: [...settings.A.flat(), ...settings.b], varying: false };
-    return { start: settings.X0, known, shape: shapeOf(settings) };
+  /** The motion of a scenario that was sampled, if it was. */
+  sampledMotion(scenario) {
+    return this.model.scenarios[scenario]?.track;
+  }
+
+  kinks({ scenario }) {
+    const sampled = this.sampledMotion(scenario);
+    return { name: sampled ? scenario : "", breaks: sampled?.times ?? [] };
+  }
+
+  path(settings, functions, lines) {
+    const { motion, shape } = this.motion(settings, functions);
+    const start = settings.X0;
+    if (motion.times?.length === 1) return { start, known: { rows: motion.rows[0], varying: false }, shape };
+    const { A, b, motion: text, scenario } = settings;
+    const place = [A, b, text, scenario, lines.grid.length, lines.grid.at(-1)];
+    return { start, known: this.memory.once("path", place, () => known(motion, [], lines.grid)), shape };
+  }
+
+  /** A motion that was typed: numbers at any times, and along the steps of a grid. */
+  typedMotion({ A, b }, { typed }) {
+    const numbers = [...A.flat(), ...b];
+    return {
+      count: numbers.length,
+      over: (times, shape) => typedRows(typed, [...numbers, ...shape], times),
+      along: (grid, shape) => typedAlong(this.along, typed, [...numbers, ...shape], grid),
+    };
   }
 
   sampled({ truth }, { noise, dropout }, { shape, loss }) {
@@ -35,14 +63,24 @@ export class Camera extends PointCamera {
   }
 
   /** The motion that a recording brings with it, or that settings say, with the surface's own numbers. */
-  motion(settings) {
+  motion(settings, functions) {
     const recorded = this.model.recordings[settings.scenario];
-    if (!recorded) return { motion: constantMotion(settings), shape: shapeOf(settings) };
-    const { times, rows } = recorded.motion;
-    const columns = rows[0].map((_, p) => Float64Array.from(rows, (row) => row[p]));
-    return { motion: { times, rows, columns }, shape: [] };
+    const table = recorded?.motion ?? this.sampledMotion(settings.scenario);
+    const shape = recorded ? [] : shapeOf(settings);
+    if (table) return { motion: this.memory.once("table", [settings.scenario], () => withColumns(table)), shape };
+    return { motion: isTyped(settings) ? this.typedMotion(settings, functions) : constantMotion(settings), shape };
   }
 }
+
+function withColumns({ times, rows }) {
+  return { times, rows, columns: rows[0].map((_, p) => Float64Array.from(rows, (row) => row[p])) };
+}
+
+/** Whether the motion of settings is not the same at all times. */
+export function varies(settings, { recordings, scenarios }) {
+  return settings.scenario in recordings || Boolean(scenarios[settings.scenario]?.track) || isTyped(settings);
+}
+
 
 export function shapeOf(settings) {
   return settings.surface === "plane" ? settings.normal : [];

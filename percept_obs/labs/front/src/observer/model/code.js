@@ -1,19 +1,24 @@
 // The few lines of Python that make the same run.
 
-import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { broughtBy, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
 import { switchOf } from "../../common/model/settings.js";
+import { keyOf } from "./kernels.js";
+import { isTyped } from "../../common/model/typed.js";
 
 export function pythonOf(shown, model) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
-  const lines = recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names);
+  const brought = broughtBy(model.own, [settings.surface, ...settings.observers]);
+  const surface = model.own[settings.surface]?.call ?? `${settings.surface}()`;
+  const lines = [...brought.lines, ...(recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names, model))];
   const motion = recorded ? recorded.kind : "affine";
   names.add(motion);
-  names.add(settings.surface);
+  if (!model.own[settings.surface]) names.add(settings.surface);
+  const form = model.forms[keyOf(settings)];
   const outputs = settings.outputs.map((o) => `"${o}"`).join(", ");
-  lines.push(`form = PerspectiveSystem(${motion}(), ${settings.surface}()).measure(${outputs})`);
-  const options = [];
+  lines.push(`form = PerspectiveSystem(${motion}(), ${surface}).${form.w ? "measure" : "partition"}(${outputs})`);
+  const options = /** @type {string[]} */ ([]);
   const { mode, values } = settings.start;
   if (mode !== "own") options.push(`start=${list(mode === "zero" ? [0, 0, 0] : values)}`);
   if (settings.hold !== "zero") options.push(`hold="${settings.hold}"`);
@@ -26,17 +31,34 @@ export function pythonOf(shown, model) {
     return [name, way === Object.keys(model.observers[name].ways)[0] ? "" : `, switch="${way}"`];
   };
   lines.push(...trackings(settings, model, { makerOf, form: "form", options }));
-  const wanted = { percept_obs: names, "percept_obs.observers": settings.observers };
-  return `${imports(wanted)}\n${lines.join("\n")}\n`;
+  const ours = settings.observers.filter((name) => !model.own[name]);
+  const wanted = { percept_obs: names, "percept_obs.observers": ours, ...brought.modules };
+  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
+  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
 }
 
-function simulation(shown, names) {
+/** Lines that make the motion, and what the copied code has to be given. */
+function motionOf({ A, b, motion, scenario }, { written, scenarios }) {
+  if (scenarios[scenario]?.track) return [`# motion = that of the scenario ${JSON.stringify(scenario)} that you gave to the lab`];
+  if (!isTyped({ motion })) return [`motion = affine(${matrix(A)}, ${list(b)})`];
+  const { python } = written[motion];
+  const numbers = Object.fromEntries([...A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])), ...b.map((value, i) => [`b${i + 1}`, value])]);
+  const used = Object.keys(numbers).filter((name) => Object.values(python).some((text) => new RegExp(`\\b${name}\\b`).test(text)));
+  const entry = (name) => python[name] ?? numbers[name];
+  const rows = matrix(A.map((row, i) => row.map((_, j) => entry(`a${i + 1}${j + 1}`))));
+  return [
+    ...used.map((name) => `${name} = ${numbers[name]}`),
+    `motion = affine(lambda t: ${rows}, lambda t: ${list(b.map((_, i) => entry(`b${i + 1}`)))})`,
+  ];
+}
+
+function simulation(shown, names, model) {
   const { settings } = shown;
   for (const name of ["affine", "Camera", "Scenario", "record", NOISES[settings.noise.kind]]) names.add(name);
   const noise = `${NOISES[settings.noise.kind]}(${settings.noise.size})`;
-  const surface = settings.surface === "plane" ? `plane(${list(settings.normal)})` : `${settings.surface}()`;
+  const surface = settings.surface === "plane" ? `plane(${list(settings.normal)})` : (model.own[settings.surface]?.call ?? `${settings.surface}()`);
   return [
-    `motion = affine(${matrix(settings.A)}, ${list(settings.b)})`,
+    ...motionOf(settings, model),
     `scenario = Scenario("from the lab", motion, ${list(settings.X0)}, ${durationOf(shown)}, ${surface})`,
     `camera = Camera(period=${settings.period}, noise=${noise}, dropout=${settings.dropout})`,
     `recording = record(scenario, camera=camera, seed=${settings.seed})`,

@@ -6,13 +6,14 @@ import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
 import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
-import { Camera, constantMotion, shapeOf } from "./camera.js";
+import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { spansInside, windowed } from "./measures.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
 const INFINITY = 1e6;
 const NEARLY = 1e-9;
+const NONE = new Float64Array(0);
 
 export class Engine extends Runner {
   constructor(model) {
@@ -61,11 +62,11 @@ export class Engine extends Runner {
     const clock = recorded ? settings.scenario : [settings.period, time.length];
     const lines = memory.once("grid", clock, () => withSteps(stepGrid(time, LONGEST_STEP)));
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
-    const { motion, shape } = this.camera.motion(settings);
+    const { motion, shape } = this.camera.motion(settings, functions);
     const believed = settings.believed ? constantMotion(settings.believed) : motion;
-    const table = memory.once("known", [clock, settings.believed ?? (recorded ? "" : believed.rows), shape], () =>
-      known(believed, shape, lines.grid),
-    );
+    const { A, b, motion: text, scenario } = settings;
+    const of = settings.believed ?? (recorded ? "" : [A, b, text, scenario]);
+    const table = memory.once("known", [clock, of, shape], () => known(believed, shape, lines.grid));
     return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]), settings.start.mode === "own");
   }
 
@@ -80,10 +81,12 @@ export class Engine extends Runner {
   }
 
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {
+    const window = Math.min(settings.window, time[time.length - 1] - time[0]);
+    if (!functions.w) return { window, time: NONE, smallest: NONE };
     const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
-    const { motion, shape } = this.camera.motion(settings);
-    const parameters = motion.rows[0].length + shape.length;
+    const { motion, shape } = this.camera.motion(settings, functions);
     const table = knownAt(motion, shape, time);
+    const parameters = table.width;
     const size = hidden.length * measured.length;
     const w = this.room("w", size * time.length);
     const x = new Float64Array(measured.length + parameters);
@@ -95,14 +98,13 @@ export class Engine extends Runner {
       functions.w(x, out);
       for (let i = 0; i < size; i++) w[k * size + i] = out[i];
     }
-    const window = Math.min(settings.window, time[time.length - 1] - time[0]);
     return { window, ...windowed(time, w, hidden.length, measured.length, window) };
   }
 
   /** Where the translation points in the image, and where an instant tells too little. */
   geometry(settings, functions, form) {
     const nowhere = { foe: null, foeTowards: null, circle: null };
-    if (settings.scenario in this.model.recordings) return nowhere;
+    if (varies(settings, this.model)) return nowhere;
     const parameters = [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
     const foe = Array.from(functions.foe(parameters, [0, 0]));
     if (!foe.every((v) => Math.abs(v) < INFINITY)) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };

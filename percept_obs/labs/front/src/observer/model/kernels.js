@@ -2,6 +2,8 @@
 
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { switchOf } from "../../common/model/settings.js";
+import { typedModule } from "../../common/model/typed.js";
+import { varies } from "./camera.js";
 
 /** Name of a form: what is seen, and what of it is measured; as in texts.py. */
 export function keyOf({ surface, outputs }) {
@@ -12,7 +14,8 @@ export class Kernels extends PrintedKernels {
   /** The observers that do not exist for these settings' form or recording, with the reasons. */
   refused(settings) {
     const { forms, recordings } = this.model;
-    return { ...forms[keyOf(settings)]?.refused, ...recordings[settings.scenario]?.refused };
+    const moving = varies(settings, this.model) && !recordings[settings.scenario] ? this.model.varies : {};
+    return { ...forms[keyOf(settings)]?.refused, ...recordings[settings.scenario]?.refused, ...moving };
   }
 
   needed(settings) {
@@ -26,9 +29,10 @@ export class Kernels extends PrintedKernels {
         return this.loop([key, name, way].filter(Boolean).join(" "), name, observers[name][way]);
       });
     return [
-      { key: "point", texts: { rates: this.model.rates } },
+      { key: "point", texts: { rates: this.model.rates, plant: this.model.plant } },
+      ...typedModule(this.model, settings.motion),
       { key: settings.surface, texts: { project, ray, foe } },
-      { key, texts: { w, ...(circle && { circle }) } },
+      { key, texts: { ...(w && { w }), ...(circle && { circle }) } },
       ...loops,
     ];
   }

@@ -2,6 +2,7 @@
 
 import { readable } from "../../common/model/scales.js";
 import { leavingInWords } from "../../common/model/words.js";
+import { varies } from "./camera.js";
 
 const UNEXCITED = 1e-4;
 
@@ -25,7 +26,11 @@ export function reasons(shown, model) {
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
   }
-  if (!(settings.scenario in model.recordings) && settings.b.every((value) => value === 0)) {
+  const constant = !varies(settings, model);
+  if (!constant && !(settings.scenario in model.recordings)) {
+    found.push("The motion varies over time, and so the focus of expansion moves: it is not drawn.");
+  }
+  if (constant && settings.b.every((value) => value === 0)) {
     found.push("Nothing translates, b = 0: there is no focus of expansion, and images do not tell any distance.");
   }
   const nearest = nearestToFoe(shown);

@@ -3,6 +3,7 @@
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
+import { typedField } from "../../common/page/typed.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
 /** What the page calls the settings. */
@@ -81,11 +82,16 @@ export class Panel extends Fieldsets {
         this.choice("surface", { choices: Object.fromEntries(named(model.surfaces)) }),
         this.onlyIf(({ surface }) => surface === "plane", element("div", {}, ...this.each("normal"))),
         this.number("duration"),
-        ...this.litList("b"),
-        this.matrix("A"),
+        this.onlyIf(({ scenario }) => !model.scenarios[scenario]?.track, element("div", {}, ...this.litList("b"), this.matrix("A"), this.typed())),
         ...this.each("X0"),
       ),
     );
+  }
+
+  /** The motion in expressions of time, which changes some of the numbers. */
+  typed() {
+    const { label, most } = this.schema.motion;
+    return this.add(typedField(this.lab, { ...this.bound("motion", true), label, most, hint: "b1 = b1 + 0.2 sin(2t)" }));
   }
 
   belief() {

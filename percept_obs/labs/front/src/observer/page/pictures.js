@@ -43,7 +43,7 @@ const BUILD = {
   },
   distance(shown, ghost, theme) {
     const lines = linesOf(shown, ghost, theme, "distance", ({ width }, rows) => distancesOf(rows, width));
-    const title = `${NAMES[shown.settings.surface]} in m`;
+    const title = `${NAMES[shown.settings.surface] ?? "Distance"} in m`;
     return { title, lines, scale: distancesAround(lines, sureOf(shown)), marks: marksOf(shown, theme) };
   },
   error(shown, ghost, theme) {

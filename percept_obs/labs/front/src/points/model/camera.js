@@ -122,8 +122,8 @@ export class Camera {
 }
 
 /** The settings that motion and samples' times depend on; what else a clock depends on is added where it is made. */
-function placeOf({ state, turning, spin, input, velocity, period, duration }) {
-  return [state, turning, spin, input, velocity, period, duration];
+function placeOf({ state, turning, spin, input, velocity, motion, period, duration }) {
+  return [state, turning, spin, input, velocity, motion, period, duration];
 }
 
 /** C of all points, three rows each. */

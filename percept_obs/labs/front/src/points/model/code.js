@@ -1,22 +1,29 @@
 // The few lines of Python that make the same run.
 
 import { imports, list, NOISES } from "../../common/model/code.js";
+import { isTyped } from "../../common/model/typed.js";
+import { OWN } from "./kernels.js";
 
 const WEIGHTS = {
   constant: ({ size }) => [size, []],
   scheduled: ({ size, final, duration }) => [`lambda t: ${size} * (${final} / ${size}) ** (t / ${duration})`, []],
+  typed: ({ P }, { written }) => [`lambda t: ${written[P].python.P ?? "P"}`, []],
   lyapunov: ({ size, decrease }) => [`lyapunov(${size}, ${decrease})`, ["lyapunov"]],
   riccati: ({ size, forgetting }) => [`riccati(${size}, ${forgetting})`, ["riccati"]],
 };
 
-export function pythonOf({ settings, truth, n, points, names: states }, { error }) {
+export function pythonOf({ settings, truth, n, points, names: states }, model) {
+  const { error } = model;
+  const own = settings.state === OWN;
   const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
-  const [P, weights] = WEIGHTS[settings.weight](settings);
+  const [P, weights] = WEIGHTS[settings.weight](settings, model);
   const helpers = new Set(weights);
   const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
   const start = rounded(truth.subarray(0, n));
   const lines = [
-    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`,
+    ...(own ? [] : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
+    ...(settings.weight === "typed" ? [`P = ${settings.size}`] : []),
+    ...(own ? [] : movedAs(settings, model)),
     ...formOf(settings, points, names, helpers),
     `# the state is ${states.join(", ")}`,
     `scenario = PointsScenario("from the lab", form, ${list(start)}, ${duration})`,
@@ -37,23 +44,41 @@ export function pythonOf({ settings, truth, n, points, names: states }, { error 
   const wanted = {
     percept_obs: names,
     "percept_obs.points": helpers,
-    "percept_obs.points.manoeuvre": ["Manoeuvre"],
+    "percept_obs.points.manoeuvre": own ? [] : ["Manoeuvre"],
+    ...(isTyped(settings) && { "percept_obs.system.motion": ["TIME as t"], sympy: model.written[settings.motion].functions }),
   };
-  return `${settings.start === "error" ? "import numpy as np\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+  const math = String(P).includes("math.") ? "import math\n\n" : "";
+  return `${math}${settings.start === "error" ? "import numpy as np\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+}
+
+/** How camera and body move, changed as it was typed. */
+function movedAs(settings, { written }) {
+  const lines = ["turning, velocity, spinning = moves.velocities"];
+  if (!isTyped(settings)) return lines;
+  const { sympy } = written[settings.motion];
+  const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
+  const moved = (which, sign = "") => list(namesOf(which).map((name) => `${sign}(${sympy[name] ?? name})`));
+  return [
+    ...lines,
+    `${namesOf("w").join(", ")} = [-entry for entry in turning]`,
+    `${namesOf("v").join(", ")} = [-entry for entry in velocity]`,
+    `${namesOf("w_b").join(", ")} = spinning`,
+    `turning, velocity, spinning = ${moved("w", "-")}, ${moved("v", "-")}, ${moved("w_b")}`,
+  ];
 }
 
 function formOf({ state }, points, names, helpers) {
+  if (state === OWN) return ["# form = the PointsForm that you gave to the lab"];
   if (state === "independent") {
     names.add("rigid");
     helpers.add("independent_points");
     return [
-      "turning, velocity, _ = moves.velocities",
       `form = independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), ${points})`,
     ];
   }
   const helper = { body: "rigid_body", origin: "body_with_origin" }[state];
   helpers.add(helper);
-  return [`form = ${helper}(${points}, *moves.velocities)`];
+  return [`form = ${helper}(${points}, turning, velocity, spinning)`];
 }
 
 function rounded(values) {

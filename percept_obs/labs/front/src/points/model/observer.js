@@ -2,6 +2,7 @@
 // The observer of many points: the same numbers as track() in Python.
 
 import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
+import { typedRows } from "../../common/model/typed.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { product, pseudoInverse } from "./symmetric.js";
@@ -26,7 +27,7 @@ export class Observer {
       ...steps,
       held: this.held(scene, recording, steps),
       coefficients: this.camera.known(scene, "observer", [step], steps.places),
-      inverses: inversesOf(settings, steps.places),
+      inverses: inversesOf(settings, steps.places, scene.functions),
     };
     const start = new Float64Array(n);
     if (settings.start === "error") {
@@ -156,7 +157,12 @@ function lawOf({ weight, size, forgetting, decrease }, n) {
 }
 
 /** The inverse of a P that is given, as a multiple of the identity. */
-function inversesOf({ weight, size, final, duration }, places) {
+function inversesOf({ weight, size, final, duration }, places, { typed }) {
+  if (weight === "typed") {
+    const numbers = [...new Array(9).fill(0), size];
+    const rows = typedRows(typed, numbers, places);
+    return Float64Array.from(places, (_, k) => 1 / rows[numbers.length * k + 9]);
+  }
   if (weight !== "scheduled") return Float64Array.of(1 / size);
   return Float64Array.from(places, (t) => 1 / (size * (final / size) ** (t / duration)));
 }

@@ -40,7 +40,7 @@ export class PointList {
       const hidden = lab.settings.hidden[k];
       hide.checked = hidden !== null;
       span.hidden = hidden === null;
-      remove.disabled = lab.settings.points.length === 1;
+      remove.disabled = !lab.layouts[lab.settings.points.length - 2];
       if (hidden) times.forEach((time, end) => time.show(hidden[end]));
     };
     return { node: row, show };
@@ -69,6 +69,7 @@ export class PointList {
 
   show() {
     this.rows.forEach(({ show }) => show());
-    this.add.disabled = this.lab.settings.points.length === this.most;
+    const { layouts, settings } = this.lab;
+    this.add.disabled = settings.points.length === this.most || !layouts[settings.points.length];
   }
 }

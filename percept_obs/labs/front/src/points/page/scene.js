@@ -3,6 +3,8 @@
 import { columnOf, derived } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { imageVelocities, scaled } from "../../common/model/velocities.js";
+import { isTyped } from "../../common/model/typed.js";
+import { OWN } from "../model/kernels.js";
 import { motionAt } from "../model/motion.js";
 import { DASHES } from "../../common/page/lines.js";
 import { trail } from "./image_plane.js";
@@ -42,7 +44,7 @@ export function sceneOf(lab) {
     /** Without input the scale is not seen: all of the state may be larger, and moves as before. */
     unseenOf(shown, at, theme) {
       const { input, velocity } = shown.settings;
-      if (input !== 0 || velocity.some((value) => value !== 0)) return null;
+      if (shown.settings.state === OWN || isTyped(shown.settings) || input !== 0 || velocity.some((value) => value !== 0)) return null;
       const placeOf = motionAt(lab, shown, at);
       const points = Array.from({ length: shown.points }, (_, k) => ({ place: placeOf(k).place, colour: theme.lines[k] }));
       const seen = points.filter(({ place }) => place[2] > 0);

@@ -2,16 +2,21 @@
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { instants } from "../../common/model/tables.js";
+import { isTyped } from "../../common/model/typed.js";
 
 const NAMES = ["v_c", "v_p"];
 
 /** The parts of settings that the true path depends on. */
-export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w }) {
-  return { v_c, v_p, v_c_swing, v_p_swing, rate, w };
+export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w, motion }) {
+  return { v_c, v_p, v_c_swing, v_p_swing, rate, w, motion };
 }
 
-/** Whether a velocity swings, so that it is not the same at all times. */
-export function varies({ rate, v_c_swing, v_p_swing }) {
+/** Whether a velocity swings or is typed, so that it is not the same at all times. */
+export function varies(settings) {
+  return isTyped(settings) || swings(settings);
+}
+
+function swings({ rate, v_c_swing, v_p_swing }) {
   return rate !== 0 && [...v_c_swing, ...v_p_swing].some((value) => value !== 0);
 }
 
@@ -26,12 +31,14 @@ export class StructureCamera extends PointCamera {
   }
 
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
-  velocities(settings, swinging, times) {
+  velocities(settings, { swinging, typed }, times) {
     const varying = varies(settings);
     const count = varying ? times.length : 1;
     const rows = new Float64Array(9 * count);
     const x = new Float64Array(5);
     const out = new Float64Array(1);
+    const given = new Float64Array(10);
+    const moved = new Float64Array(9);
     for (let k = 0; k < count; k++) {
       rows.set(settings.w, 9 * k);
       for (let i = 0; i < 6; i++) {
@@ -43,15 +50,20 @@ export class StructureCamera extends PointCamera {
         x[4] = varying ? times[k] : 0;
         rows[9 * k + 3 + i] = swinging(x, out)[0];
       }
+      if (!typed) continue;
+      given[0] = times[k];
+      given.set(rows.subarray(9 * k, 9 * k + 9), 1);
+      typed(given, moved);
+      typed.columns.forEach((column, c) => (rows[9 * k + column] = moved[c]));
     }
     return { rows, varying };
   }
 
-  path(settings, { swinging }, lines) {
+  path(settings, functions, lines) {
     const { ybar, scale } = settings;
     const depth = 1 / (scale * ybar[2]);
     const place = [motionOf(settings), lines.grid.length, lines.grid.at(-1)];
-    const known = this.memory.once("velocities", place, () => this.velocities(settings, swinging, instants(lines.grid)));
+    const known = this.memory.once("velocities", place, () => this.velocities(settings, functions, instants(lines.grid)));
     return { start: [ybar[0] * depth, ybar[1] * depth, depth], known, shape: [] };
   }
 

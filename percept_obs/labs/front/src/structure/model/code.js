@@ -1,6 +1,7 @@
 // The few lines of Python that make the same run.
 
-import { durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { broughtBy, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { isTyped } from "../../common/model/typed.js";
 import { varies } from "./camera.js";
 import { isZero, valuesAtStart } from "./kernels.js";
 
@@ -14,7 +15,7 @@ const VELOCITIES = ["v_c", "v_p"].flatMap((which) => [1, 2, 3].map((axis) => `${
 export function pythonOf(shown, model) {
   const { settings, refusal } = shown;
   const { unknown, earlier, ybar, scale, noise, period } = settings;
-  const zero = VELOCITIES.filter((name) => isZero(settings, name) && !unknown.includes(name));
+  const zero = VELOCITIES.filter((name) => isZero(settings, name, model) && !unknown.includes(name));
   const options = [
     `(${unknown.map((name) => `"${name}"`).join(", ")}${unknown.length === 1 ? "," : ""})`,
     ...(zero.length ? [`zero=(${zero.map((name) => `"${name}",`).join(" ")})`] : []),
@@ -22,10 +23,12 @@ export function pythonOf(shown, model) {
   ];
   if (refusal) return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
   const swings = varies(settings);
+  const brought = broughtBy(model.own, settings.observers);
   const constant = (which) => list(valuesAtStart(settings, which, model));
   const make = NOISES[noise.kind];
   const lines = [
-    ...(swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant("v_c")}, ${constant("v_p")})`]),
+    ...brought.lines,
+    ...(isTyped(settings) ? motionThatIsTyped(settings, model) : swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant("v_c")}, ${constant("v_p")})`]),
     `depth = 1 / (${scale} * ${ybar[2]})`,
     `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
     `choice = StructureAndMotion(${options.join(", ")})`,
@@ -41,10 +44,30 @@ export function pythonOf(shown, model) {
   lines.push(...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }));
   const wanted = {
     percept_obs: [make, "StructureAndMotion", "pinhole", "record", "rigid", "track"],
-    "percept_obs.observers": new Set(settings.observers.map((name) => makerOf(name)[0])),
+    "percept_obs.observers": new Set(settings.observers.filter((name) => !model.own[name]).map((name) => makerOf(name)[0])),
+    ...brought.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
   return `${swings ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+}
+
+/** Velocities as numbers and swings set them, and what was typed of these. */
+function motionThatIsTyped(settings, { phases, written }) {
+  const { python } = written[settings.motion];
+  const swung = (which) => settings[which].map((value, k) => {
+    const swing = settings[`${which}_swing`][k];
+    return swing ? `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})` : `${value}`;
+  });
+  const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
+  const moved = (which) => list(namesOf(which).map((name) => python[name] ?? name));
+  return [
+    "def velocities(t):",
+    `    ${namesOf("w").join(", ")} = ${settings.w.join(", ")}`,
+    ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(which).join(", ")}`),
+    `    return ${["w", "v_c", "v_p"].map(moved).join(", ")}`,
+    "",
+    "motion = rigid(*(lambda t, k=k: velocities(t)[k] for k in range(3)))",
+  ];
 }
 
 function motionThatSwings(settings, phases) {

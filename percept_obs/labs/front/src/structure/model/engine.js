@@ -69,8 +69,8 @@ export class StructureEngine extends Runner {
   }
 
   /** Of the point against the camera, in m/s. */
-  greatestSpeed({ settings, time }, { swinging }) {
-    const { rows } = this.camera.velocities(settings, swinging, time);
+  greatestSpeed({ settings, time }, functions) {
+    const { rows } = this.camera.velocities(settings, functions, time);
     let most = 0;
     for (let k = 0; k < rows.length; k += 9) {
       most = Math.max(most, Math.hypot(rows[k + 6] - rows[k + 3], rows[k + 7] - rows[k + 4], rows[k + 8] - rows[k + 5]));
@@ -86,8 +86,9 @@ export class StructureEngine extends Runner {
   }
 
   /** Rows of what the choice makes of the velocities at some times: M, m, theta; one row if they do not change. */
-  signals(settings, count, { swinging, signals }, times) {
-    const { rows, varying } = this.camera.velocities(settings, swinging, times);
+  signals(settings, count, functions, times) {
+    const { signals } = functions;
+    const { rows, varying } = this.camera.velocities(settings, functions, times);
     const size = 4 * count + 3;
     const found = new Float64Array((rows.length / 9) * size);
     const x = new Float64Array(10);
@@ -97,7 +98,7 @@ export class StructureEngine extends Runner {
       for (let i = 0; i < 9; i++) x[1 + i] = rows[9 * k + i];
       found.set(signals(x, out), k * size);
     }
-    return { found, size, varying };
+    return { found, size, varying, velocities: rows };
   }
 
   /** True ybar and theta at the samples. */
@@ -125,15 +126,15 @@ export class StructureEngine extends Runner {
 
   /** What the observers know of the motion: rows of w, M, m. */
   known({ settings, hidden, time }, { grid }, functions) {
-    const { period, step, scale, w } = settings;
+    const { period, step, scale } = settings;
     const count = hidden.length;
     const place = [period, step, time.length, keyOf(settings), motionOf(settings), scale];
     return this.memory.once("known", place, () => {
-      const { found, size, varying } = this.signals(settings, count, functions, instants(grid));
+      const { found, size, varying, velocities } = this.signals(settings, count, functions, instants(grid));
       const width = 3 * count + 6;
       const rows = new Float64Array((found.length / size) * width);
       for (let k = 0; k * size < found.length; k++) {
-        rows.set(w, k * width);
+        rows.set(velocities.subarray(9 * k, 9 * k + 3), k * width);
         rows.set(found.subarray(k * size, k * size + 3 * count + 3), k * width + 3);
       }
       return { rows, width, varying };

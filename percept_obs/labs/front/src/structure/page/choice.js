@@ -3,7 +3,7 @@
 import { readable } from "../../common/model/scales.js";
 import { button, checkbox, element } from "../../common/page/controls.js";
 import { FormulaSheet, lettered } from "../../common/page/formulas.js";
-import { isZero, keyOf, valuesAtStart } from "../model/kernels.js";
+import { isZero, keyOf } from "../model/kernels.js";
 
 const GROUPS = [
   { title: "Scale", names: ["d_s"] },
@@ -135,15 +135,17 @@ export class ChoiceOfUnknowns {
 
   kindOf({ unknown, square, alone }) {
     const few = square ? "" : `Three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: least squares.`;
-    const metres = alone.filter((name) => !isZero(this.lab.settings, name));
+    const metres = alone.filter((name) => !isZero(this.lab.settings, name, this.model));
     const carried = metres.length ? `The metres come from ${metres.join(", ")}.` : "";
     return [few, carried].filter(Boolean).join(" ");
   }
 
   /** The determinant's number at the start of the run. */
   fill({ settings, guard, problem }) {
-    const { ybar, scale, w } = settings;
-    const [v_c, v_p] = ["v_c", "v_p"].map((which) => valuesAtStart(settings, which, this.model));
+    const { ybar, scale } = settings;
+    const { kernels, results } = this.lab;
+    const { rows } = results.engines[0].camera.velocities(settings, kernels.of(settings), [0]);
+    const [w, v_c, v_p] = [0, 3, 6].map((first) => Array.from(rows.subarray(first, first + 3)));
     const at = { d_s: scale, ybar3: ybar[2], y1: ybar[0], y2: ybar[1], ...lettered({ w, v_c, v_p }) };
     this.determinant.putIn((_, letter) => at[letter]);
     const text = problem ? "" : ` = ${readable(guard.determinants[0])} at the start`;

@@ -4,6 +4,7 @@ import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
 import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
+import { typedField } from "../../common/page/typed.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
 /** What the page calls the settings. */
@@ -71,6 +72,7 @@ export class StructurePanel extends Fieldsets {
       ...this.litList("v_p"),
       this.add(varying),
       this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
+      this.add(typedField(lab, { ...this.bound("motion", true), ...this.schema.motion, hint: "v_c1 = 0.2 cos(t)" })),
       ...this.each("ybar"),
       ...this.litList("w"),
     );

@@ -15,7 +15,7 @@ export const sceneOf = (lab) => ({
     const { settings, image, scale, time } = shown;
     const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
     const when = valueBetween(time, 1, 0, at);
-    const { rows } = lab.results.engines[0].camera.velocities(settings, lab.kernels.of(settings).swinging, [when]);
+    const { rows } = lab.results.engines[0].camera.velocities(settings, lab.kernels.of(settings), [when]);
     const [w1, w2, w3, ...v] = rows;
     // The point as the camera sees it move: [w]x X + v_p - v_c, as rigid() has it.
     const A = [[0, -w3, w2], [w3, 0, -w1], [-w2, w1, 0]];

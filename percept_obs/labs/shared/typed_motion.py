@@ -1,0 +1,143 @@
+"""Motions that vary, typed as expressions of t: read as derivations are, never evaluated, and printed for the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import sympy as sp
+
+from percept_obs.border import expression
+from percept_obs.checking.points import key
+from percept_obs.checking.reading import read
+from percept_obs.compile import Array, function_source, python_text, vectorised
+from percept_obs.labs.shared.printed import Texts
+from percept_obs.labs.shared.schema import Settings, Text
+from percept_obs.system.motion import TIME
+
+MOST = 400
+INSTANTS = 501
+"""At how many times of a run a typed motion is looked at before it is taken."""
+
+Blocks = Mapping[str, sp.ImmutableMatrix]
+"""Letters of vectors and matrices, with the symbols of their entries."""
+
+
+def typed_setting(example: str) -> Text:
+    """The setting of a typed motion."""
+    about = f"what varies, in expressions of t, such as {example!r}; the numbers' letters may stand in them"
+    return Text("", MOST, label="Over time", about=about)
+
+
+@dataclass(frozen=True)
+class Typed:
+    """A motion that was read.
+
+    Parameters
+    ----------
+    text : str
+    symbols : tuple of symbols
+        Of the numbers that a lab sets.
+    expressions : tuple of expressions
+        One for each symbol, in `TIME` and the symbols.
+    """
+
+    text: str
+    symbols: tuple[sp.Symbol, ...]
+    expressions: tuple[sp.Expr, ...]
+
+    @property
+    def changed(self) -> dict[str, sp.Expr]:
+        """What is not just the number that the lab sets, by its name."""
+        pairs = zip(self.symbols, self.expressions, strict=True)
+        return {symbol.name: entry for symbol, entry in pairs if entry != symbol}
+
+    def rows(self, times: Array, numbers: Array) -> Array:
+        """The numbers at times, shape (T, n), where the lab sets these, shape (n,) or (T, n)."""
+        function = vectorised((TIME, *self.symbols), self.expressions)
+        return np.stack(function(times, *numbers.T), axis=-1)
+
+    def refuse_poles(self, duration: float, numbers: Callable[[Array], Array]) -> None:
+        """Refuse what has no number at some time of a run, for numbers that the lab sets, as a function of times."""
+        times = np.linspace(0, duration, INSTANTS)
+        with np.errstate(all="ignore"):
+            found = self.rows(times, numbers(times))
+        bad = np.argwhere(~(np.abs(found) <= 1e6))
+        if len(bad):
+            row, column = bad[0]
+            raise ValueError(
+                f"motion: {self.symbols[column]} is {found[row, column]:.4g} at {times[row]:.4g} s; it must be a "
+                "number up to 1e6 at all times of the run"
+            )
+
+    def for_the_page(self) -> Texts:
+        """A function of (t, numbers) of what it changes, its places, what it uses and makes 0, the same in Python."""
+        names = [symbol.name for symbol in self.symbols]
+        source = function_source((TIME, *self.symbols), tuple(self.changed.values()))
+        zero = [name for name, entry in self.changed.items() if entry == 0]
+        python = {name: python_text(entry) for name, entry in self.changed.items()}
+        columns = [names.index(name) for name in python]
+        used = set().union(*(entry.free_symbols for entry in self.changed.values()))
+        uses = [place for place, symbol in enumerate(self.symbols) if symbol in used]
+        return {"source": source, "columns": columns, "uses": uses, "zero": zero, "python": python}
+
+
+def read_motion(text: str, blocks: Blocks) -> Typed:
+    """Read a motion.
+
+    Parameters
+    ----------
+    text : str
+        Lines such as "a12 = 0.4 cos(2t); b3 = b3 + 0.1 t", or of a whole block, "b = [sin(t), 0, 1]".  A line may
+        also name something to be used in the next ones, "q = 2t".
+    blocks : mapping of letters to matrices of symbols
+        What may be given; the entries of all of them are what a lab sets in numbers.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read, with the place, or gives something else, or twice.
+
+    Examples
+    --------
+    >>> b = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
+    >>> read_motion("b1 = b1 + sin(2t)", {"b": b}).expressions
+    (b1 + sin(2*t), b2, b3)
+    """
+    return _read(text, tuple(blocks.items()))
+
+
+def typed_in(settings: Settings, name: str, blocks: Blocks) -> Typed:
+    """What is typed in a setting; a ValueError with its name if it cannot be read."""
+    try:
+        return read_motion(settings[name], blocks)
+    except ValueError as error:
+        raise ValueError(f"{name}: it must be expressions of t, but {error}") from None
+
+
+@lru_cache(maxsize=64)
+def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Typed:
+    symbols = tuple(dict.fromkeys(symbol for _, block in blocks for symbol in block))
+    named = {key(letter): block for letter, block in blocks} | {key(s.name): sp.ImmutableMatrix([s]) for s in symbols}
+    letters = {key(symbol.name): symbol for symbol in (TIME, *symbols)}
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for reading in read(text, letters, list(named)):
+        block = named.get(reading.name)
+        if block is None:
+            raise ValueError(
+                f"each line begins with what it gives, such as {symbols[-1]} = ...; there are "
+                f"{', '.join([*(letter for letter, _ in blocks), *map(str, symbols)])}"
+            )
+        value = reading.formula
+        given = value if isinstance(value, sp.MatrixBase) else sp.ImmutableMatrix([value])
+        if given.shape != block.shape:
+            raise ValueError(f"{reading.name} has the shape {given.shape}; expected {block.shape}")
+        twice = [str(symbol) for symbol in block if symbol in found]
+        if twice:
+            raise ValueError(f"{twice[0]} is given twice; give it once")
+        found |= {s: expression(e, f"{s}") for s, e in zip(block, given, strict=True)}
+    typed = Typed(text, symbols, tuple(found.get(symbol, symbol) for symbol in symbols))
+    typed.for_the_page()
+    return typed

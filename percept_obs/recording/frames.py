@@ -1,0 +1,145 @@
+"""Pictures behind a track: the frames of a film as PNG files, and a film that is drawn of a recording."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.border import checked, limit
+from percept_obs.compile import Array
+from percept_obs.recording.recording import Recording
+from percept_obs.system.signal import frozen
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+MOST_BYTES = 20_000_000
+"""Bytes of all frames together, which a notebook keeps with a lab."""
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Frames of a film, each seen from one time until the next.
+
+    Parameters
+    ----------
+    images : folder of PNG files, or sequence of paths or of arrays of shape (h, w) or (h, w, 3)
+        A folder's files are taken in the order of their names; arrays hold 0 to 255, or 0.0 to 1.0.
+    time : array of shape (K,)
+        Times of the frames in seconds, increasing, by the recording's clock.
+    extent : four floats
+        The image coordinates y1 of the left and the right edge, and y2 of the lower and the upper edge.  Of a camera
+        with the focal length f and the principal point (c1, c2) in pixels, whose y2 points down: (-c1 / f, (w - c1) /
+        f, (h - c2) / f, -c2 / f).
+
+    Raises
+    ------
+    ValueError
+        If a file is no PNG, there are not as many times as images, or times do not increase.
+    TooMuchWork
+        If the frames are too large together.
+
+    Examples
+    --------
+    >>> film = Frames([np.zeros((2, 3)), np.ones((2, 3))], [0.0, 0.5], (-1, 1, -1, 1))
+    >>> len(film.images)
+    2
+    """
+
+    images: Any
+    time: ArrayLike
+    extent: Sequence[float]
+
+    def __post_init__(self) -> None:
+        given = self.images
+        if isinstance(given, str | Path):
+            given = sorted(Path(given).glob("*.png"))
+            if not given:
+                raise ValueError(f"the folder {str(self.images)!r} holds no .png files; give one with frames in it")
+        images = tuple(_png(image, k) for k, image in enumerate(given, 1))
+        limit(sum(map(len, images)), "bytes of frames", "take fewer or smaller ones", MOST_BYTES)
+        time = frozen(np.asarray(self.time, dtype=float), "the times of the frames")
+        extent = frozen(np.asarray(self.extent, dtype=float), "the edges of the frames")
+        if time.shape != (len(images),) or not len(images) or not (np.diff(time) > 0).all():
+            raise ValueError(
+                f"there are {len(images)} frames and times of shape {time.shape}; give each frame a time, increasing"
+            )
+        if extent.shape != (4,) or extent[0] == extent[1] or extent[2] == extent[3]:
+            raise ValueError(
+                f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge"
+            )
+        for name, value in (("images", images), ("time", time), ("extent", tuple(extent.tolist()))):
+            object.__setattr__(self, name, value)
+
+
+def _png(image: Any, number: int) -> bytes:
+    if isinstance(image, str | Path):
+        data = Path(image).read_bytes()
+        if not data.startswith(SIGNATURE):
+            raise ValueError(f"frame {number}, {str(image)!r}, is no PNG file; convert it")
+        return data
+    pixels = np.asarray(image)
+    if pixels.dtype.kind == "f":
+        pixels = np.round(255 * np.clip(pixels, 0, 1))
+    if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3) or not pixels.size:
+        raise ValueError(f"frame {number} has the shape {pixels.shape}; expected (h, w), or (h, w, 3) for colours")
+    return _encoded(np.clip(pixels, 0, 255).astype(np.uint8))
+
+
+def _encoded(pixels: np.ndarray) -> bytes:
+    """Pixels as a PNG file (ISO/IEC 15948): header, rows without a filter, end."""
+    height, width = pixels.shape[:2]
+    rows = np.zeros((height, 1 + pixels[0].size), dtype=np.uint8)
+    rows[:, 1:] = pixels.reshape(height, -1)
+    header = struct.pack(">IIBBBBB", width, height, 8, 0 if pixels.ndim == 2 else 2, 0, 0, 0)
+    parts = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 6)), (b"IEND", b""))
+    chunks = (
+        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in parts
+    )
+    return SIGNATURE + b"".join(chunks)
+
+
+@checked
+def render(recording: Recording, count: int = 60, size: int = 160, radius: float = 0.15) -> Frames:
+    """Draw a film of a recording with its truth: a ball around the point, which looms as it comes nearer.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of one point, with its truth.
+    count : int
+        Frames, spread over the recording.
+    size : int
+        Pixels of a frame's side.
+    radius : float
+        Of the ball, in metres.
+
+    Raises
+    ------
+    ValueError
+        If the recording has no truth.
+    """
+    if recording.truth is None:
+        raise ValueError("the recording has no truth to draw; give frames of its camera instead")
+    which = np.unique(np.linspace(0, len(recording.time) - 1, count).astype(int))
+    y1, y2, inverse = recording.truth[which][:, [0, 1, -1]].T
+    low, high = (np.array([bound(y1), bound(y2)]) for bound in (np.min, np.max))
+    middle, half = (low + high) / 2, 0.65 * max(float((high - low).max()), 0.2)
+    left, right, lower, upper = middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half
+    along = np.linspace(left, right, size)[None, :], np.linspace(upper, lower, size)[:, None]
+    floor = 0.8 + 0.06 * np.sign(np.sin(8 * np.pi * along[0]) * np.sin(8 * np.pi * along[1]))
+    images = [_with_ball(floor, *along, each) for each in zip(y1, y2, radius * inverse, strict=True)]
+    return Frames(images, recording.time[which], (left, right, lower, upper))
+
+
+def _with_ball(floor: Array, y1: Array, y2: Array, ball: tuple[float, float, float]) -> Array:
+    at1, at2, size = ball
+    away = np.hypot(y1 - at1, y2 - at2) / max(size, 1e-6)
+    lit = 0.25 + 0.5 * np.clip(1 - np.hypot(y1 - at1 + size / 3, y2 - at2 - size / 3) / max(2 * size, 1e-6), 0, 1)
+    return np.where(away < 1, lit, floor)

@@ -1,0 +1,347 @@
+"""An observer, a surface, a motion that somebody brings are computed by the page as by Python, or refused first."""
+
+import json
+
+import numpy as np
+import pytest
+import sympy as sp
+from hostile_messages import TYPED
+from lab_settings import as_array, run_in_node, whole_model
+from points_settings import run_in_node as points_in_node
+from structure_settings import structure_in_node
+from test_lab_engine import assert_same_run
+from test_points_lab import assert_same_run as assert_same_points
+
+from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
+from percept_obs.compile.equations import Equations
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs.points.lab import run_of as run_of_points
+from percept_obs.labs.shared.lab import MOST_WRITTEN
+from percept_obs.labs.shared.typed_motion import MOST
+from percept_obs.labs.structure.lab import runs as structure_runs
+from percept_obs.labs.structure.lab import unknowns_of
+from percept_obs.observers import Observer
+from percept_obs.observers.family import Derived, family
+from percept_obs.observers.gains import Gain
+from percept_obs.observers.parts import hats, innovation, output_injection
+from percept_obs.points import PointsForm
+from percept_obs.structure import ImpossibleChoice
+from percept_obs.system.motion import TIME, linear
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
+
+X, Y, Z = POINT
+y1, y2 = sp.symbols("y1 y2", real=True)
+K, L = sp.symbols("K L", real=True)
+MOTION = "a12 = -0.2 - 0.1 sin(t); b = [0.4 cos(t), 0.3 sin(t/2), b3]"
+SHORT = {"duration": 1.0, "period": 0.04, "window": 0.3, "X0": [1.0, 0.5, 4.0]}
+CALM = {"A": np.zeros((3, 3)).tolist(), "b": [0.1, 0.1, 0.05]}
+
+
+@family(
+    name="cubic",
+    title="Observer with a cubic correction",
+    source="a reader",
+    needs="any outputs with a canonical form",
+    claim="none",
+    gains=(
+        Gain(K, "measured_gain", 8, 1, 40, "1/s", "pull on the outputs", K > 0, "it must pull towards the samples"),
+        Gain(L, "hidden_gain", 20, 1, 200, "1/m^2", "pull on what is hidden", L > 0, "it must pull as well"),
+    ),
+)
+def cubic(form):
+    """x1hat' = K (e + e^3) + w^T x2hat + phi, x2hat' = L w (e + e^3) + g, with e = x1 - x1hat."""
+    correction = innovation(form).applyfunc(lambda e: e + e**3)
+    return Derived(hats((*form.x1, *form.x2)), output_injection(form, correction, K, L))
+
+
+def slanted():
+    """The image plane Z + Y/5 = 1."""
+    depth = Z + Y / 5
+    return ImagingSurface("slanted", (X / depth, Y / depth), depth, (y1, y2, 1 - y2 / 5))
+
+
+def watched(form):
+    """An observer that is written as `Observer` itself, with another order of its state than the coordinates'."""
+    x = (*form.x2, *form.x1)
+    e = innovation(form)
+    known = dict(zip(form.x2, hats(form.x2), strict=True))
+    flow = [*(4 * form.w * e + form.g.subs(known)), *(6 * e + form.w.T * sp.Matrix(hats(form.x2)) + form.phi)]
+    equations = Equations(hats(x), tuple(flow), form.x1, form.parameters)
+    return Observer("watched", form, equations, hats(form.coordinates), (), hats(x))
+
+
+def assert_same_recording(answer, recording):
+    """To 1e-9, for the page steps a motion that varies, and Python solves it to 1e-10 a step."""
+    assert answer["time"] == pytest.approx(recording.elapsed.tolist(), abs=1e-12)
+    for name in ("truth", "outputs"):
+        expected = getattr(recording, name)
+        np.testing.assert_allclose(as_array(answer[name], expected.shape[1]), expected, rtol=1e-9, atol=1e-10)
+
+
+@pytest.fixture(scope="module")
+def lab():
+    return observer_lab(observers=[cubic, watched, "extended_kalman"], surface=slanted, motion=MOTION, **CALM, **SHORT)
+
+
+@pytest.mark.slow
+def test_what_is_brought_opens_the_lab_with_its_gains_and_its_texts(lab):
+    assert lab.settings["observers"] == ["cubic", "watched", "extended_kalman"]
+    assert lab.settings["surface"] == "slanted"
+    assert lab.settings["gains"]["cubic"] == {"measured_gain": 8.0, "hidden_gain": 20.0}
+    model = whole_model(lab)
+    assert model["surfaces"]["slanted"]["outputs"] == [["y1", "y2"], ["y1"], ["y2"]]
+    assert set(model["forms"]["slanted y1"]["observers"]) == {
+        *("cubic", "watched", "extended_kalman", "identifier_based"),
+    }
+    assert "open it with observers=" in model["forms"]["slanted y1"]["refused"]["sliding_mode"]
+    assert "cubic" in model["forms"]["pinhole y1"]["observers"]
+    assert json.dumps(model, allow_nan=False)
+    with pytest.raises(ValueError, match="K > 0 is needed; it must pull"):
+        lab.settings = {**lab.settings, "gains": {"cubic": {"measured_gain": -1}}}
+
+
+def tasks_of(lab):
+    """Settings on every surface that matters: typed and constant motions, one output, each hold."""
+    changes = [
+        {},
+        {"outputs": ["y1"], "hold": "first", "noise": {"kind": "uniform", "size": 0.01}, "dropout": 0.2},
+        {"surface": "sphere", "outputs": ["y1", "y2"], "observers": ["cubic"], "hold": "exact"},
+        {"motion": "", "gains": {"cubic": {"measured_gain": 11.5}}},
+        {"motion": "q = 0.3 t\nb3 = q^2 sqrt(1 + q) - b1", "start": {"mode": "zero", "values": [0.0] * 3}},
+        {"believed": {"A": [[0.1] * 3] * 3, "b": [0.1, 0.2, 0.3]}},
+    ]
+    return [lab.check({**lab.settings, **change}) for change in changes]
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(lab, node):
+    tasks = tasks_of(lab)
+    for settings in tasks:
+        lab.write_down(settings)
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        namespace = {"cubic": cubic, "watched": watched, "slanted": slanted}
+        exec(answer["code"], namespace)
+        for name, run in lab.runs(settings).items():
+            assert_same_recording(answer, run.recording)
+            assert_same_run(answer["runs"][name], run, 1e-9)
+            assert answer["summary"]["verdicts"][name] == run.verdict()
+            copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+            np.testing.assert_allclose(copied.estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+SPUN = "v_c1 = -0.22 - 0.1 sin(2t); w = [0.1 t, 0, w3]; v_p2 = 0.3 exp(-t)"
+
+
+@pytest.fixture(scope="module")
+def structure():
+    return structure_lab(observers=["ideal", cubic], duration=0.3, period=0.004, step=0.002, motion=SPUN)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, node):
+    changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
+    tasks = [structure.check({**structure.settings, **change}) for change in changes]
+    for settings, answer in zip(tasks, structure_in_node(node, structure, tasks), strict=True):
+        namespace = {"cubic": cubic}
+        exec(answer["code"], namespace)
+        for name, run in structure_runs(settings, {"cubic": structure._own["cubic"]}).items():
+            found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
+            np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose(namespace[f"run_{name}"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
+    assert "v_p2" not in unknowns_of(structure.settings).zero
+    zero = {**structure.settings, "motion": "v_c1 = 0 t", "v_c": [0.3, 0.0, 0.0]}
+    with pytest.raises(ImpossibleChoice, match="none is known that is not zero"):
+        unknowns_of(structure.check(zero))
+
+
+SWUNG = "w = [0, 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
+OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
+    lab = points_lab()
+    places = [[0.1 * k, 1.2 - 0.1 * k, 2.5 + 0.05 * k] for k in range(12)]
+    typed = {"weight": "typed", "P": "P = P + exp(-t) / 2", "size": 0.7}
+    changes = [{"state": "origin", "spin": 0.3, "motion": SWUNG, **typed}, {"state": "independent", "motion": SWUNG}]
+    changes.append({"points": places, "hidden": [None] * 12, **typed, "P": "1 + t", "start": "error"})
+    tasks = [lab.check({**lab.settings, **OF_POINTS, **change}) for change in changes]
+    assert tasks[2]["P"] == "P = 1 + t"
+    for settings in tasks:
+        lab.write_down(settings)
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings)
+        assert_same_points(answer, run)
+        namespace = {}
+        exec(answer["code"], namespace)
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "settings", "reason"),
+    [
+        (
+            observer_lab,
+            {"motion": "a12 = 0.3 foo(t)"},
+            r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
+        ),
+        (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
+        (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
+        (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
+        (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
+        (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
+        (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
+        (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
+        (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
+        (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
+        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives w1; it must be one expression"),
+        (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    ],
+)
+def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        make(**settings)
+
+
+TIMES = np.array([0.0, 0.13, 0.4, 0.71])
+VARYING = {
+    "expressions of time": affine(
+        sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]
+    ),
+    "samples": affine(np.zeros((3, 3)), np.column_stack([np.cos(9 * TIMES), 0.2 - TIMES, 0.1 * TIMES]), TIMES),
+    "a function": affine(lambda t: np.zeros((3, 3)), lambda t: [np.sin(t), 0.1, 0.1]),
+}
+
+
+@pytest.mark.node
+@pytest.mark.parametrize("kind", VARYING)
+def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(kind, node):
+    scenario = Scenario("own", VARYING[kind], (0.5, 0.2, 5.0), 0.6, pinhole())
+    lab = observer_lab(scenario, period=0.04, window=0.2)
+    assert bool(lab.settings["motion"]) == (kind == "expressions of time")
+    settings = lab.settings
+    (answer,) = run_in_node(node, lab, [settings])
+    (run,) = lab.runs(settings).values()
+    assert_same_recording(answer, run.recording)
+    assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
+    asked = record(scenario, camera=Camera(0.04))
+    # a function is taken as samples every 10 ms
+    np.testing.assert_allclose(run.recording.truth, asked.truth, rtol=0, atol=1e-6 if kind == "a function" else 1e-9)
+    if kind != "expressions of time":
+        with pytest.raises(ValueError, match="'own' has its own; choose another scenario"):
+            lab.settings = {**settings, "motion": "b1 = t"}
+
+
+def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
+    def rounded(form):
+        whole = cubic(form)
+        flow = (sp.floor(whole.equations.flow[0]), *whole.equations.flow[1:])
+        return Observer(
+            "rounded",
+            form,
+            Equations(whole.equations.state, flow, form.x1, form.parameters, (K, L)),
+            whole.estimate,
+            whole.gains,
+            whole.start,
+        )
+
+    def nothing(form):
+        return None
+
+    deep = ImagingSurface("deep", (X / Z, Y / Z, (X + Y) / Z), Z, (y1, y2, 1))
+    rigid_form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
+    for brought, reason in (
+        (
+            {"observers": [rounded]},
+            "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed",
+        ),
+        ({"observers": [nothing]}, "nothing gave NoneType for a form; it must give an Observer"),
+        ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
+        ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),
+        ({"observers": "cubic"}, "it must be a list of names, functions of a form, or observers"),
+        ({"observers": [ibo(rigid_form)]}, r"made for a form with the parameters w1, .*PerspectiveSystem\(affine\(\)"),
+        ({"surface": deep}, "has 3 image coordinates; the lab draws images with two"),
+        ({"surface": 4}, "surface is 4; bring an ImagingSurface"),
+        ({"surface": "slanted"}, "surface is 'slanted'; it must be one of pinhole"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            observer_lab(**brought)
+
+
+@pytest.mark.slow
+def test_an_observer_of_one_form_opens_the_lab_there_and_a_partitioned_system_will_do():
+    bent = ImagingSurface("bent", (X / Z, Y / Z + (X / Z) ** 2), Z, (y1, y2 - y1**2, 1))
+    system = PerspectiveSystem(affine(), bent)
+    assert system.partition("y2").culprits
+    lab = observer_lab(observers=[extended_kalman(system.partition("y2"))], duration=1.0)
+    assert (lab.settings["surface"], lab.settings["outputs"]) == ("bent", ["y2"])
+    assert lab.settings["observers"] == ["extended_kalman"] or lab.settings["observers"] == ["my_extended_kalman"]
+
+
+def own_form(coupled=False):
+    """Two points that turn around a vertical axis and drift, as nothing of the package does."""
+    turn = sp.Matrix([[0, 0, sp.cos(TIME) / 3], [0, 0, 0], [-sp.cos(TIME) / 3, 0, 0]])
+    A = sp.diag(turn, turn)
+    A[0, 3] = int(coupled)
+    v = [0.1, 0.2 * sp.sin(TIME), 0.3, 0.1, 0.2 * sp.sin(TIME), 0.3]
+    return PointsForm(linear(A, v), np.eye(6).reshape(2, 3, 6))
+
+
+@pytest.mark.node
+def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
+    form = own_form()
+    lab = points_lab(form, **OF_POINTS)
+    assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
+    tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings, form)
+        assert_same_points(answer, run)
+        namespace = {"form": form}
+        exec(answer["code"], namespace)
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    for brought, settings, reason in (
+        (own_form(coupled=True), {}, "only blocks of 3 x 3 on its diagonal"),
+        (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
+        (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
+        (form, {"motion": "w1 = t"}, "it must be empty with your own form"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            points_lab(brought, **settings)
+
+
+@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
+def test_whatever_the_page_asks_to_be_read_is_answered_and_never_run(make, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lab = make()
+    before = lab.settings
+    for text in (*TYPED, *(f"b1 = {k}" for k in range(2 * MOST_WRITTEN)), "y" * (MOST + 1)):
+        lab.set_state({"asked": text})
+        if text.strip() and len(text) <= MOST:
+            answer = lab.written[text]
+            assert set(answer) == {"refusal", "position"} or "source" in answer
+    assert len(lab.written) <= MOST_WRITTEN
+    assert lab.settings == before
+    assert json.dumps(lab.written, allow_nan=False)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_a_recording_on_a_surface_of_ones_own_is_followed_alike(node):
+    motion = affine(np.zeros((3, 3)), lambda t: [np.sin(t), 0.1, 0.1])
+    scenario = Scenario("walk", motion, (0.5, 0.2, 5.0), 1.0, slanted())
+    recording = record(scenario, camera=Camera(0.04, Uniform(0.001)), seed=3)
+    lab = observer_lab(recording, observers=[cubic, "identifier_based"])
+    assert lab.settings["surface"] == "slanted"
+    (answer,) = run_in_node(node, lab, [lab.settings])
+    assert "# recording = the one that you gave to the lab" in answer["code"]
+    for name, run in lab.run().items():
+        assert_same_recording(answer, recording)
+        assert_same_run(answer["runs"][name], run, 1e-9)

@@ -1,0 +1,103 @@
+"""A motion is typed in the page: Python reads it, the page follows; a bad one, or no Python, is told in a sentence."""
+
+import numpy as np
+import pytest
+from lab_alone import DRAWN, opened
+from lab_browser import control
+from test_lab_open import CALM, MOTION, cubic, slanted
+
+from percept_obs import Camera, Scenario, affine, pinhole, record
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.recording import Frames, render
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+SETTINGS = "() => [...window.perceptObsLabs][0].settings"
+FIELD = control("motion")
+SAID = f".expression:has({FIELD}) .refusal"
+
+
+def following(lab):
+    """What Python would answer the page's messages."""
+
+    def answers(message):
+        lab.set_state(message)
+        return {name: getattr(lab, name) for name in ("analysis", "error", "written")}
+
+    return answers
+
+
+def type_in(page, text):
+    page.locator(FIELD).evaluate("(box) => box.closest('details') && (box.closest('details').open = true)")
+    page.fill(FIELD, text)
+    page.press(FIELD, "Enter")
+
+
+@pytest.mark.parametrize(
+    ("make", "text", "bad"),
+    [
+        (observer_lab, "b1 = b1 + 0.2 sin(2t)", "b1 = 0.2 sni(2t)"),
+        (structure_lab, "v_c1 = -0.22 - 0.1 sin(2t)", "v_c1 = -0.22 - 0.1 sni(2t)"),
+        (points_lab, "w3 = 0.5 cos(t)", "w3 = 0.5 sni(t)"),
+    ],
+)
+def test_a_typed_motion_takes_effect_and_a_bad_one_is_told_with_its_place(browser, make, text, bad):
+    lab = make(duration=4.0)
+    page = opened(browser, lab, answers=following(lab))
+    page.wait_for_function(DRAWN)
+    before = page.evaluate("() => Array.from([...window.perceptObsLabs][0].shown.truth)")
+    type_in(page, bad)
+    page.wait_for_selector(SAID, state="visible")
+    assert '"sni" is no letter here' in page.inner_text(SAID)
+    assert page.get_attribute(FIELD, "aria-invalid") == "true"
+    assert page.locator(FIELD).evaluate("(box) => box.selectionStart") == bad.index("sni")
+    assert page.evaluate(SETTINGS)["motion"] == ""
+    type_in(page, text)
+    page.wait_for_function(f"() => ({SETTINGS})().motion === {text!r}")
+    page.wait_for_function(DRAWN)
+    assert page.locator(SAID).is_hidden()
+    assert page.evaluate("() => Array.from([...window.perceptObsLabs][0].shown.truth)") != before
+    page.wait_for_function(f"() => [...window.perceptObsLabs][0].link.sent.settings.motion === {text!r}")
+    assert lab.settings["motion"] == text
+    assert lab.error == ""
+    page.click(control("undo"))
+    page.wait_for_function(f"() => ({SETTINGS})().motion === ''")
+    page.close()
+
+
+def test_without_python_the_field_says_so_and_the_lab_goes_on(browser):
+    lab = observer_lab(observers=[cubic], surface=slanted, motion=MOTION, duration=4.0, **CALM)
+    page = opened(browser, lab)
+    page.wait_for_function(DRAWN)
+    assert page.locator(control("cubic hidden_gain")).count() == 1
+    type_in(page, "b1 = t")
+    page.wait_for_selector(SAID, state="visible", timeout=8000)
+    assert "Python reads what is typed, and it does not answer" in page.inner_text(SAID)
+    page.evaluate("() => [...window.perceptObsLabs][0].change({ b: [0.2, 0.1, 0.1] }, true)")
+    page.wait_for_function(DRAWN)
+    assert page.evaluate("() => window.refused") == []
+    page.close()
+
+
+PIXEL = """() => { const c = document.querySelector("figure.image-plane canvas");
+    const d = c.getContext("2d").getImageData(c.width / 2 - 40, c.height / 2 - 40, 80, 80).data;
+    let sum = 0; for (let k = 0; k < d.length; k += 4) sum += d[k] * d[k + 3] / 255; return sum / (d.length / 4); }"""
+
+
+def test_frames_stand_behind_the_track_of_ones_own_recording(browser, tmp_path):
+    motion = affine(np.zeros((3, 3)), [0.1, 0.0, -0.2])
+    film = record(Scenario("walk", motion, (-0.4, 0.1, 3.0), 4.0, pinhole()), camera=Camera(0.05))
+    drawn = render(film, count=9, size=64)
+    for k, image in enumerate(drawn.images):
+        (tmp_path / f"{k}.png").write_bytes(image)
+    lab = observer_lab(film, frames=Frames(tmp_path, drawn.time, drawn.extent))
+    page = opened(browser, lab)
+    page.wait_for_function(DRAWN)
+    page.wait_for_function("() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.values()].some(Boolean)")
+    page.wait_for_function(DRAWN)
+    page.wait_for_timeout(100)
+    assert page.evaluate(PIXEL) > 40
+    kept = "() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.keys()].map((key) => key.split(' ').at(-1))"
+    page.evaluate("() => [...window.perceptObsLabs][0].point(3.9)")
+    page.wait_for_function(f"() => ({kept})().includes('7')")
+    page.close()
