@@ -45,10 +45,12 @@ def opened(browser, lab, policy=None, answers=None, **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
     told = {name: getattr(lab, name) for name in ("kind", "model", "settings", "summary", "analysis", "error")}
     told["texts"] = base64.b64encode(lab.texts).decode()
+    bundle = (FRONT / "lab.js").read_text()
+    told["_esm"] = bundle
     files = {
         "/": ("text/html", PAGE),
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
-        "/lab.js": ("text/javascript", (FRONT / "lab.js").read_text()),
+        "/lab.js": ("text/javascript", bundle),
     }
     page = browser.new_page(**options)
     headers = {"Content-Security-Policy": policy or stated_policy()}

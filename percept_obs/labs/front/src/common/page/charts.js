@@ -125,8 +125,8 @@ class Place {
 
   y(value) {
     const height = this.scale.log ? Math.log10(Math.max(value, 1e-30)) : value;
-    // Far outside is far enough: a canvas rounds what is further.
-    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, -1e4), 1e4);
+    // Outside is outside: a canvas would cut what is further away into dashes too, thousands of them.
+    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, this.top - this.height), this.bottom + this.height);
   }
 }
 

@@ -3,7 +3,7 @@
 import { between, valueBetween } from "../model/playback.js";
 import { linearScale, readable, tickLabel } from "../model/scales.js";
 import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOOK } from "../model/space.js";
-import { positionAt, positionsOf, rimOf, turned } from "../model/space.js";
+import { partIn, positionAt, positionsOf, rimOf, turned } from "../model/space.js";
 import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
 import { drawSwung, Swing } from "./swing.js";
@@ -235,24 +235,26 @@ function beyond(frame, place, pixels) {
   return [x + (pixels * (x - x0)) / length, y + (pixels * (y - y0)) / length];
 }
 
+/** A line as far as it is on the picture: what is beyond would be cut into dashes too, thousands of them. */
 function line(pen, frame, from, to) {
-  stroke(pen, on(frame, from), on(frame, to));
+  const part = partIn(on(frame, from), on(frame, to), frame.corners);
+  if (part) stroke(pen, part.slice(0, 2), part.slice(2));
 }
 
 /** The way of a point, with gaps where it is nowhere. */
 function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.beginPath();
-  let begun = false;
+  let before = [NaN, NaN];
+  let end = before;
   for (let k = 0; k < positions.length; k += 3) {
-    const [X, Y, Z] = [positions[k], positions[k + 1], positions[k + 2]];
-    const x = Math.min(Math.max(frame.x(X, Y, Z), -1e4), 1e4);
-    const y = Math.min(Math.max(frame.y(X, Y, Z), -1e4), 1e4);
-    if (Number.isNaN(x + y)) begun = false;
-    else if (begun) pen.lineTo(x, y);
-    else {
-      pen.moveTo(x, y);
-      begun = true;
+    const place = on(frame, [positions[k], positions[k + 1], positions[k + 2]]);
+    const part = Number.isFinite(before[0] + before[1] + place[0] + place[1]) && partIn(before, place, frame.corners);
+    if (part) {
+      if (part[0] !== end[0] || part[1] !== end[1]) pen.moveTo(part[0], part[1]);
+      pen.lineTo(part[2], part[3]);
+      end = part.slice(2);
     }
+    before = place;
   }
   const own = kept ? theme.kept : colour;
   pen.strokeStyle = own;
