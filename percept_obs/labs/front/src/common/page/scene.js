@@ -115,12 +115,15 @@ export class Scene extends Picture {
     const corners = [[8, 8], [size.width - 8, size.height - 8]];
     const pen = this.context;
     const drawing = { pen, frame, theme, corners, scene, ball };
-    this.axes(drawing, this.frustum(drawing));
+    const far = this.corners(scene, ball);
+    this.underlay([this.look, this.zoom, ball, far, theme], (below) => {
+      this.axes({ ...drawing, pen: below }, frustum({ ...drawing, pen: below }, far));
+      below.textAlign = "left";
+      below.textBaseline = "alphabetic";
+      label(below, CAPTION, 4, 12, theme.ink, theme);
+    });
     if (scene.foe) this.foe(drawing);
     for (const { track, positions } of paths) path(drawing, positions, track);
-    pen.textAlign = "left";
-    pen.textBaseline = "alphabetic";
-    label(pen, CAPTION, 4, 12, theme.ink, theme);
     if (cursor === null) return;
     const at = between(shown.time, cursor);
     for (const track of scene.tracks) if (!track.of && !track.kept) this.point(drawing, track, at);
@@ -154,36 +157,14 @@ export class Scene extends Picture {
     });
   }
 
-  /** The rays through the corners of the image that is drawn beside the scene, and that image before the camera; where its axes are named. */
-  frustum({ pen, frame, theme, scene, ball }) {
+  /** The rays through the corners of the image that is drawn beside the scene, as far as that image is drawn before the camera. */
+  corners(scene, ball) {
     const { square } = this.image;
     if (!square) return [];
     const { centre: [c1, c2], half } = square;
-    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => scene.ray(c1 + a * half, c2 + b * half, new Float64Array(3)));
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => Array.from(scene.ray(c1 + a * half, c2 + b * half, new Float64Array(3))));
     const longest = Math.max(...corners.map((corner) => Math.hypot(...corner)));
-    const far = corners.map((corner) => corner.map((value) => (0.5 * ball.radius * value) / longest));
-    pen.setLineDash([]);
-    pen.strokeStyle = theme.muted;
-    pen.fillStyle = theme.muted;
-    for (const corner of far) line(pen, frame, [0, 0, 0], corner);
-    pen.beginPath();
-    for (const corner of far) pen.lineTo(...on(frame, corner));
-    pen.closePath();
-    pen.globalAlpha = 0.08;
-    pen.fill();
-    pen.globalAlpha = 1;
-    pen.stroke();
-    const [lowLeft, lowRight, , highLeft] = far.map((corner) => on(frame, corner));
-    pen.textAlign = "center";
-    pen.textBaseline = "middle";
-    const middle = [0, 1].map((c) => (lowRight[c] + highLeft[c]) / 2);
-    return [lowRight, highLeft].map((corner, i) => {
-      const at = [0, 1].map((c) => lowLeft[c] + 0.7 * (corner[c] - lowLeft[c]));
-      const out = Math.hypot(at[0] - middle[0], at[1] - middle[1]) || 1;
-      const [x, y] = at.map((value, c) => value + (12 * (value - middle[c])) / out);
-      label(pen, ["y1 →", "y2 ↑"][i], x, y, theme.muted, theme);
-      return [x, y];
-    });
+    return corners.map((corner) => corner.map((value) => (0.5 * ball.radius * value) / longest));
   }
 
   /** The direction of the focus of expansion, along which the point moves straight towards the camera or away. */
@@ -217,6 +198,33 @@ export class Scene extends Picture {
     line(pen, frame, [place[0], 0, place[2]], [0, 0, place[2]]);
     pointMark(pen, ...on(frame, place), track.colour, theme);
   }
+}
+
+/** The frustum with the image before the camera; where that image's axes are named. */
+function frustum({ pen, frame, theme }, far) {
+  if (!far.length) return [];
+  pen.setLineDash([]);
+  pen.strokeStyle = theme.muted;
+  pen.fillStyle = theme.muted;
+  for (const corner of far) line(pen, frame, [0, 0, 0], corner);
+  pen.beginPath();
+  for (const corner of far) pen.lineTo(...on(frame, corner));
+  pen.closePath();
+  pen.globalAlpha = 0.08;
+  pen.fill();
+  pen.globalAlpha = 1;
+  pen.stroke();
+  const [lowLeft, lowRight, , highLeft] = far.map((corner) => on(frame, corner));
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  const middle = [0, 1].map((c) => (lowRight[c] + highLeft[c]) / 2);
+  return [lowRight, highLeft].map((corner, i) => {
+    const at = [0, 1].map((c) => lowLeft[c] + 0.7 * (corner[c] - lowLeft[c]));
+    const out = Math.hypot(at[0] - middle[0], at[1] - middle[1]) || 1;
+    const [x, y] = at.map((value, c) => value + (12 * (value - middle[c])) / out);
+    label(pen, ["y1 →", "y2 ↑"][i], x, y, theme.muted, theme);
+    return [x, y];
+  });
 }
 
 /** @returns {[number, number]} */

@@ -5,13 +5,14 @@ import { LARGEST_SQUARED_STATE } from "../../common/model/integrator.js";
 import { stepper } from "../../common/model/runge_kutta.js";
 import { derived } from "../../common/model/derived.js";
 import { EACH } from "../../common/model/tables.js";
-import { entriesOf, informationOf, solverOf, termsOf } from "./sparse.js";
+import { entriesOf } from "./sparse.js";
 
 /**
  * Step an estimate, and P where it is computed, by the Runge-Kutta method.
  *
  * layout    where the coefficients stand: rows, columns, which; begins, axes, states, entries of the points
- * point     what one point tells, printed from its block
+ * functions  point: what one point tells, printed from its block; moveP and solveP, printed for the layout, where P is
+ *           computed
  * law       {computed, information, forgetting, pull} of P
  * x, P      at the start, P with no more entries than `entriesOf` finds; it is null where it is given
  * tables    {steps, coefficients, width, inverses, images, points, first}: coefficients have a row of `width` numbers
@@ -21,14 +22,14 @@ import { entriesOf, informationOf, solverOf, termsOf } from "./sparse.js";
  * path      takes the estimates
  * Returns the first row of the path at which the estimate was no longer finite, or -1; P holds its last value.
  */
-export function advance(layout, point, law, x, P, tables, path) {
+export function advance(layout, functions, law, x, P, tables, path) {
   const { steps, coefficients, width, inverses, images, points, first } = tables;
   const n = x.length;
   const { pairs } = entriesOfP(layout, n);
   const now = new Float64Array(law.computed ? n + pairs.length : n);
   now.set(x);
   for (let k = n; k < now.length; k++) now[k] = P[pairs[k - n][0] * n + pairs[k - n][1]];
-  const rate = rateOf(layout, point, law, n);
+  const rate = rateOf(layout, functions, law, n);
   const step = stepper(now.length);
   path.set(x);
   let failed = -1;
@@ -63,13 +64,13 @@ function linesOf(layout) {
 }
 
 /** A function that fills the rates of an estimate and, behind it, of P's entries. */
-function rateOf(layout, point, law, n) {
+function rateOf(layout, { point, moveP, solveP }, { computed, information, forgetting, pull }, n) {
   const { rows, columns, which, begins, axes, states, entries } = linesOf(layout);
-  const { computed } = law;
   const correction = new Float64Array(n);
   const given = new Float64Array(5);
-  const told = new Float64Array(12);
-  const ofP = computed ? ratesOfP(layout, law, n) : null;
+  const told = new Float64Array(12 * (begins.length - 1));
+  const toldOf = Array.from(begins.subarray(1), (_, k) => told.subarray(12 * k, 12 * k + 12));
+  const constant = Float64Array.from(entriesOfP(layout, n).pairs, ([i, j]) => (computed ? pull[i * n + j] : 0));
   return (now, inverse, known, offset, images, at, out) => {
     out.fill(0, 0, n);
     correction.fill(0);
@@ -77,46 +78,23 @@ function rateOf(layout, point, law, n) {
       const a = known[offset + which[e]];
       out[rows[e]] += columns[e] === n ? a : a * now[columns[e]];
     }
-    if (ofP) ofP.move(now, known, offset, out);
     let anything = false;
     for (let k = 0; k + 1 < begins.length; k++) {
       given[0] = images[at + 2 * k];
       given[1] = images[at + 2 * k + 1];
-      if (Number.isNaN(given[0] + given[1])) continue;
+      if (Number.isNaN(given[0] + given[1])) {
+        toldOf[k].fill(0);
+        continue;
+      }
       anything = true;
       given[2] = given[3] = given[4] = 0;
       for (let e = begins[k]; e < begins[k + 1]; e++) given[2 + axes[e]] += entries[e] * now[states[e]];
-      point(given, told);
-      for (let e = begins[k]; e < begins[k + 1]; e++) correction[states[e]] += entries[e] * told[axes[e]];
-      if (ofP) ofP.learn(k, told, out);
+      point(given, toldOf[k]);
+      for (let e = begins[k]; e < begins[k + 1]; e++) correction[states[e]] += entries[e] * told[12 * k + axes[e]];
     }
+    if (computed) moveP(now, known, offset, told, information, forgetting, constant, out);
     if (!anything) return;
-    if (ofP) ofP.solve(now, correction);
+    if (computed) solveP(now, correction);
     for (let i = 0; i < n; i++) out[i] += computed ? correction[i] : inverse * correction[i];
   };
-}
-
-/** How the entries of P move by themselves, what they learn of a point, and how P x = right is solved in place. */
-function ratesOfP(layout, { information, forgetting, pull }, n) {
-  const found = entriesOfP(layout, n);
-  const { terms, added, solve } = derived(layout, "rates of P", () => ({
-    terms: termsOf(layout, found, n),
-    added: informationOf(layout, found, n),
-    solve: solverOf(found, n),
-  }));
-  const { begins, one, other } = terms;
-  const constant = Float64Array.from(found.pairs, ([i, j]) => pull[i * n + j]);
-  const move = (now, known, offset, out) => {
-    for (let k = 0; k < constant.length; k++) {
-      let rate = constant[k] - forgetting * now[n + k];
-      for (let t = begins[k]; t < begins[k + 1]; t++) rate -= known[offset + one[t]] * now[n + other[t]];
-      out[n + k] = rate;
-    }
-  };
-  const learn = (k, told, out) => {
-    for (let t = added.begins[k]; t < added.begins[k + 1]; t++) {
-      out[n + added.one[t]] += information * added.factors[t] * told[3 + added.other[t]];
-    }
-  };
-  return { move, learn, solve };
 }

@@ -1,19 +1,9 @@
 // @ts-check
-// A symmetric matrix most of whose entries stay 0, as P's between points that share nothing: where the others stand, how
-// they move, and how P x = b is solved with them.  What is done is laid out once, as lists that flat loops walk along.
+// P between points that share nothing stays 0.  Printed here, for the entries that do not, are its rates and how P x = b
+// is solved with them: line by line, for loops over so few numbers take four times as long.
 
-/**
- * @typedef {{begins: Int32Array, one: Int32Array, other: Int32Array}} Lists  pairs of indices, those of list k from
- *   begins[k] to begins[k + 1]
- */
-
-/** @returns {Lists} */
-function flat(/** @type {number[][][]} */ lists) {
-  const begins = Int32Array.from([0, ...lists.map((list) => list.length)]);
-  for (let k = 1; k < begins.length; k++) begins[k] += begins[k - 1];
-  const all = lists.flat();
-  return { begins, one: Int32Array.from(all, ([a]) => a), other: Int32Array.from(all, ([, b]) => b) };
-}
+/** Statements of a function at most; engines give up on longer ones. */
+const LONGEST = 400;
 
 /**
  * Where the entries of P stand that ever differ from 0, when it begins as a diagonal matrix: those of one state, those of
@@ -40,92 +30,84 @@ export function entriesOf({ rows, columns, begins, states }, n) {
   const at = new Int32Array(n * n).fill(-1);
   const pairs = /** @type {number[][]} */ ([]);
   for (let i = 0; i < n; i++) {
-    for (let j = 0; j <= i; j++) {
-      if (!there[i * n + j]) continue;
-      at[i * n + j] = at[j * n + i] = pairs.length;
-      pairs.push([i, j]);
-    }
+    for (let j = 0; j <= i; j++) if (there[i * n + j]) at[i * n + j] = at[j * n + i] = pairs.push([i, j]) - 1;
   }
   return { at, pairs };
 }
 
-/** For each entry of A^T P + P A its terms: a coefficient of A, and the entry of P that it multiplies. */
-export function termsOf({ rows, columns, which }, { at, pairs }, n) {
-  return flat(
-    pairs.map(([i, j]) => {
-      const terms = [];
-      for (let e = 0; e < rows.length; e++) {
-        if (columns[e] === i && at[rows[e] * n + j] >= 0) terms.push([which[e], at[rows[e] * n + j]]);
-        if (columns[e] === j && at[rows[e] * n + i] >= 0) terms.push([which[e], at[rows[e] * n + i]]);
-      }
-      return terms;
-    }),
-  );
+/** Texts of the functions of P for a layout: `move` fills its rates, `solve` solves P x = right in place. */
+export function textsOfP(layout, n) {
+  const found = entriesOf(layout, n);
+  return { moveP: moveText(layout, found, n), solveP: solveText(found, n) };
 }
 
-/** For each point what it adds to P' for each entry of its P: the entry, that of its 3 x 3 information, a factor. */
-export function informationOf({ begins, axes, states, entries }, { at }, n) {
-  const factors = /** @type {number[]} */ ([]);
-  const lists = Array.from({ length: begins.length - 1 }, (_, p) => {
-    const list = [];
+/** A function that runs statements one after the other, in parts that are not too long. */
+function inParts(name, parameters, statements, before = "") {
+  const parts = [];
+  for (let k = 0; k < statements.length; k += LONGEST) parts.push(statements.slice(k, k + LONGEST).join("\n"));
+  const calls = parts.map((_, k) => `part${k}(${parameters});`).join(" ");
+  const functions = parts.map((text, k) => `function part${k}(${parameters}) {\n${text}\n}`);
+  return [`function ${name}(${parameters}) { ${calls} }`, before, ...functions].join("\n");
+}
+
+/** P' = pull - forgetting P - A^T P - P A + information S: of an estimate and P's entries behind it, in `now`. */
+function moveText({ rows, columns, which, begins, axes, states, entries }, { at, pairs }, n) {
+  const learnt = pairs.map(() => /** @type {string[]} */ ([]));
+  for (let p = 0; p + 1 < begins.length; p++) {
     for (let e = begins[p]; e < begins[p + 1]; e++) {
       for (let f = begins[p]; f < begins[p + 1]; f++) {
         if (states[f] > states[e]) continue;
-        list.push([at[states[e] * n + states[f]], 3 * axes[e] + axes[f]]);
-        factors.push(entries[e] * entries[f]);
+        const told = `told[${12 * p + 3 + 3 * axes[e] + axes[f]}]`;
+        const factor = entries[e] * entries[f];
+        learnt[at[states[e] * n + states[f]]].push(factor === 1 ? told : `${factor} * ${told}`);
       }
     }
-    return list;
+  }
+  const statements = pairs.map(([i, j], k) => {
+    const term = (e, other) => (at[rows[e] * n + other] < 0 ? [] : [`known[at + ${which[e]}] * now[${n + at[rows[e] * n + other]}]`]);
+    const moved = rows.flatMap((_, e) => [...(columns[e] === i ? term(e, j) : []), ...(columns[e] === j ? term(e, i) : [])]);
+    const less = moved.length ? ` - (${moved.join(" + ")})` : "";
+    const more = learnt[k].length ? ` + information * (${learnt[k].join(" + ")})` : "";
+    return `out[${n + k}] = pull[${k}] - forgetting * now[${n + k}]${less}${more};`;
   });
-  return { ...flat(lists), factors: Float64Array.from(factors) };
+  return inParts("moveP", "now, known, at, told, information, forgetting, pull, out", statements);
 }
 
 /**
- * A function that solves P x = right in place by Cholesky's method, the entries of P behind n other numbers; NaN where P
- * is not positive definite.  States with the fewest neighbours go first, so that little is filled in.
+ * Cholesky's method; NaN where P is not positive definite.  States with the fewest neighbours go first, so that little is
+ * filled in.
  */
-export function solverOf({ at }, n) {
-  const neighbours = Array.from({ length: n }, (_, i) => at.subarray(i * n, i * n + n).reduce((sum, k) => sum + (k >= 0 ? 1 : 0), 0));
-  const order = Int32Array.from({ length: n }, (_, i) => i).sort((i, j) => neighbours[i] - neighbours[j] || i - j);
-  const place = filledIn(n, (p, q) => at[order[p] * n + order[q]] >= 0);
-  const cells = /** @type {number[][]} */ ([]);
-  for (let p = 0; p < n; p++) for (let q = 0; q <= p; q++) if (place[p * n + q]) place[p * n + q] = cells.push([p, q]);
-  const L = new Float64Array(cells.length + 1); // the first is no cell
-  const source = Int32Array.from(cells, ([p, q]) => at[order[p] * n + order[q]]);
-  const column = Int32Array.from(cells, ([, q]) => q);
-  const ends = Int32Array.from({ length: n }, (_, p) => place[p * n + p]);
-  const { begins, one, other } = flat(
-    cells.map(([p, q]) => {
-      const before = Array.from({ length: q }, (_, k) => [place[p * n + k], place[q * n + k]]);
-      return before.filter(([left, right]) => left && right);
-    }),
-  );
-  const y = new Float64Array(n);
-  return (/** @type {Float64Array} */ now, /** @type {Float64Array} */ x) => {
-    for (let p = 0, cell = 1; p < n; p++) {
-      let value = x[order[p]];
-      for (; cell < ends[p]; cell++) {
-        let total = source[cell - 1] < 0 ? 0 : now[n + source[cell - 1]];
-        for (let t = begins[cell - 1]; t < begins[cell]; t++) total -= L[one[t]] * L[other[t]];
-        L[cell] = total / L[ends[column[cell - 1]]];
-        value -= L[cell] * y[column[cell - 1]];
-      }
-      let total = now[n + source[cell - 1]];
-      for (let t = begins[cell - 1]; t < begins[cell]; t++) total -= L[one[t]] * L[other[t]];
-      L[cell] = total > 0 ? Math.sqrt(total) : NaN;
-      y[p] = value / L[cell++];
-    }
-    for (let p = n - 1; p >= 0; p--) {
-      const value = y[p] / L[ends[p]];
-      for (let cell = p ? ends[p - 1] + 1 : 1; cell < ends[p]; cell++) y[column[cell - 1]] -= L[cell] * value;
-      x[order[p]] = value;
-    }
-  };
+function solveText({ at }, n) {
+  const neighbours = Array.from({ length: n }, (_, i) => at.subarray(i * n, i * n + n).filter((k) => k >= 0).length);
+  const order = Array.from({ length: n }, (_, i) => i).sort((i, j) => neighbours[i] - neighbours[j] || i - j);
+  const has = filledIn(n, (p, q) => at[order[p] * n + order[q]] >= 0);
+  const before = (p) => Array.from({ length: p }, (_, q) => q).filter((q) => has[p * n + q]);
+  const L = (p, q) => `L[${(p * (p + 1)) / 2 + q}]`;
+  const forwards = order.flatMap((state, p) => {
+    const cell = (q) => {
+      const entry = at[state * n + order[q]];
+      const products = before(q).filter((k) => has[p * n + k]).map((k) => ` - ${L(p, k)} * ${L(q, k)}`);
+      return `${entry < 0 ? "0" : `now[${n + entry}]`}${products.join("")}`;
+    };
+    const products = before(p).map((q) => ` - ${L(p, q)} * y[${q}]`).join("");
+    return [
+      ...before(p).map((q) => `${L(p, q)} = (${cell(q)}) * D[${q}];`),
+      `D[${p}] = 1 / Math.sqrt(positive(${cell(p)}));`,
+      `y[${p}] = (x[${state}]${products}) * D[${p}];`,
+    ];
+  });
+  const backwards = order.map((state, p) => {
+    const products = order.flatMap((_, q) => (q > p && has[q * n + p] ? [` - ${L(q, p)} * y[${q}]`] : [])).join("");
+    return `x[${state}] = y[${p}] = (y[${p}]${products}) * D[${p}];`;
+  });
+  const room = `const [L, D, y] = [${(n * (n + 1)) / 2}, ${n}, ${n}].map((size) => new Float64Array(size));
+function positive(value) { return value > 0 ? value : NaN; }`;
+  return inParts("solveP", "now, x", [...forwards, ...backwards.reverse()], room);
 }
 
 /** 1 where Cholesky's factor has an entry, row by row; `has` says where the matrix has one. */
 function filledIn(n, has) {
-  const there = new Int32Array(n * n);
+  const there = new Uint8Array(n * n);
   for (let p = 0; p < n; p++) for (let q = 0; q <= p; q++) there[p * n + q] = has(p, q) ? 1 : 0;
   for (let k = 0; k < n; k++) {
     for (let p = k + 1; p < n; p++) {
