@@ -1,5 +1,6 @@
-// Drags a handle of a lab for some seconds, an event a frame; what was drawn of it, and how long each event waited.
-([seconds, control]) => new Promise((resolve) => {
+// Drags a handle of a lab for some seconds, an event a frame, or one only when the one before it has been drawn; what was
+// drawn of it, and how long each event waited.
+([seconds, control, patient]) => new Promise((resolve) => {
     const [lab] = window.perceptObsLabs;
     const handle = document.querySelector(`[data-control="${control}"]`);
     const box = handle.getBoundingClientRect();
@@ -22,7 +23,10 @@
         const answered = waiting.splice(0, 1 + waiting.findLastIndex(({ settings }) => settings === before));
         const channel = new MessageChannel();
         // Runs after the frame in which it was posted.
-        channel.port1.onmessage = () => latencies.push(...answered.map(({ at }) => performance.now() - at));
+        channel.port1.onmessage = () => {
+            latencies.push(...answered.map(({ at }) => performance.now() - at));
+            if (patient && !waiting.length) after.port2.postMessage(0);
+        };
         channel.port2.postMessage(0);
     };
     let k = 0;
@@ -44,7 +48,7 @@
         const at = performance.now();
         tell("pointermove", ++k);
         waiting.push({ at, settings: lab.settings });
-        requestAnimationFrame(() => after.port2.postMessage(0));
+        if (!patient) requestAnimationFrame(() => after.port2.postMessage(0));
     };
     after.port2.postMessage(0);
 })

@@ -99,7 +99,7 @@ export class Scene extends Picture {
   }
 
   draw(shown, ghost, cursor, theme) {
-    const size = this.fit();
+    const size = this.fit(theme.font);
     const there = shown.time.length > 0 && !shown.problem;
     this.swing.offer(there && cursor !== null && this.unseenOf(shown, between(shown.time, cursor), theme));
     if (!there) return;
