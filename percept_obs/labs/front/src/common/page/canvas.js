@@ -38,6 +38,8 @@ export class Picture {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     context.lineWidth = 1;
+    // Letters of the last picture may have left it as they need it.
+    context.lineJoin = "round";
     return { width, height };
   }
 

@@ -56,7 +56,11 @@ export class Live extends Showing {
   // What the hand does.
 
   touched(chosen) {
-    if (chosen) this.choices += 1;
+    if (chosen) {
+      this.choices += 1;
+      this.view.notice("");
+      this.state.amend(this.fitted(this.settings));
+    }
     this.hire();
     // What is found beside the page is drawn when it comes.
     if (!this.latest.beside || this.compute()) this.schedule();
@@ -65,8 +69,6 @@ export class Live extends Showing {
       this.resting = setTimeout(() => this.settle(), REST);
       return undefined;
     }
-    this.view.notice("");
-    this.state.amend(this.fitted(this.settings));
     // What a choice hides must be gone before the next event can reach it.
     this.panel.show();
     this.view.preset();
