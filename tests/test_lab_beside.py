@@ -66,7 +66,7 @@ PLAY = """(seconds) => new Promise((resolve) => {
     }, 1000 * seconds);
 })"""
 FOUR = {"observers": ["identifier_based", "sliding_mode", "extended_kalman", "de_luca"], "duration": 20.0}
-MOVES, SECONDS = sampled(300, 1000), sampled(4, 600)
+MOVES, SECONDS = sampled(150, 1000), sampled(2, 600)
 
 
 def answered(told):
