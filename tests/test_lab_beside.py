@@ -1,4 +1,4 @@
-"""A heavy picture never blocks the hand: labs compute in a worker, or without one where a page forbids it; none grows."""
+"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where that is forbidden; none grows."""
 
 import json
 import re
@@ -157,7 +157,7 @@ def test_while_a_heavy_picture_is_computed_the_page_goes_on(browser):
 
 
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(browser):
-    """A run's estimates are 48 kB here, and there are four; kept at every move they would fill several times the bound."""
+    """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
     page = with_worker(browser, observer_lab(**FOUR))
     used = memory_of(page)
     page.evaluate(MOVE, 100)
