@@ -1,4 +1,4 @@
-"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where that is forbidden; none grows."""
+"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where none may be; none grows."""
 
 import json
 import re

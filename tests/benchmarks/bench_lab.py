@@ -1,8 +1,10 @@
-"""How fast labs draw while the hand drags, and open, in JupyterLab: python tests/benchmarks/bench_lab.py [part of a name].
+"""How fast labs draw while the hand drags, and open, in JupyterLab.
+
+    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
 
 With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
-JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first picture, and to the
-answer to the first switch, which asks for texts that nothing has needed before.
+JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
+picture, and to the answer to the first switch, which asks for texts that nothing has needed before.
 
 A configuration is dragged five times, and medians are told.  Before each drag the lab is put back to what it opened
 with and shows all of its time, so that each drag begins where the one before it did and every sample is drawn.
