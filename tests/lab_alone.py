@@ -51,10 +51,12 @@ def opened(browser, lab, policy=None, answers=None, **options):
     told["texts"] = base64.b64encode(lab.texts).decode()
     films = getattr(lab, "frames", {}).items()
     told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}
+    bundle = (FRONT / "lab.js").read_text()
+    told["_esm"] = bundle
     files = {
         "/": ("text/html", PAGE),
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
-        "/lab.js": ("text/javascript", (FRONT / "lab.js").read_text()),
+        "/lab.js": ("text/javascript", bundle),
     }
     page = browser.new_page(**options)
     headers = {"Content-Security-Policy": policy or stated_policy()}

@@ -1,5 +1,6 @@
 // Random events over every control of a lab, the same for the same seed; what went wrong and what was used is returned.
-// Some of the events go to a control that was not used yet, so that all have their turn.
+// Some of the events go to a control that was not used yet, so that all have their turn.  Now and then the lab may come to
+// rest, and then all that it shows must be what a fresh engine makes of its settings.
 async ([seed, count, most = 20000]) => {
     const [lab] = window.perceptObsLabs;
     const { root } = lab.view;
@@ -70,6 +71,53 @@ async ([seed, count, most = 20000]) => {
         return control.click();
     }
 
+    const numbers = (values) => Array.from(values).join();
+    const linesOf = (drawn) => Object.entries(drawn).flatMap(([name, { lines }]) => lines.map((line) => [name, line.name, line.values]));
+    const canvases = () => [...root.querySelectorAll("figure:not([hidden]) canvas")];
+    const pixelsOf = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    const moving = () => lab.view.playing() || Boolean(root.querySelector('[data-control="swing"][aria-pressed="true"]'));
+    const current = () => [lab.shown, lab.link.sent].every((found) => found?.settings === lab.settings);
+    const atRest = () => current() && lab.resting === null && (!lab.pending || moving());
+
+    /** Whether pictures and words are of the present settings: compared with what is computed and drawn anew. */
+    async function compare(when) {
+        const began = performance.now();
+        while (!atRest() && performance.now() - began < 30000) await frame();
+        if (!atRest()) return note(`event ${when}: the picture stays stale, of ${JSON.stringify(lab.settings)}`);
+        const { Engine } = lab.constructor.computing;
+        const fresh = (settings) => settings && new Engine(lab.model).run(settings, lab.kernels.of(settings), true);
+        const { settings, theme } = lab;
+        const [shown, kept] = [fresh(settings), fresh(settings.kept)];
+        const ghost = kept && !kept.problem && !kept.refusal ? kept : null;
+        const names = shown.problem ? [] : lab.chosen();
+        const right = Object.fromEntries(names.map((name) => [name, lab.parts.chartOf(name, shown, ghost, theme, lab.besides())]));
+        const [seen, wanted] = [linesOf(lab.drawn), linesOf(right)];
+        if (seen.length !== wanted.length) note(`event ${when}: ${seen.length} lines instead of ${wanted.length}`);
+        wanted.forEach(([name, title, values], i) => {
+            if (!seen[i] || seen[i][1] !== title || numbers(seen[i][2]) !== numbers(values)) note(`event ${when}: "${title}" of ${name} is stale`);
+        });
+        for (const [name, { figure }] of Object.entries(lab.charts)) {
+            if (figure.hidden === names.includes(name)) note(`event ${when}: chart ${name} is ${figure.hidden ? "hidden" : "shown"}`);
+        }
+        const said = [...root.querySelectorAll(".verdicts li")].map((item) => item.textContent);
+        const [before, pixels] = [lab.shown, canvases().map(pixelsOf)];
+        Object.assign(lab, { shown, ghost });
+        const due = shown.problem || shown.refusal ? said : lab.verdicts().map(({ title, text }) => `${title}: ${text}`);
+        if (said.join("|") !== due.join("|")) note(`event ${when}: said "${said}" instead of "${due}"`);
+        if (!moving()) {
+            lab.stale = true;
+            lab.draw();
+            canvases().forEach((canvas, i) => {
+                const drawn = pixelsOf(canvas);
+                if (drawn.length !== pixels[i].length || drawn.some((value, at) => value !== pixels[i][at])) {
+                    note(`event ${when}: the picture "${canvas.ariaLabel.slice(0, 40)}" is stale`);
+                }
+            });
+        }
+        lab.shown = before;
+        return undefined;
+    }
+
     for (let k = 0; k < count; k++) {
         try {
             // Long recordings at short periods only make the test slow.
@@ -85,6 +133,7 @@ async ([seed, count, most = 20000]) => {
         const text = root.querySelector(".words").textContent + root.querySelector(".reading").textContent;
         if (/NaN|undefined|null|\[object/.test(text)) note(`text: ${text}`);
         for (const problem of root.querySelectorAll(".problem:not([hidden])")) note(problem.textContent);
+        if (k % 50 === 49 && lab.results) await compare(k);
     }
     // What still moves is stopped, as a hand would.
     if (lab.view.playing()) root.querySelector('[data-control="play"]').click();

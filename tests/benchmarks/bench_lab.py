@@ -1,73 +1,53 @@
-"""How fast the labs open, and draw while the hand drags, in JupyterLab: python tests/benchmarks/bench_lab.py.
+"""How fast labs draw while the hand drags, and open, in JupyterLab.
 
-With ``--opening`` it only measures that: from the key that runs a cell to the first picture, and to the answer to the
-first switch, which asks for texts that nothing has needed before.
+    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
 
+With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
+JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
+picture, and to the answer to the first switch, which asks for texts that nothing has needed before.
+
+A configuration is dragged five times, and medians are told.  Before each drag the lab is put back to what it opened
+with and shows all of its time, so that each drag begins where the one before it did and every sample is drawn.
 Pointer events are made in the page, one a frame, since a driver's own moves wait for the page.  A picture counts when
-the frame that holds it has been handed to the screen; its latency runs from the event to that moment.
+the frame that holds it has been handed to the screen; its latency runs from the event to that moment.  Between the
+drags a page that draws six lines of 8,000 samples and nothing else is dragged in the same way: the ratio to it tells
+of the lab, as far as the machine has time for both.  Milliseconds of a picture are those for which the page's main
+thread computed, while a shorter drag waits for each picture before its next event: they do not depend on the load.
 """
 
 import json
+import os
 import shutil
 import statistics
 import sys
 import tempfile
+from collections.abc import Callable
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from jupyter_harness import IDLE, jupyterlab, lab_page, open_notebook
+import lab_alone
+from jupyter_harness import CHROMIUM_OPTIONS, IDLE, jupyterlab, lab_page, open_notebook
 from lab_browser import OPEN, rested, write_notebook
 
+from percept_obs import labs
 from percept_obs.labs.observer.texts import BY_NAME
+from percept_obs.labs.points.texts import MOST_POINTS
 
-SECONDS = 5
+ROUNDS, SECONDS, SHORTER = 5, 3, 1.5
+SOON = 34
+"""Milliseconds in which nearly every picture is to follow its event."""
+
 BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monotonic() < end:\n    pass"
-
-DRAG = """([seconds, control]) => new Promise((resolve) => {
+DRAG = Path(__file__).with_name("lab_drag.js").read_text()
+REFERENCE = Path(__file__).with_name("reference.js").read_text()
+BACK = """() => {
     const [lab] = window.perceptObsLabs;
-    const handle = document.querySelector(`[data-control="${control}"]`);
-    const box = handle.getBoundingClientRect();
-    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
-    const tell = (type, k) => handle.dispatchEvent(new PointerEvent(type, {
-        pointerId: 7, clientX: x + 20 * Math.sin(k / 9), clientY: y + 16 * Math.cos(k / 9), bubbles: true,
-    }));
-    const latencies = [];
-    let pictures = 0;
-    let before = "";
-    const waiting = [];
-    const draw = lab.draw.bind(lab);
-    lab.draw = () => {
-        draw();
-        const { estimate } = lab.shown.runs?.[0] ?? lab.shown;
-        const key = [0.1, 0.3, 0.5, 0.9].map((part) => estimate[Math.floor(part * estimate.length)]).join();
-        if (key !== before) pictures += 1;
-        before = key;
-        const answered = waiting.splice(0);
-        const channel = new MessageChannel();
-        // Runs after the frame in which it was posted.
-        channel.port1.onmessage = () => latencies.push(...answered.map((event) => performance.now() - event));
-        channel.port2.postMessage(0);
-    };
-    let k = 0;
-    tell("pointerdown", 0);
-    const began = performance.now();
-    const finish = () => {
-        tell("pointerup", k);
-        delete lab.draw;
-        const lines = Object.values(lab.drawn).map((chart) => chart.lines.map((line) => line.values.length));
-        resolve({ rate: pictures / seconds, latencies, lines });
-    };
-    // One event a frame, once the frame has been handed over: as a mouse's, which a browser aligns with its frames.
-    const after = new MessageChannel();
-    after.port1.onmessage = () => {
-        if (performance.now() - began > 1000 * seconds) return finish();
-        waiting.push(performance.now());
-        tell("pointermove", ++k);
-        requestAnimationFrame(() => after.port2.postMessage(0));
-    };
-    after.port2.postMessage(0);
-})"""
+    lab.reset();
+    lab.zoom?.((timeline) => timeline.select(timeline.whole));
+}"""
 
 OPENING = """() => {
     const began = performance.now();
@@ -86,6 +66,9 @@ OPENING = """() => {
     look();
 }"""
 
+HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
+"""What is dragged in each lab."""
+
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
     "structure_lab": {"unknown": ["v_p1", "v_p2"], "observers": ["extended_kalman", "layer"]},
@@ -93,71 +76,165 @@ SWITCH = {
 }
 """What is switched to first in each lab."""
 
-THREE = "pictures=['inverse', 'distance', 'error']"
-TWO = "['identifier_based', 'sliding_mode']"
-ALL = "['identifier_based', 'sliding_mode', 'extended_kalman']"
-CASES = {
-    "three charts of two and three lines": f"{THREE}, kept=observer_lab().settings",
-    "three charts of five and six lines": f"{THREE}, observers={ALL}, kept=observer_lab(observers={TWO}).settings",
+
+class Case(NamedTuple):
+    """A lab and the settings that it opens with."""
+
+    lab: str
+    settings: dict[str, Any]
+
+
+TWO = ["identifier_based", "sliding_mode"]
+THREE = {"pictures": ["inverse", "distance", "error"]}
+NOISY = {"outputs": ["y1"], "noise": {"kind": "uniform", "size": 0.05}}
+RICCATI = {"weight": "riccati", "size": 0.01}
+
+
+def _places(count: int) -> dict[str, Any]:
+    return {"points": [[0.15 * k - 0.7, 1.2 - 0.1 * k, 2.5 + 0.1 * k] for k in range(count)]}
+
+
+OBSERVER = {
+    "three charts of two and three lines": {**THREE, "kept": {}},
+    "three charts of five and six lines": {
+        **THREE,
+        "observers": [*TWO, "extended_kalman"],
+        "kept": {"observers": TWO},
+    },
+    "thousands of resets": {**THREE, **NOISY, "observers": TWO},
+    **{f"{name} alone, three charts": {**THREE, "observers": [name]} for name in BY_NAME},
 }
 STRUCTURE = {
-    "opening, 3000 steps": "",
-    "seven lines, a kept run": "observers=['ideal', 'layer', 'extended_kalman'], kept=structure_lab().settings",
-    "velocities that vary, corollary 5": (
-        "unknown=['v_p1', 'v_p2', 'v_p3'], v_c_swing=[0.3, 0.3, -0.1], v_p_swing=[0.2, 0.2, 0.1]"
-    ),
+    "opening, 3000 steps": {},
+    "seven lines, a kept run": {"observers": ["ideal", "layer", "extended_kalman"], "kept": {}},
+    "velocities that vary, corollary 5": {
+        "unknown": ["v_p1", "v_p2", "v_p3"],
+        "v_c_swing": [0.3, 0.3, -0.1],
+        "v_p_swing": [0.2, 0.2, 0.1],
+    },
 }
-EIGHT = "points=[[0.2 * k - 0.7, 1.2 - 0.1 * k, 2.5 + 0.1 * k] for k in range(8)]"
-RICCATI = "weight='riccati', size=0.01"
 POINTS = {
-    "three points, three charts": "",
-    "three points, Riccati, a kept run, four charts": (
-        f"{RICCATI}, pictures=['error', 'depth', 'points', 'gramian'], kept=points_lab().settings"
-    ),
-    "eight points, 24 states": EIGHT,
-    "eight points, 24 states, Riccati": f"{EIGHT}, {RICCATI}",
+    "three, three charts": {},
+    "three, Riccati, a kept run, four charts": {
+        **RICCATI,
+        "pictures": ["error", "depth", "points", "gramian"],
+        "kept": {},
+    },
+    "eight, 24 states": _places(8),
+    "eight, 24 states, Riccati": {**_places(8), **RICCATI},
+    f"{MOST_POINTS}, {3 * MOST_POINTS} states, Riccati": {**_places(MOST_POINTS), **RICCATI},
 }
-ALONE = {name: f"{THREE}, observers=['{name}']" for name in BY_NAME}
+CASES = {
+    **{name: Case("observer_lab", settings) for name, settings in OBSERVER.items()},
+    **{f"structure, {name}": Case("structure_lab", settings) for name, settings in STRUCTURE.items()},
+    **{f"points, {name}": Case("points_lab", settings) for name, settings in POINTS.items()},
+}
+BESIDE_A_BUSY_KERNEL = [name for name in CASES if name.startswith("three charts")]
 
 
-def report(title, found):
-    """One line of figures."""
+def drag(page: Any, handle: str, seconds: float) -> dict[str, Any]:
+    """Drag a handle for some seconds; the pictures a second, and how long they were waited for."""
+    page.bring_to_front()
+    page.locator(f"[data-control='{handle}']").scroll_into_view_if_needed()
+    found = page.evaluate(DRAG, [seconds, handle, False])
     latencies = sorted(found["latencies"])
-    worst = latencies[int(0.95 * len(latencies))]
-    lines = "+".join(str(len(chart)) for chart in found["lines"])
+    return {
+        "rate": found["pictures"] / found["took"],
+        "median": statistics.median(latencies),
+        "soon": 100 * sum(latency <= SOON for latency in latencies) / len(latencies),
+        **{name: found[name] for name in ("samples", "resets", "lines")},
+    }
+
+
+def drag_patiently(page: Any, handle: str, seconds: float) -> dict[str, Any]:
+    """Drag a handle, each event after the picture of the last one; milliseconds of the main thread a picture."""
+    page.bring_to_front()
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    before = _spent(session)
+    pictures = max(1, page.evaluate(DRAG, [seconds, handle, True])["pictures"])
+    after = _spent(session)
+    session.detach()
+    return {
+        name: 1000 * (after[metric] - before[metric]) / pictures
+        for name, metric in (("task", "TaskDuration"), ("script", "ScriptDuration"))
+    }
+
+
+def _spent(session: Any) -> dict[str, float]:
+    return {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
+
+
+def put_back(page: Any) -> None:
+    """Let a lab show what it opened with, over all of its time."""
+    rested(page, 60)
+    page.evaluate(BACK)
+    rested(page, 60)
+
+
+def measure(title: str, page: Any, reference: Any, handle: str, prepare: Callable[[], object] = lambda: None) -> None:
+    """Drag a lab five times and the reference page in between, and say what was found in a line."""
+    drags, references = [], []
+    for _ in range(ROUNDS):
+        patient = drag_patiently(reference, "reference", SHORTER)
+        references.append(drag(reference, "reference", SHORTER) | patient)
+        page.bring_to_front()
+        put_back(page)
+        patient = drag_patiently(page, handle, SHORTER)
+        put_back(page)
+        prepare()
+        drags.append(drag(page, handle, SECONDS) | patient)
+        rested(page, 60)
+    found = {name: statistics.median(one[name] for one in drags) for name in drags[0] if name != "lines"}
+    usual = {name: statistics.median(one[name] for one in references) for name in ("rate", "task")}
+    lines = "+".join(map(str, drags[0]["lines"]))
     print(
-        f"{title:52} {found['rate']:5.1f} pictures/s, event to picture {statistics.median(latencies):5.1f} ms, "
-        f"95 % {worst:5.1f} ms; lines {lines}"
+        f"{title:52} {found['rate']:5.1f} pictures/s, {found['rate'] / usual['rate']:4.2f} of the reference's "
+        f"{usual['rate']:4.1f}; main thread {found['task']:5.1f} ms (script {found['script']:5.1f}, reference "
+        f"{usual['task']:4.1f}); event to picture {found['median']:5.1f} ms, {found['soon']:5.1f} % within {SOON}; "
+        f"lines {lines}, samples {found['samples']:.0f}, resets {found['resets']:.0f}; load {os.getloadavg()[0]:.1f}",
+        flush=True,
     )
 
 
-def opened(page, folder, arguments, lab="observer_lab", handle="foe"):
-    """Open a lab in a notebook with a busy cell, and leave it at rest after a short drag of a handle."""
-    imports, _, cell = OPEN.replace("observer_lab", lab).format(arguments=arguments).partition("lab = ")
+@contextmanager
+def reference_page(context: Any) -> Any:
+    """The page that draws six lines and nothing else."""
+    page = context.new_page()
+    page.set_content("<!doctype html><body>")
+    page.add_script_tag(content=REFERENCE)
+    yield page
+    page.close()
+
+
+def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
+    """Open a lab in a notebook with a busy cell, and leave it at rest."""
+    arguments = f"**json.loads({json.dumps(case.settings)!r})"
+    imports, _, cell = OPEN.replace("observer_lab", case.lab).format(arguments=arguments).partition("lab = ")
     write_notebook(folder, "bench.ipynb", imports, f"lab = {cell}", "ready = True", BUSY)
+    page.bring_to_front()
     open_notebook(page, "bench.ipynb")
     page.locator(".jp-Cell").first.click()
     page.keyboard.press("Shift+Enter")
     page.wait_for_function("/[0-9]/.test(document.querySelector('.jp-InputPrompt').textContent)", timeout=120_000)
     page.wait_for_selector(IDLE)
-    page.evaluate(OPENING.replace("SWITCH", json.dumps(SWITCH[lab])))
+    page.evaluate(OPENING.replace("SWITCH", json.dumps(SWITCH[case.lab])))
     page.keyboard.press("Shift+Enter")
     page.wait_for_function("window.opening.whole", timeout=120_000)
-    page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.reset(); }")
-    rested(page, 60)
-    drag(page, handle, 1)
+    put_back(page)
+    drag(page, HANDLES[case.lab], 1)
 
 
-def drag(page, handle="foe", seconds=SECONDS):
-    """Drag a handle for some seconds; the pictures drawn, and how long each event waited for its own."""
-    page.locator(f"[data-control='{handle}']").scroll_into_view_if_needed()
-    return page.evaluate(DRAG, [seconds, handle])
+def run_busy_cell(page: Any) -> None:
+    """Keep the kernel busy for as long as a drag takes."""
+    page.locator(".jp-Cell").nth(3).locator(".cm-content").click()
+    page.keyboard.press("Shift+Enter")
 
 
-def measure_opening(page, folder):
+def measure_opening(page: Any, folder: Path) -> None:
     """Say how long each lab takes to open."""
-    for lab, handle in (("observer_lab", "foe"), ("structure_lab", "ybar"), ("points_lab", "point 1")):
-        opened(page, folder, "", lab, handle)
+    for lab in HANDLES:
+        open_in_jupyterlab(page, folder, Case(lab, {}))
         times = page.evaluate("window.opening")
         print(
             f"{lab}: first picture {times['picture']:.2f} s after its cell was run, first switch answered after "
@@ -165,32 +242,54 @@ def measure_opening(page, folder):
         )
 
 
-def main(only_opening=False):
-    """Measure the opening; then, unless that is all, drags with an idle and a busy kernel, and every observer alone."""
+def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
+    """Measure configurations with an idle kernel, and some with a busy one."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
         with jupyterlab(*places[:2]) as server, lab_page(shutil.which("chromium"), server, places[2]) as page:
-            measure_opening(page, places[0])
-            for title, arguments in ({} if only_opening else CASES).items():
-                opened(page, places[0], arguments)
-                report(f"{title}, kernel idle", drag(page))
-                rested(page)
-                page.locator(".jp-Cell").nth(3).locator(".cm-content").click()
-                page.keyboard.press("Shift+Enter")
-                report(f"{title}, kernel busy", drag(page))
-            for title, arguments in ({} if only_opening else STRUCTURE).items():
-                opened(page, places[0], arguments, "structure_lab", "ybar")
-                report(f"structure and motion: {title}", drag(page, "ybar"))
-            for title, arguments in ({} if only_opening else POINTS).items():
-                opened(page, places[0], arguments, "points_lab", "point 1")
-                report(f"many points: {title}", drag(page, "point 1"))
-            for name, arguments in ({} if only_opening else ALONE).items():
-                opened(page, places[0], arguments)
-                report(f"{name}, three charts, kernel idle", drag(page))
+            if opening:
+                measure_opening(page, places[0])
+            with reference_page(page.context) as reference:
+                for title, case in wanted.items():
+                    open_in_jupyterlab(page, places[0], case)
+                    handle = HANDLES[case.lab]
+                    measure(title, page, reference, handle)
+                    if title in BESIDE_A_BUSY_KERNEL:
+                        measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
     finally:
         for place in places:
             shutil.rmtree(place, ignore_errors=True)
 
 
+def measure_alone(wanted: dict[str, Case]) -> None:
+    """Measure configurations in a page without JupyterLab, which opens at once, and without Python."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(CHROMIUM_OPTIONS))
+        context = browser.new_context(viewport={"width": 1280, "height": 900})
+        with reference_page(context) as reference:
+            for title, case in wanted.items():
+                lab = getattr(labs, case.lab)(**case.settings)
+                page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+                page.wait_for_function(lab_alone.DRAWN)
+                rested(page, 60)
+                measure(title, page, reference, HANDLES[case.lab])
+                page.close()
+        browser.close()
+
+
+def main(*arguments: str) -> None:
+    """Measure what the arguments ask for."""
+    names = [argument for argument in arguments if not argument.startswith("--")]
+    wanted = {title: case for title, case in CASES.items() if all(name in title for name in names)}
+    if "--alone" in arguments:
+        measure_alone(wanted)
+    elif "--opening" in arguments:
+        measure_in_jupyterlab({}, opening=True)
+    else:
+        measure_in_jupyterlab(wanted, opening=not names)
+
+
 if __name__ == "__main__":
-    main("--opening" in sys.argv)
+    main(*sys.argv[1:])

@@ -55,9 +55,11 @@ function fakeWidget() {
 
 /** A lab of one picture, which notes what it draws and what it says of Python's answers. */
 class SmallLab extends Live {
+  static computing = { Kernels: SmallKernels, Engine: CountingEngine };
+
   constructor(widget) {
     const words = { reasons: () => [], readingAt: () => "", summaryOf: (_, serial) => ({ serial }) };
-    super(widget, { schema: {}, ...widget.get("model") }, { words: {}, Kernels: SmallKernels, Engine: CountingEngine, ...words });
+    super(widget, { schema: {}, ...widget.get("model") }, { words: {}, ...words });
     this.drawings = [];
     const plane = { draw: (shown, ghost, cursor) => this.drawings.push([shown.value, ghost?.value ?? null, cursor]) };
     this.planes = [{ ...plane, describe: () => {} }];

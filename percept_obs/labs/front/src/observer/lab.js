@@ -20,9 +20,11 @@ import { sceneOf } from "./page/scene.js";
 const ALWAYS_POSSIBLE = "identifier_based";
 
 export class ObserverLab extends Live {
+  static computing = { Kernels, Engine };
+
   constructor(widget, place, model) {
     super(widget, model, {
-      ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
+      ...{ words: WORDS, presets: PRESETS, settingsOf },
       ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
     });
     const scene = sceneOf(this);

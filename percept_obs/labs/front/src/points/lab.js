@@ -33,9 +33,11 @@ function placeBeside([x, y, z], k) {
 }
 
 export class PointsLab extends Live {
+  static computing = { Kernels: PointsKernels, Engine: PointsEngine };
+
   constructor(widget, place, model) {
     const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, Kernels: PointsKernels, Engine: PointsEngine, presets: PRESETS, settingsOf, ...shown });
+    super(widget, model, { words: WORDS, presets: PRESETS, settingsOf, ...shown });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];

@@ -18,10 +18,11 @@ import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
 export class StructureLab extends Live {
+  static computing = { Kernels: StructureKernels, Engine: StructureEngine };
+
   constructor(widget, place, model) {
-    const computing = { words: WORDS, Kernels: StructureKernels, Engine: StructureEngine };
-    const words = { reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
+    const words = { words: WORDS, reasons, readingAt, summaryOf, pythonOf };
+    super(widget, model, { presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,

@@ -2,23 +2,27 @@
 
 /**
  * |estimated distance / true distance - 1| at each sample, from inverse distances, as OnePoint.relative_error():
- * infinite where the estimate is not in front of the camera, NaN where there is none.
+ * infinite where the estimate is not in front of the camera, NaN where one of its coordinates is not finite.
+ *
+ * @param {ArrayLike<number>} right  the true inverse distances
+ * @param {ArrayLike<number>} found  those of the estimate
+ * @param {Float64Array} estimate    rows of `width` coordinates
  */
-export function distanceError(truth, estimate, width, inverseOf) {
-  const error = new Float64Array(truth.length / width);
+export function distanceError(right, found, estimate, width) {
+  const error = new Float64Array(right.length);
   for (let k = 0; k < error.length; k++) {
-    const row = estimate.subarray(k * width, (k + 1) * width);
-    const found = inverseOf(estimate, k);
-    if (!row.every(Number.isFinite)) error[k] = NaN;
-    else error[k] = found > 0 ? Math.abs(inverseOf(truth, k) / found - 1) : Infinity;
+    let sum = 0;
+    for (let at = k * width; at < (k + 1) * width; at++) sum += estimate[at] - estimate[at];
+    if (sum !== 0) error[k] = NaN;
+    else error[k] = found[k] > 0 ? Math.abs(right[k] / found[k] - 1) : Infinity;
   }
   return error;
 }
 
 /** When the error entered the tolerance for good, in seconds since the first sample. */
 export function settlingTime(time, error, tolerance) {
-  let last = error.length - 1;
-  if (!(error[last] < tolerance)) return Infinity;
-  while (last >= 0 && error[last] < tolerance) last--;
-  return last < 0 ? 0 : time[last + 1] - time[0];
+  let inside = 0;
+  for (let k = 0; k < error.length; k++) if (!(error[k] < tolerance)) inside = k + 1;
+  if (inside === error.length) return Infinity;
+  return inside === 0 ? 0 : time[inside] - time[0];
 }

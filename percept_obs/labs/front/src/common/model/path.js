@@ -14,17 +14,40 @@ const TERMS = 15;
  */
 export function constantPath(start, rates, grid, index, points) {
   const size = Math.max(...[0, 1, 2].map((j) => Math.abs(rates[j]) + Math.abs(rates[4 + j]) + Math.abs(rates[8 + j])));
-  const x = Float64Array.from(start);
   const term = new Float64Array(3);
+  let [x, y, z] = start;
+  let step = stepOf(0, size, rates, term);
   points.fill(NaN);
   for (let k = 1; k < index.length; k++) {
-    const time = grid[index[k]] - grid[index[k - 1]];
-    const pieces = Math.max(1, Math.ceil((size * time) / REACH));
-    for (let piece = 0; piece < pieces; piece++) advance(x, term, rates, time / pieces);
-    if (!(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] < LARGEST_SQUARED_STATE)) break;
-    points.set(x, 3 * k - 3);
+    const end = grid[index[k]];
+    const time = end - grid[index[k - 1]];
+    // Equal intervals differ by the rounding of their ends, and lead alike.
+    if (!(Math.abs(time - step.time) <= 4 * Number.EPSILON * end)) step = stepOf(time, size, rates, term);
+    const m = step.rows;
+    const [a, b, c] = [x, y, z];
+    x = m[0] * a + m[1] * b + m[2] * c + m[3];
+    y = m[4] * a + m[5] * b + m[6] * c + m[7];
+    z = m[8] * a + m[9] * b + m[10] * c + m[11];
+    if (!(x * x + y * y + z * z < LARGEST_SQUARED_STATE)) break;
+    points[3 * k - 3] = x;
+    points[3 * k - 2] = y;
+    points[3 * k - 1] = z;
   }
   return points;
+}
+
+/** Where a time leads: the rows of a matrix and beside it those of a vector, from what becomes of 0 and the unit vectors. */
+function stepOf(time, size, rates, term) {
+  const pieces = Math.max(1, Math.ceil((size * time) / REACH));
+  const still = Float64Array.from(rates, (value, at) => (at % 4 === 3 ? 0 : value));
+  const rows = new Float64Array(12);
+  for (let c = 0; c < 4; c++) {
+    const x = Float64Array.of(0, 0, 0);
+    if (c < 3) x[c] = 1;
+    for (let piece = 0; piece < pieces; piece++) advance(x, term, c < 3 ? still : rates, time / pieces);
+    for (let i = 0; i < 3; i++) rows[4 * i + c] = x[i];
+  }
+  return { time, rows };
 }
 
 /** x + h (A x + b) + h^2/2 A (A x + b) + ... */

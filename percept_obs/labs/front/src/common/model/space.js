@@ -83,6 +83,7 @@ export function frameOf(look, { centre, radius }, { width, height, edge, zoom = 
   const along = (row, x, y, z) => row[0] * (x - centre[0]) + row[1] * (y - centre[1]) + row[2] * (z - centre[2]);
   return {
     scale,
+    corners: [[0, 0], [width, height]],
     x: (x, y, z) => width / 2 + scale * along(right, x, y, z),
     y: (x, y, z) => height / 2 - scale * along(up, x, y, z),
   };
@@ -104,6 +105,25 @@ export function rimOf(from, to, corners) {
   ].map(([way, room]) => (way === 0 ? Infinity : Math.max(room / way, 0)));
   const share = Math.min(...shares);
   return share < 1 ? { at: [x0 + share * (x1 - x0), y0 + share * (y1 - y0)], angle: Math.atan2(y1 - y0, x1 - x0) } : null;
+}
+
+/**
+ * The part of a line that lies in a box of low and high corners, or null.
+ *
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {number[][]} corners
+ * @returns {[number, number, number, number] | null} where it begins and ends: x, y, x, y
+ */
+export function partIn([x0, y0], [x1, y1], [[left, top], [right, bottom]]) {
+  const [across, down] = [x1 - x0, y1 - y0];
+  let [first, last] = [0, 1];
+  for (const [way, room] of [[-across, x0 - left], [across, right - x0], [-down, y0 - top], [down, bottom - y0]]) {
+    if (way === 0 && room < 0) return null;
+    if (way < 0) first = Math.max(first, room / way);
+    if (way > 0) last = Math.min(last, room / way);
+  }
+  return first < last ? [x0 + first * across, y0 + first * down, x0 + last * across, y0 + last * down] : null;
 }
 
 /** The distances between which an inverse distance lies that is claimed to two standard deviations. */

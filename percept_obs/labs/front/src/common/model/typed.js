@@ -16,6 +16,12 @@ export function typedModule({ written }, text) {
   return [{ key: `motion ${text}`, texts: { typed } }];
 }
 
+/** What Python read of the texts in settings, and in those that are kept. */
+export function readOf(settings, { written = {} }) {
+  const texts = [settings, settings.kept].flatMap((each) => Object.values(each ?? {}));
+  return Object.fromEntries(texts.filter((text) => typeof text === "string" && written[text]).map((text) => [text, written[text]]));
+}
+
 /** Rows of numbers at some times, those of a typed motion as it was typed. */
 export function typedRows(typed, numbers, times) {
   const rows = new Float64Array(numbers.length * times.length);

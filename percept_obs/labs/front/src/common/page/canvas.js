@@ -13,13 +13,13 @@ export class Picture {
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     this.figure = element("figure", { class: className }, this.canvas);
     this.below = element("canvas");
-    this.paintedFor = "";
+    this.paintedFor = this.font = "";
     /** @type {{width: number, height: number} | null} */
     this.size = null;
   }
 
-  /** Fit the canvas to its figure's last known size; returns width and height in CSS pixels. */
-  fit() {
+  /** Fit the canvas to its figure's last known size, with a font for its letters; returns width and height in CSS pixels. */
+  fit(font) {
     const { canvas, context, figure } = this;
     const ratio = window.devicePixelRatio || 1;
     // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
@@ -31,10 +31,15 @@ export class Picture {
       canvas.height = Math.round(height * ratio);
       canvas.style.width = `${width}px`;
       canvas.style.height = `${height}px`;
+      this.font = "";
     }
+    // A canvas that is told its font makes the page style itself.
+    if (this.font !== font) context.font = this.font = font;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     context.lineWidth = 1;
+    // Letters of the last picture may have left it as they need it.
+    context.lineJoin = "round";
     return { width, height };
   }
 
@@ -48,6 +53,7 @@ export class Picture {
       below.height = canvas.height;
       const pen = /** @type {CanvasRenderingContext2D} */ (below.getContext("2d"));
       pen.setTransform(context.getTransform());
+      pen.font = this.font;
       pen.lineWidth = 1;
       paint(pen);
     }

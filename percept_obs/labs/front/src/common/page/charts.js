@@ -25,7 +25,7 @@ export class TimeChart extends Picture {
 
   /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time that they are drawn on */
   draw({ title, lines, band, regions = [], marks = [], bars = [], events = [], level, scale, span, theme, first, last }) {
-    const { width, height } = this.fit();
+    const { width, height } = this.fit(theme.font);
     const bottom = last ? BOTTOM : 6;
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
     this.place = place;
@@ -56,7 +56,6 @@ export class TimeChart extends Picture {
   }
 
   axes(pen, place, theme, title, last) {
-    pen.font = theme.font;
     pen.setLineDash([]);
     pen.textBaseline = "middle";
     pen.textAlign = "right";
@@ -125,8 +124,8 @@ class Place {
 
   y(value) {
     const height = this.scale.log ? Math.log10(Math.max(value, 1e-30)) : value;
-    // Far outside is far enough: a canvas rounds what is further.
-    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, -1e4), 1e4);
+    // Outside is outside: a canvas would cut what is further away into dashes too, thousands of them.
+    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, this.top - this.height), this.bottom + this.height);
   }
 }
 

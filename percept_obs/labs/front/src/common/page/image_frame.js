@@ -21,8 +21,8 @@ export function showsToo({ centre, half }, wanted) {
 }
 
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
-export function placed(target, { centre, half }) {
-  const { width, height } = target.fit();
+export function placed(target, { centre, half }, font) {
+  const { width, height } = target.fit(font);
   const side = Math.min(width, height) - 2 * EDGE;
   const box = { left: width / 2 - side / 2, top: height / 2 - side / 2, side };
   return frameOf(box, side / (2 * half), centre, [width / 2, height / 2], 4 * Math.max(width, height));
@@ -47,7 +47,6 @@ export function clipTo(pen, { left, top, side, width = side, height = side }) {
 export function drawAxes(pen, { box, x, y }, ticks, theme, names = ["y1", "y2"]) {
   const { left, top, side, width = side, height = side } = box;
   const [right, bottom] = [left + width, top + height];
-  pen.font = theme.font;
   pen.setLineDash([]);
   pen.strokeStyle = theme.grid;
   pen.fillStyle = theme.muted;

@@ -54,7 +54,7 @@ export class FramedImage extends Picture {
   paint(squareOf, theme, inside, placesIn) {
     const square = this.squareFor(squareOf());
     this.square = square;
-    const frame = { ...placed(this, square), lineWidth: theme.width };
+    const frame = { ...placed(this, square, theme.font), lineWidth: theme.width };
     const pen = this.context;
     this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();

@@ -1,7 +1,10 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
+import { Latest } from "../model/latest.js";
 import { Results } from "../model/results.js";
+import { readOf } from "../model/typed.js";
 import { verdict } from "../model/words.js";
+import { openBeside } from "./beside.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
 import { LINE } from "./lines.js";
@@ -13,8 +16,8 @@ const BETWEEN_WORDS = 250;
 
 /**
  * A lab that follows the hand and tells Python when the hand rests.  A lab of its own gives it `planes`, `formulas` and
- * `panel` before open(), and says what is its own in these parts:
- *   Kernels, Engine             functions of settings, and what makes results of them
+ * `panel` before open(), says as `computing` which Kernels make functions of settings and which Engine makes results of
+ * them, and what is its own in these parts:
  *   words                       what the page calls the settings
  *   presets, settingsOf         points worth seeing, and the settings of an act
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
@@ -22,10 +25,17 @@ const BETWEEN_WORDS = 250;
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
 export class Live extends Showing {
-  constructor(widget, model, { Kernels, Engine, ...parts }) {
+  /** @type {{Kernels: any, Engine: any}} */
+  static computing;
+
+  constructor(widget, model, parts) {
     super(widget, model, parts);
+    const { Kernels, Engine } = new.target.computing;
     this.kernels = new Kernels(this.model);
     this.results = new Results(this.kernels, () => new Engine(this.model));
+    this.latest = new Latest(this.results, (error) => (error ? this.fail(new Error(error)) : this.schedule()));
+    /** @type {Worker | null} */
+    this.worker = null;
     /** @type {any} */
     this.formulas = null;
     this.pictures = 0;
@@ -41,20 +51,25 @@ export class Live extends Showing {
   close() {
     super.close();
     this.view.close();
+    this.worker?.terminate();
   }
 
   // What the hand does.
 
   touched(chosen) {
-    if (chosen) this.choices += 1;
-    this.schedule();
+    if (chosen) {
+      this.choices += 1;
+      this.view.notice("");
+      this.state.amend(this.fitted(this.settings));
+    }
+    this.hire();
+    // What is found beside the page is drawn when it comes.
+    if (!this.latest.beside || this.compute()) this.schedule();
     if (!chosen) {
       clearTimeout(this.resting);
       this.resting = setTimeout(() => this.settle(), REST);
       return undefined;
     }
-    this.view.notice("");
-    this.state.amend(this.fitted(this.settings));
     // What a choice hides must be gone before the next event can reach it.
     this.panel.show();
     this.view.preset();
@@ -119,28 +134,61 @@ export class Live extends Showing {
       this.fail(error);
       return;
     }
+    try {
+      while (!this.closed && settings === this.settings && !this.latest.want(settings, true)) await this.latest.next();
+    } catch (error) {
+      this.fail(error);
+      return;
+    }
     if (this.closed || settings !== this.settings) return;
     if (this.pending || this.shown?.settings !== settings) this.paint();
     if (this.shown?.settings !== settings) return;
+    Object.assign(this, { shown: this.latest.shown, ghost: this.latest.ghost });
     this.speakNow();
     this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
     this.describe();
     this.view.rested();
   }
 
-  /** Draw what is shown of the settings, which is computed only when they have changed. */
-  paint() {
-    this.pending = false;
-    cancelAnimationFrame(this.frame);
+  /** Compute beside the page, from the first touch on: at the first picture nobody waits. */
+  hire() {
+    const bundle = this.widget.get("_esm");
+    if (this.worker || !bundle || typeof Worker === "undefined") return;
+    const [kind, texts, model] = ["kind", "texts", "model"].map((name) => this.widget.get(name));
+    this.worker = openBeside({ bundle, kind, texts, model }, {
+      onReady: ({ ask }) => {
+        this.latest.beside = { ask: (task) => ask({ ...task, written: readOf(task.settings, this.model) }) };
+      },
+      onAnswer: (answer) => this.closed || this.latest.take(answer),
+      onGone: () => this.latest.lose(),
+    });
+  }
+
+  /** Nobody reads sixty texts a second, and the page would lay itself out for each of them. */
+  get speaking() {
+    return this.stale && performance.now() - this.spoken > BETWEEN_WORDS;
+  }
+
+  /** Find what is shown of the settings, and say whether it is there. */
+  compute() {
     const { settings } = this;
     if (!this.wanted(settings).every((s) => this.kernels.of(s))) {
       this.wait(settings);
-      return;
+      return false;
     }
-    // Nobody reads sixty texts a second, and the page would lay itself out for each of them.
-    const speaking = this.stale && performance.now() - this.spoken > BETWEEN_WORDS;
+    return this.latest.want(settings, this.speaking);
+  }
+
+  /** Draw the latest that was found, which is computed only when settings have changed. */
+  paint() {
+    this.pending = false;
+    cancelAnimationFrame(this.frame);
     try {
-      Object.assign(this, this.results.of(settings, speaking));
+      this.compute();
+      const { shown, ghost } = this.latest;
+      if (!shown) return;
+      Object.assign(this, { shown, ghost });
+      const speaking = this.speaking && shown.whole;
       this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
       this.pictures += 1;
@@ -162,7 +210,6 @@ export class Live extends Showing {
   /** Bring words and controls to what is drawn. */
   speakNow() {
     this.spoken = performance.now();
-    Object.assign(this, this.results.of(this.shown.settings, true));
     this.view.problem("");
     this.panel.show();
     this.view.steps(this.state);

@@ -65,7 +65,6 @@ export function arrowMark(pen, from, to, { colour, dash, width, head }) {
 /** Letters that can be read on whatever lies below them. */
 export function label(pen, text, x, y, colour, theme) {
   if (!text || Number.isNaN(x + y)) return;
-  pen.font = theme.font;
   pen.setLineDash([]);
   pen.lineWidth = HALO;
   pen.lineJoin = "round";

@@ -3,7 +3,7 @@
 import { between, valueBetween } from "../model/playback.js";
 import { linearScale, readable, tickLabel } from "../model/scales.js";
 import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOOK } from "../model/space.js";
-import { positionAt, positionsOf, rimOf, turned } from "../model/space.js";
+import { partIn, positionAt, positionsOf, rimOf, turned } from "../model/space.js";
 import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
 import { drawSwung, Swing } from "./swing.js";
@@ -99,7 +99,7 @@ export class Scene extends Picture {
   }
 
   draw(shown, ghost, cursor, theme) {
-    const size = this.fit();
+    const size = this.fit(theme.font);
     const there = shown.time.length > 0 && !shown.problem;
     this.swing.offer(there && cursor !== null && this.unseenOf(shown, between(shown.time, cursor), theme));
     if (!there) return;
@@ -115,12 +115,15 @@ export class Scene extends Picture {
     const corners = [[8, 8], [size.width - 8, size.height - 8]];
     const pen = this.context;
     const drawing = { pen, frame, theme, corners, scene, ball };
-    this.axes(drawing, this.frustum(drawing));
+    const far = this.corners(scene, ball);
+    this.underlay([this.look, this.zoom, ball, far, theme], (below) => {
+      this.axes({ ...drawing, pen: below }, frustum({ ...drawing, pen: below }, far));
+      below.textAlign = "left";
+      below.textBaseline = "alphabetic";
+      label(below, CAPTION, 4, 12, theme.ink, theme);
+    });
     if (scene.foe) this.foe(drawing);
     for (const { track, positions } of paths) path(drawing, positions, track);
-    pen.textAlign = "left";
-    pen.textBaseline = "alphabetic";
-    label(pen, CAPTION, 4, 12, theme.ink, theme);
     if (cursor === null) return;
     const at = between(shown.time, cursor);
     for (const track of scene.tracks) if (!track.of && !track.kept) this.point(drawing, track, at);
@@ -154,36 +157,14 @@ export class Scene extends Picture {
     });
   }
 
-  /** The rays through the corners of the image that is drawn beside the scene, and that image before the camera; where its axes are named. */
-  frustum({ pen, frame, theme, scene, ball }) {
+  /** The rays through the corners of the image that is drawn beside the scene, as far as that image is drawn before the camera. */
+  corners(scene, ball) {
     const { square } = this.image;
     if (!square) return [];
     const { centre: [c1, c2], half } = square;
-    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => scene.ray(c1 + a * half, c2 + b * half, new Float64Array(3)));
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => Array.from(scene.ray(c1 + a * half, c2 + b * half, new Float64Array(3))));
     const longest = Math.max(...corners.map((corner) => Math.hypot(...corner)));
-    const far = corners.map((corner) => corner.map((value) => (0.5 * ball.radius * value) / longest));
-    pen.setLineDash([]);
-    pen.strokeStyle = theme.muted;
-    pen.fillStyle = theme.muted;
-    for (const corner of far) line(pen, frame, [0, 0, 0], corner);
-    pen.beginPath();
-    for (const corner of far) pen.lineTo(...on(frame, corner));
-    pen.closePath();
-    pen.globalAlpha = 0.08;
-    pen.fill();
-    pen.globalAlpha = 1;
-    pen.stroke();
-    const [lowLeft, lowRight, , highLeft] = far.map((corner) => on(frame, corner));
-    pen.textAlign = "center";
-    pen.textBaseline = "middle";
-    const middle = [0, 1].map((c) => (lowRight[c] + highLeft[c]) / 2);
-    return [lowRight, highLeft].map((corner, i) => {
-      const at = [0, 1].map((c) => lowLeft[c] + 0.7 * (corner[c] - lowLeft[c]));
-      const out = Math.hypot(at[0] - middle[0], at[1] - middle[1]) || 1;
-      const [x, y] = at.map((value, c) => value + (12 * (value - middle[c])) / out);
-      label(pen, ["y1 →", "y2 ↑"][i], x, y, theme.muted, theme);
-      return [x, y];
-    });
+    return corners.map((corner) => corner.map((value) => (0.5 * ball.radius * value) / longest));
   }
 
   /** The direction of the focus of expansion, along which the point moves straight towards the camera or away. */
@@ -219,6 +200,33 @@ export class Scene extends Picture {
   }
 }
 
+/** The frustum with the image before the camera; where that image's axes are named. */
+function frustum({ pen, frame, theme }, far) {
+  if (!far.length) return [];
+  pen.setLineDash([]);
+  pen.strokeStyle = theme.muted;
+  pen.fillStyle = theme.muted;
+  for (const corner of far) line(pen, frame, [0, 0, 0], corner);
+  pen.beginPath();
+  for (const corner of far) pen.lineTo(...on(frame, corner));
+  pen.closePath();
+  pen.globalAlpha = 0.08;
+  pen.fill();
+  pen.globalAlpha = 1;
+  pen.stroke();
+  const [lowLeft, lowRight, , highLeft] = far.map((corner) => on(frame, corner));
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  const middle = [0, 1].map((c) => (lowRight[c] + highLeft[c]) / 2);
+  return [lowRight, highLeft].map((corner, i) => {
+    const at = [0, 1].map((c) => lowLeft[c] + 0.7 * (corner[c] - lowLeft[c]));
+    const out = Math.hypot(at[0] - middle[0], at[1] - middle[1]) || 1;
+    const [x, y] = at.map((value, c) => value + (12 * (value - middle[c])) / out);
+    label(pen, ["y1 →", "y2 ↑"][i], x, y, theme.muted, theme);
+    return [x, y];
+  });
+}
+
 /** @returns {[number, number]} */
 function on(frame, place) {
   return [frame.x(...place), frame.y(...place)];
@@ -235,24 +243,26 @@ function beyond(frame, place, pixels) {
   return [x + (pixels * (x - x0)) / length, y + (pixels * (y - y0)) / length];
 }
 
+/** A line as far as it is on the picture: what is beyond would be cut into dashes too, thousands of them. */
 function line(pen, frame, from, to) {
-  stroke(pen, on(frame, from), on(frame, to));
+  const part = partIn(on(frame, from), on(frame, to), frame.corners);
+  if (part) stroke(pen, part.slice(0, 2), part.slice(2));
 }
 
 /** The way of a point, with gaps where it is nowhere. */
 function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.beginPath();
-  let begun = false;
+  let before = [NaN, NaN];
+  let end = before;
   for (let k = 0; k < positions.length; k += 3) {
-    const [X, Y, Z] = [positions[k], positions[k + 1], positions[k + 2]];
-    const x = Math.min(Math.max(frame.x(X, Y, Z), -1e4), 1e4);
-    const y = Math.min(Math.max(frame.y(X, Y, Z), -1e4), 1e4);
-    if (Number.isNaN(x + y)) begun = false;
-    else if (begun) pen.lineTo(x, y);
-    else {
-      pen.moveTo(x, y);
-      begun = true;
+    const place = on(frame, [positions[k], positions[k + 1], positions[k + 2]]);
+    const part = Number.isFinite(before[0] + before[1] + place[0] + place[1]) && partIn(before, place, frame.corners);
+    if (part) {
+      if (part[0] !== end[0] || part[1] !== end[1]) pen.moveTo(part[0], part[1]);
+      pen.lineTo(part[2], part[3]);
+      end = part.slice(2);
     }
+    before = place;
   }
   const own = kept ? theme.kept : colour;
   pen.strokeStyle = own;

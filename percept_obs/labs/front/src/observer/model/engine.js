@@ -45,7 +45,8 @@ export class Engine extends Runner {
     const asked = estimatesAsked(settings, result, inputs);
     result.runs = settings.observers.map((name) => {
       const kernel = form.observers[name][switchOf(settings, name)];
-      return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+      const follow = () => this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+      return this.unlessKept(name, settings, follow);
     });
     return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
   }
@@ -72,7 +73,8 @@ export class Engine extends Runner {
 
   /** Of the distance, whose inverse is the last coordinate. */
   relativeError({ truth, width }, estimate) {
-    return distanceError(truth, estimate, width, (rows, k) => rows[k * width + width - 1]);
+    const [right, found] = [truth, estimate].map((rows) => columnOf(rows, width, width - 1));
+    return distanceError(right, found, estimate, width);
   }
 
   exact(settings, grid, functions) {

@@ -1,5 +1,6 @@
 // Condition (14): what the images of each window tell of the state, as points/gramian.py has it.
 
+import { derived } from "../../common/model/derived.js";
 import { slackOf } from "../../common/model/tables.js";
 import { ENTRIES } from "./flow.js";
 import { spectrum } from "./symmetric.js";
@@ -10,13 +11,15 @@ const MOST_NUMBERS = 1500;
  * Smallest and largest eigenvalue of the integral of Phi^T S Phi over windows that begin at samples, and the whole
  * matrix of the window that misses most directions or shows one least.
  *
- * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, and a window's is a
- * difference, seen through the blocks' inverses.  Of many windows some are looked at, and all about the weakest.
+ * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
+ * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows some
+ * are looked at, and all about the weakest.
  */
 export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory }) {
-  const gathered = gather(layout, model.block, n, time, images, kindOf, flows, memory);
+  const blocks = derived(layout, "blocks", () => blocksOf(layout));
+  const gathered = gather(layout, blocks, model.block, n, time, images, kindOf, flows, memory);
   const ends = endsOf(time, window);
-  const matrix = (first) => between(gathered, first, ends[first], n, kindOf, back);
+  const matrix = (first) => between(gathered, blocks, first, ends[first], n, kindOf, back);
   const every = Math.max(1, Math.ceil((ends.length * n) / MOST_NUMBERS));
   const found = new Map();
   const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k), n, model.unseen)).get(k);
@@ -43,25 +46,40 @@ export function windowsOf({ layout, model, n, time, images, kindOf, flows, back,
   };
 }
 
-/** Integrals from the first sample to each. */
-function gather({ begins, axes, states, entries }, { N, l }, n, time, images, kindOf, flows, memory) {
+/** Pairs of vectors that a point has together: all of them once, and for each point its vectors and its pairs' numbers. */
+function blocksOf({ begins, states }) {
+  const all = /** @type {number[][]} */ ([]);
+  const numbers = new Map();
+  const numberOf = (u, v) => {
+    const key = `${u} ${v}`;
+    if (!numbers.has(key)) numbers.set(key, all.push([u, v]) - 1);
+    return numbers.get(key);
+  };
+  const ofPoints = begins.slice(1).map((end, p) => {
+    const own = states.slice(begins[p], end).map((state) => (state / 3) | 0);
+    const vectors = /** @type {number[]} */ ([...new Set(own)].sort((u, v) => u - v));
+    const pairs = vectors.flatMap((u, i) => vectors.slice(i).map((v) => [u, v, numberOf(u, v)]));
+    return { vectors, pairs: Int32Array.from(pairs.flat()) };
+  });
+  return { all, ofPoints };
+}
+
+/** Integrals from the first sample to each, nine numbers a block. */
+function gather({ begins, axes, states, entries }, { all, ofPoints }, { N, l }, n, time, images, kindOf, flows, memory) {
   const points = begins.length - 1;
-  const size = n * n;
+  const size = 9 * all.length;
   const gathered = memory.room("gathered", size * time.length);
   const [now, before] = [memory.room("gathered now", size), memory.room("gathered before", size)];
   const row = new Float64Array(n);
-  const vectors = Array.from({ length: points }, (_, p) => [
-    ...new Set(states.slice(begins[p], begins[p + 1]).map((state) => (state / 3) | 0)),
-  ]);
   gathered.fill(0, 0, size);
   for (let k = 0; k < time.length; k++) {
     now.fill(0);
     for (let p = 0; p < points; p++) {
-      const used = vectors[p];
+      const { vectors, pairs } = ofPoints[p];
       for (let m = 0; m < 2; m++) {
         const y = images[2 * (k * points + p) + m];
         if (Number.isNaN(y)) continue;
-        for (const v of used) row[3 * v] = row[3 * v + 1] = row[3 * v + 2] = 0;
+        for (const v of vectors) row[3 * v] = row[3 * v + 1] = row[3 * v + 2] = 0;
         // The row of B C Phi: each entry of C brings a row of its vector's Phi.
         for (let e = begins[p]; e < begins[p + 1]; e++) {
           const v = (states[e] / 3) | 0;
@@ -70,12 +88,9 @@ function gather({ begins, axes, states, entries }, { N, l }, n, time, images, ki
           const at = ENTRIES * k + 4 * (states[e] % 3);
           for (let c = 0; c < 3; c++) row[3 * v + c] += factor * flow[at + c];
         }
-        for (const u of used) {
-          for (const v of used) {
-            for (let i = 3 * u; i < 3 * u + 3; i++) {
-              for (let j = 3 * v; j < 3 * v + 3; j++) now[i * n + j] += row[i] * row[j];
-            }
-          }
+        for (let t = 0; t < pairs.length; t += 3) {
+          const [u, v, to] = [3 * pairs[t], 3 * pairs[t + 1], 9 * pairs[t + 2]];
+          for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) now[to + 3 * i + j] += row[u + i] * row[v + j];
         }
       }
     }
@@ -88,29 +103,25 @@ function gather({ begins, axes, states, entries }, { N, l }, n, time, images, ki
 }
 
 /** What was gathered between two samples, from the state at the first of them. */
-function between(gathered, first, last, n, kindOf, back) {
+function between(gathered, { all }, first, last, n, kindOf, back) {
   const found = new Float64Array(n * n);
+  const inside = new Float64Array(9);
   const half = new Float64Array(9);
-  const [from, to, at] = [first * n * n, last * n * n, 9 * first];
-  for (let u = 0; u < n; u += 3) {
-    const U = back[kindOf[u / 3]];
-    for (let v = u; v < n; v += 3) {
-      const V = back[kindOf[v / 3]];
-      for (let i = 0; i < 3; i++) {
-        const row = (u + i) * n + v;
-        const a = gathered[to + row] - gathered[from + row];
-        const b = gathered[to + row + 1] - gathered[from + row + 1];
-        const c = gathered[to + row + 2] - gathered[from + row + 2];
-        for (let j = 0; j < 3; j++) half[3 * i + j] = a * V[at + j] + b * V[at + 3 + j] + c * V[at + 6 + j];
-      }
-      for (let i = 0; i < 3; i++) {
-        for (let j = 0; j < 3; j++) {
-          const value = U[at + i] * half[j] + U[at + 3 + i] * half[3 + j] + U[at + 6 + i] * half[6 + j];
-          found[(u + i) * n + v + j] = found[(v + j) * n + u + i] = value;
-        }
+  const at = 9 * first;
+  all.forEach(([u, v], block) => {
+    const [U, V] = [back[kindOf[u]], back[kindOf[v]]];
+    for (let c = 0; c < 9; c++) inside[c] = gathered[9 * (last * all.length + block) + c] - gathered[9 * (first * all.length + block) + c];
+    for (let i = 0; i < 3; i++) {
+      const [a, b, c] = [inside[3 * i], inside[3 * i + 1], inside[3 * i + 2]];
+      for (let j = 0; j < 3; j++) half[3 * i + j] = a * V[at + j] + b * V[at + 3 + j] + c * V[at + 6 + j];
+    }
+    for (let i = 0; i < 3; i++) {
+      for (let j = 0; j < 3; j++) {
+        const value = U[at + i] * half[j] + U[at + 3 + i] * half[3 + j] + U[at + 6 + i] * half[6 + j];
+        found[(3 * u + i) * n + 3 * v + j] = found[(3 * v + j) * n + 3 * u + i] = value;
       }
     }
-  }
+  });
   return found;
 }
 

@@ -3,15 +3,18 @@
 
 import { LARGEST_SQUARED_STATE } from "../../common/model/integrator.js";
 import { stepper } from "../../common/model/runge_kutta.js";
+import { derived } from "../../common/model/derived.js";
 import { EACH } from "../../common/model/tables.js";
+import { entriesOf } from "./sparse.js";
 
 /**
  * Step an estimate, and P where it is computed, by the Runge-Kutta method.
  *
  * layout    where the coefficients stand: rows, columns, which; begins, axes, states, entries of the points
- * point     what one point tells, printed from its block
+ * functions  point: what one point tells, printed from its block; moveP and solveP, printed for the layout, where P is
+ *           computed
  * law       {computed, information, forgetting, pull} of P
- * x, P      at the start; P is null where it is given
+ * x, P      at the start, P with no more entries than `entriesOf` finds; it is null where it is given
  * tables    {steps, coefficients, width, inverses, images, points, first}: coefficients have a row of `width` numbers
  *           for each instant of a step, whose end is the next one's start; inverses of a P that is a multiple of the
  *           identity likewise, or one; images have a row for each instant of each step, of all `points`, of which the
@@ -19,13 +22,14 @@ import { EACH } from "../../common/model/tables.js";
  * path      takes the estimates
  * Returns the first row of the path at which the estimate was no longer finite, or -1; P holds its last value.
  */
-export function advance(layout, point, law, x, P, tables, path) {
+export function advance(layout, functions, law, x, P, tables, path) {
   const { steps, coefficients, width, inverses, images, points, first } = tables;
   const n = x.length;
-  const now = new Float64Array(law.computed ? n + n * n : n);
+  const { pairs } = entriesOfP(layout, n);
+  const now = new Float64Array(law.computed ? n + pairs.length : n);
   now.set(x);
-  if (law.computed) now.set(P, n);
-  const rate = rateOf(layout, point, law, n);
+  for (let k = n; k < now.length; k++) now[k] = P[pairs[k - n][0] * n + pairs[k - n][1]];
+  const rate = rateOf(layout, functions, law, n);
   const step = stepper(now.length);
   path.set(x);
   let failed = -1;
@@ -40,34 +44,33 @@ export function advance(layout, point, law, x, P, tables, path) {
     for (let i = 0; i < n; i++) squared += (path[(k + 1) * n + i] = now[i]) ** 2;
     if (!(squared < LARGEST_SQUARED_STATE)) failed = k + 1;
   }
-  if (law.computed) P.set(now.subarray(n));
+  for (let k = n; k < now.length; k++) {
+    const [i, j] = pairs[k - n];
+    P[i * n + j] = P[j * n + i] = now[k];
+  }
   return failed;
 }
 
-/** A function that fills the rates of an estimate and, behind it, of P. */
-function rateOf(layout, point, law, n) {
-  const { begins } = layout;
-  const [rows, columns, which, axes, states] = ["rows", "columns", "which", "axes", "states"].map((name) => Int32Array.from(layout[name]));
-  const entries = Float64Array.from(layout.entries);
-  const { computed, information, forgetting, pull } = law;
+function entriesOfP(layout, n) {
+  return derived(layout, "entries of P", () => entriesOf(layout, n));
+}
+
+/** What is laid out once for all steps of a layout. */
+function linesOf(layout) {
+  return derived(layout, "lines", () => {
+    const [rows, columns, which, begins, axes, states] = ["rows", "columns", "which", "begins", "axes", "states"].map((name) => Int32Array.from(layout[name]));
+    return { rows, columns, which, begins, axes, states, entries: Float64Array.from(layout.entries) };
+  });
+}
+
+/** A function that fills the rates of an estimate and, behind it, of P's entries. */
+function rateOf(layout, { point, moveP, solveP }, { computed, information, forgetting, pull }, n) {
+  const { rows, columns, which, begins, axes, states, entries } = linesOf(layout);
   const correction = new Float64Array(n);
   const given = new Float64Array(5);
-  const told = new Float64Array(12);
-  const solve = solver(n);
-  // A^T P, whose transpose is P A, for P is symmetric.
-  const AP = new Float64Array(computed ? n * n : 0);
-  const ratesOfP = (now, known, offset, out) => {
-    AP.fill(0);
-    for (let e = 0; e < rows.length; e++) {
-      if (columns[e] === n) continue;
-      const a = known[offset + which[e]];
-      const [from, to] = [n + rows[e] * n, columns[e] * n];
-      for (let k = 0; k < n; k++) AP[to + k] += a * now[from + k];
-    }
-    for (let i = 0, at = 0; i < n; i++) {
-      for (let j = 0; j < n; j++, at++) out[n + at] = pull[at] - forgetting * now[n + at] - AP[at] - AP[j * n + i];
-    }
-  };
+  const told = new Float64Array(12 * (begins.length - 1));
+  const toldOf = Array.from(begins.subarray(1), (_, k) => told.subarray(12 * k, 12 * k + 12));
+  const constant = Float64Array.from(entriesOfP(layout, n).pairs, ([i, j]) => (computed ? pull[i * n + j] : 0));
   return (now, inverse, known, offset, images, at, out) => {
     out.fill(0, 0, n);
     correction.fill(0);
@@ -75,51 +78,23 @@ function rateOf(layout, point, law, n) {
       const a = known[offset + which[e]];
       out[rows[e]] += columns[e] === n ? a : a * now[columns[e]];
     }
-    if (computed) ratesOfP(now, known, offset, out);
     let anything = false;
     for (let k = 0; k + 1 < begins.length; k++) {
       given[0] = images[at + 2 * k];
       given[1] = images[at + 2 * k + 1];
-      if (Number.isNaN(given[0] + given[1])) continue;
+      if (Number.isNaN(given[0] + given[1])) {
+        toldOf[k].fill(0);
+        continue;
+      }
       anything = true;
-      given.fill(0, 2);
+      given[2] = given[3] = given[4] = 0;
       for (let e = begins[k]; e < begins[k + 1]; e++) given[2 + axes[e]] += entries[e] * now[states[e]];
-      point(given, told);
-      for (let e = begins[k]; e < begins[k + 1]; e++) {
-        correction[states[e]] += entries[e] * told[axes[e]];
-        for (let f = begins[k]; computed && f < begins[k + 1]; f++) {
-          const S = told[3 + 3 * axes[e] + axes[f]];
-          out[n + states[e] * n + states[f]] += information * entries[e] * entries[f] * S;
-        }
-      }
+      point(given, toldOf[k]);
+      for (let e = begins[k]; e < begins[k + 1]; e++) correction[states[e]] += entries[e] * told[12 * k + axes[e]];
     }
+    if (computed) moveP(now, known, offset, told, information, forgetting, constant, out);
     if (!anything) return;
-    if (computed) solve(now, correction);
+    if (computed) solveP(now, correction);
     for (let i = 0; i < n; i++) out[i] += computed ? correction[i] : inverse * correction[i];
-  };
-}
-
-/** Solve P x = right in place by Cholesky's method, P behind n other numbers; NaN where P is not positive definite. */
-function solver(n) {
-  const L = new Float64Array(n * n);
-  return (now, x) => {
-    for (let i = 0; i < n; i++) {
-      const row = i * n;
-      for (let j = 0; j <= i; j++) {
-        const other = j * n;
-        let total = now[n + row + j];
-        for (let k = 0; k < j; k++) total -= L[row + k] * L[other + k];
-        if (j < i) L[row + j] = total / L[other + j];
-        else L[row + i] = total > 0 ? Math.sqrt(total) : NaN;
-      }
-      let value = x[i];
-      for (let k = 0; k < i; k++) value -= L[row + k] * x[k];
-      x[i] = value / L[row + i];
-    }
-    for (let i = n - 1; i >= 0; i--) {
-      let value = x[i];
-      for (let k = i + 1; k < n; k++) value -= L[k * n + i] * x[k];
-      x[i] = value / L[i * n + i];
-    }
   };
 }

@@ -1,19 +1,39 @@
 // @ts-check
-// The functions that settings need: a state's coefficients over time, and the place of a point that is seen.
+// The functions that settings need: a state's coefficients over time, the place of a point that is seen, and P's rates.
 
+import { derived } from "../../common/model/derived.js";
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { typedModule } from "../../common/model/typed.js";
+import { textsOfP } from "./sparse.js";
 
 /** The name of a state that somebody brought. */
 export const OWN = "own";
 
+/** Kinds of a P that is computed as the observer goes. */
+const COMPUTED = ["lyapunov", "riccati"];
+
+/** The layout of what is followed together: points that share nothing unknown are followed one by one. */
+export function layoutFollowed({ states }, { state, points }) {
+  const together = state === "independent" ? 1 : points.length;
+  return states[state].layouts[together - 1];
+}
+
 /** All functions of a model; none follow after it has been opened. */
 export class PointsKernels extends PrintedKernels {
-  needed({ state, motion, weight, P }) {
+  needed(settings) {
     const { states, locate, point, written } = this.model;
+    const { state, motion, weight, P } = settings;
     const [typed] = typedModule(this.model, motion);
     const coefficients = typed ? written?.[motion]?.states?.[state] : states[state].coefficients;
     const moved = { ...typed, key: typed ? `${state} ${typed.key}` : state, texts: { coefficients } };
-    return [{ key: "points", texts: { locate, point } }, moved, ...(weight === "typed" ? typedModule(this.model, P) : [])];
+    return [{ key: "points", texts: { locate, point } }, moved, ...(weight === "typed" ? typedModule(this.model, P) : this.ofP(settings))];
+  }
+
+  /** The functions of a P that is computed. */
+  ofP(settings) {
+    if (!COMPUTED.includes(settings.weight)) return [];
+    const layout = layoutFollowed(this.model, settings);
+    const n = layout.names.length;
+    return [{ key: `P of ${n} states, ${settings.state}`, texts: derived(layout, "texts of P", () => textsOfP(layout, n)) }];
   }
 }

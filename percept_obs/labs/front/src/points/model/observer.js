@@ -5,6 +5,7 @@ import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/mod
 import { typedRows } from "../../common/model/typed.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
+import { layoutFollowed } from "./kernels.js";
 import { product, pseudoInverse } from "./symmetric.js";
 
 /** Follows what a camera has recorded. */
@@ -35,12 +36,11 @@ export class Observer {
       for (let i = 0; i < n; i++) start[i] = truth[i] - settings.error * error[i % error.length];
     }
     const estimate = new Float64Array(time.length * n);
-    // Points that share nothing unknown are followed one by one, which is the same and takes less.
-    const [one] = model.states.independent.layouts;
+    const together = layoutFollowed(model, settings);
     const parts =
-      settings.state === "independent"
-        ? settings.points.map((_, k) => ({ layout: one, first: k, states: 3 * k }))
-        : [{ layout, first: 0, states: 0 }];
+      together === layout
+        ? [{ layout, first: 0, states: 0 }]
+        : settings.points.map((_, k) => ({ layout: together, first: k, states: 3 * k }));
     const ends = parts.map((part) => this.follow(scene, recording, inputs, part, start, estimate));
     const divergedAt = Math.min(...ends);
     for (let k = 0; k < time.length; k++) if (time[k] >= divergedAt) estimate.fill(NaN, k * n, k * n + n);
@@ -109,7 +109,7 @@ export class Observer {
         points,
         first,
       };
-      const diverged = advance(layout, scene.functions.point, law, x, P, tables, path);
+      const diverged = advance(layout, scene.functions, law, x, P, tables, path);
       for (let k = sample; k <= next; k++) {
         const at = (index[k] - from) * own;
         for (let i = 0; i < own; i++) estimate[k * n + states + i] = path[at + i];

@@ -8,7 +8,7 @@ const SWEEPS = 30;
  * tridiagonal, and halving an interval finds them by counting.
  */
 export function spectrum(matrix, n, share) {
-  const { diagonal, beside } = tridiagonal(Float64Array.from(matrix), n);
+  const { diagonal, beside } = tridiagonal(new Float64Array(matrix), n);
   let [low, high] = [Infinity, -Infinity];
   for (let i = 0; i < n; i++) {
     const reach = Math.abs(beside[i - 1] ?? 0) + Math.abs(beside[i] ?? 0);
@@ -43,13 +43,23 @@ function tridiagonal(a, n) {
     const size = Math.sqrt(2 * end * (end - a[(k + 1) * n + k]));
     for (let i = k + 1; i < n; i++) v[i] = (a[i * n + k] - (i === k + 1 ? end : 0)) / size;
     let product = 0;
+    w.fill(0, k + 1);
+    // Of each pair of entries that are the same only the lower one is kept.
     for (let i = k + 1; i < n; i++) {
-      w[i] = 0;
-      for (let j = k + 1; j < n; j++) w[i] += a[i * n + j] * v[j];
-      product += v[i] * w[i];
+      const [row, part] = [i * n, v[i]];
+      let sum = a[row + i] * part;
+      for (let j = k + 1; j < i; j++) {
+        sum += a[row + j] * v[j];
+        w[j] += a[row + j] * part;
+      }
+      w[i] += sum;
     }
+    for (let i = k + 1; i < n; i++) product += v[i] * w[i];
     for (let i = k + 1; i < n; i++) w[i] = 2 * (w[i] - product * v[i]);
-    for (let i = k + 1; i < n; i++) for (let j = k + 1; j < n; j++) a[i * n + j] -= v[i] * w[j] + w[i] * v[j];
+    for (let i = k + 1; i < n; i++) {
+      const [row, one, other] = [i * n, v[i], w[i]];
+      for (let j = k + 1; j <= i; j++) a[row + j] -= one * w[j] + other * v[j];
+    }
     a[(k + 1) * n + k] = end;
   }
   const diagonal = Float64Array.from({ length: n }, (_, i) => a[i * n + i]);

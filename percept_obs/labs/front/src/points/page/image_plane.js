@@ -72,6 +72,8 @@ function handleOf(lab, k) {
     onMove: (place) => lab.movePoint(k, place),
     onRest: () => lab.rest(),
     onKey: ({ key }) => {
+      // A point that was removed has its handle until the next picture.
+      if (k >= lab.settings.points.length) return false;
       const step = FARTHER.includes(key) ? DEPTH_STEP : NEARER.includes(key) ? -DEPTH_STEP : 0;
       if (key === "Delete") lab.removePoint(k);
       else if (step) lab.moveDepth(k, Number((lab.depthOf(k) + step).toFixed(6)));

@@ -34,7 +34,8 @@ export class StructureEngine extends Runner {
     const truth = this.truth(seen, hidden.length, functions);
     const names = [...OUTPUTS, ...hiddenNames];
     const judged = unknown.map((name) => (name === "d_s" ? this.model.judged : name)).join(", ");
-    const speed = this.greatestSpeed(seen, functions);
+    const place = [motionOf(settings), settings.period, seen.time.length];
+    const speed = this.memory.once("speed", place, () => this.greatestSpeed(seen, functions));
     const result = { ...seen, judged, speed, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
     const lines = this.lines(result);
     const known = this.known(result, lines, functions);
@@ -44,7 +45,8 @@ export class StructureEngine extends Runner {
     asked.push(...hidden.map(() => 0));
     result.runs = settings.observers.map((name) => {
       const kernel = this.model.forms[hidden.length].observers[name];
-      return this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+      const follow = () => this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
+      return this.unlessKept(name, settings, follow);
     });
     if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
     return { ...result, guard: null, limits: [], whole: false };
@@ -53,9 +55,13 @@ export class StructureEngine extends Runner {
   /** The largest of the unknowns, as StructureAndMotion.relative_error(): a velocity's is relative to the speed. */
   relativeError(result, estimate) {
     const { truth, choice, width, time } = result;
-    const error = choice.unknown.includes("d_s")
-      ? distanceError(truth, estimate, width, (rows, k) => quantityOf(result, rows, "d_s")[k] * rows[k * width + 2])
-      : distanceError(truth, estimate, width, () => 1);
+    const ones = new Float64Array(time.length).fill(1);
+    const inverseOf = (rows) => {
+      const scale = quantityOf(result, rows, "d_s");
+      return columnOf(rows, width, 2).map((value, k) => scale[k] * value);
+    };
+    const [right, inverse] = choice.unknown.includes("d_s") ? [truth, estimate].map(inverseOf) : [ones, ones];
+    const error = distanceError(right, inverse, estimate, width);
     const { speed } = result;
     for (const name of choice.unknown.filter((each) => each !== "d_s")) {
       const [found, right] = [estimate, truth].map((rows) => quantityOf(result, rows, name));
@@ -169,14 +175,19 @@ export class StructureEngine extends Runner {
       const kernel = this.model.forms[settings.unknown.length].observers[name];
       const x = Float64Array.from([0, ...kernel.gains.map((gain) => settings.gains[name][gain])]);
       const out = new Float64Array(1);
-      const rates = steps.map((_, k) => {
+      const rateIn = (k) => {
         x[0] = grid[k + 1] - grid[0];
         return fastest(x, out)[0];
-      });
-      const first = rates.findIndex((rate, k) => rate * steps[k] >= largestStepRate);
+      };
+      let [first, most] = [-1, 0];
+      for (let k = 0; k < steps.length; k++) {
+        const rate = rateIn(k);
+        most = Math.max(most, rate);
+        if (first < 0 && rate * steps[k] >= largestStepRate) first = k;
+      }
       if (first < 0) return [];
-      const found = { name, time: grid[first] - grid[0], rate: rates[first], step: steps[first] };
-      return [{ ...found, shorter: largestStepRate / rates.reduce((a, b) => Math.max(a, b)), remedy: kernel.remedy }];
+      const found = { name, time: grid[first] - grid[0], rate: rateIn(first), step: steps[first] };
+      return [{ ...found, shorter: largestStepRate / most, remedy: kernel.remedy }];
     });
   }
 }

@@ -1,0 +1,24 @@
+// Computing beside the page: a worker, made of the bundle that the page was made of.
+
+/**
+ * Open a worker for a lab; `onReady` is called when it can be asked, `onAnswer` with each answer, and `onGone` if there is
+ * none after all: where the page's content policy forbids workers from blob:, or a browser knows no workers of modules.
+ *
+ * @param {{bundle: string, kind: string, texts: any, model: any}} lab
+ */
+export function openBeside({ bundle, ...lab }, { onReady, onAnswer, onGone }) {
+  const address = URL.createObjectURL(new Blob([bundle], { type: "text/javascript" }));
+  const worker = new Worker(address, { type: "module" });
+  worker.onerror = (event) => {
+    event.preventDefault();
+    worker.terminate();
+    onGone();
+  };
+  worker.onmessage = ({ data }) => {
+    if (!data.ready) return onAnswer(data);
+    URL.revokeObjectURL(address);
+    return onReady({ ask: (task) => worker.postMessage(task) });
+  };
+  worker.postMessage(lab);
+  return worker;
+}

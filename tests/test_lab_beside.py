@@ -1,0 +1,178 @@
+"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where none may be; none grows."""
+
+import json
+import re
+
+import pytest
+from lab_alone import DRAWN, opened, stated_policy
+from lab_browser import assert_equals_python, control, rested, state
+from sample_sizes import sampled
+
+from percept_obs.labs import observer_lab, points_lab
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+BESIDE = "() => Boolean([...window.perceptObsLabs][0].latest.beside)"
+TOUCH = "() => { const [lab] = window.perceptObsLabs; lab.change({ duration: lab.settings.duration - 1 }); }"
+COUNT = """() => {
+    const [lab] = window.perceptObsLabs;
+    window.runs = 0;
+    for (const engine of lab.results.engines) {
+        const own = engine.run.bind(engine);
+        engine.run = (...given) => { window.runs += 1; return own(...given); };
+    }
+}"""
+BLOCKED = """(changes) => new Promise((resolve) => {
+    const [lab] = window.perceptObsLabs;
+    const tasks = new PerformanceObserver((list) => {
+        for (const { duration } of list.getEntries()) window.longest = Math.max(window.longest, duration);
+    });
+    window.longest = 0;
+    tasks.observe({ type: "longtask" });
+    const began = performance.now();
+    let turns = 0;
+    lab.change(changes);
+    const look = () => {
+        turns += 1;
+        if (lab.shown.settings !== lab.settings) return setTimeout(look);
+        tasks.disconnect();
+        return resolve({ took: performance.now() - began, longest: window.longest, turns });
+    };
+    look();
+})"""
+MOVE = """async (count) => {
+    const [lab] = window.perceptObsLabs;
+    for (let k = 0; k < count; k++) {
+        lab.moveFoe([1.6 + 0.1 * Math.sin(k / 9), 0.8]);
+        await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+}"""
+PLAY = """(seconds) => new Promise((resolve) => {
+    const [lab] = window.perceptObsLabs;
+    let [frames, pictures] = [0, lab.pictures];
+    const play = document.querySelector('[data-control="play"]');
+    const count = () => { frames += 1; if (playing) requestAnimationFrame(count); };
+    let playing = true;
+    play.click();
+    const began = performance.now();
+    // At the end it begins again, for as long as it is to be played.
+    const again = setInterval(() => { if (!lab.view.playing()) play.click(); }, 20);
+    requestAnimationFrame(count);
+    setTimeout(() => {
+        playing = false;
+        clearInterval(again);
+        if (lab.view.playing()) play.click();
+        resolve({ frames, pictures: lab.pictures - pictures, seconds: (performance.now() - began) / 1000 });
+    }, 1000 * seconds);
+})"""
+FOUR = {"observers": ["identifier_based", "sliding_mode", "extended_kalman", "de_luca"], "duration": 20.0}
+MOVES, SECONDS = sampled(150, 1000), sampled(2, 600)
+
+
+def answered(told):
+    return {"analysis": {"serial": told["summary"]["serial"]}}
+
+
+def with_worker(browser, lab, **options):
+    """A page with a lab that computes beside it."""
+    page = opened(browser, lab, answers=answered, **options)
+    page.wait_for_function(DRAWN)
+    rested(page)
+    page.evaluate(TOUCH)
+    page.wait_for_function(BESIDE)
+    rested(page)
+    return page
+
+
+def memory_of(page):
+    """A function that says how many MB the page and its worker use, once garbage is gone."""
+    session = page.context.new_cdp_session(page)
+    workers, heard = [], []
+
+    def hear(message):
+        if "id" in message:
+            heard.append(message)
+
+    session.on("Target.attachedToTarget", lambda event: workers.append(event["sessionId"]))
+    session.on("Target.receivedMessageFromTarget", lambda event: hear(json.loads(event["message"])))
+    session.send("Target.setAutoAttach", {"autoAttach": True, "waitForDebuggerOnStart": False, "flatten": False})
+    (worker,) = workers
+
+    def asked_of_worker(method):
+        message = json.dumps({"id": 1, "method": method})
+        session.send("Target.sendMessageToTarget", {"sessionId": worker, "message": message})
+        while not heard:
+            page.wait_for_timeout(10)
+        return heard.pop()["result"]
+
+    def used():
+        usage = []
+        for ask in (session.send, asked_of_worker):
+            ask("HeapProfiler.collectGarbage")
+            usage.append(ask("Runtime.getHeapUsage"))
+        return sum(one["usedSize"] + one.get("backingStorageSize", 0) for one in usage) / 1e6
+
+    return used
+
+
+def test_under_the_stated_policy_a_worker_computes_what_python_computes(browser):
+    page = with_worker(browser, observer_lab(observers=["identifier_based", "extended_kalman"], duration=10.0))
+    page.evaluate(COUNT)
+    page.fill(control("duration number"), "8")
+    page.check(control("observer de_luca"))
+    page.click(control("keep"))
+    rested(page)
+    shown = state(page)
+    assert page.evaluate("[window.runs, window.refused.length]") == [0, 0]
+    assert list(shown["runs"]) == ["identifier_based", "extended_kalman", "de_luca"]
+    assert any(line["name"].startswith("kept") for line in shown["drawn"]["error"])
+    assert_equals_python(shown)
+    page.close()
+
+
+def test_where_a_policy_forbids_workers_the_page_computes(browser):
+    page = opened(browser, observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'none'", answered)
+    page.wait_for_function(DRAWN)
+    page.evaluate(COUNT)
+    page.evaluate(TOUCH)
+    rested(page)
+    page.wait_for_function("() => window.refused.length")
+    page.fill(control("duration number"), "8")
+    rested(page)
+    assert not page.evaluate(BESIDE)
+    assert page.evaluate("window.runs") > 0
+    assert page.locator(".problem:not([hidden])").count() == 0
+    assert_equals_python(state(page))
+    page.close()
+
+
+def test_while_a_heavy_picture_is_computed_the_page_goes_on(browser):
+    """A long task of the page would block pointer and keys as long."""
+    page = with_worker(browser, points_lab(weight="riccati", size=0.01, duration=30.0))
+    found = page.evaluate(BLOCKED, {"period": 0.005, "step": 0.002, "duration": 60.0})
+    assert found["took"] > 300, found
+    assert found["longest"] < found["took"] / 2, found
+    assert found["turns"] > 20, found
+    page.close()
+
+
+def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(browser):
+    """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
+    page = with_worker(browser, observer_lab(**FOUR))
+    used = memory_of(page)
+    page.evaluate(MOVE, 100)
+    page.evaluate(PLAY, 1)
+    rested(page)
+    before = used()
+    page.evaluate(MOVE, MOVES)
+    found = page.evaluate(PLAY, SECONDS)
+    rested(page)
+    assert used() - before < 10, (before, used())
+    assert found["pictures"] > 0.9 * found["frames"], found
+    page.close()
+
+
+def test_the_policy_that_readme_states_says_nothing_of_workers():
+    """They come under `script-src` then, which has blob:."""
+    assert "worker-src" not in stated_policy()
+    assert re.search(r"script-src [^;]*blob:", stated_policy())
