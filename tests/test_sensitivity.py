@@ -1,4 +1,4 @@
-"""The variational equations give the derivative of an estimate with respect to the motion, and so predict its errors."""
+"""The variational equations give the derivative of an estimate with respect to the motion, and predict its errors."""
 
 from dataclasses import replace
 
@@ -94,7 +94,7 @@ def test_the_picture_says_which_entries_matter():
     drawn = entries(found, most=3)
     assert len(drawn.axes[0].lines) == 3
     assert ", ".join(list(ranking)[3:]) in drawn.text
-    assert list(ranking)[0] in repr(found)
+    assert next(iter(ranking)) in repr(found)
 
 
 def test_what_makes_no_sense_is_refused():

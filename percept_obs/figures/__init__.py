@@ -11,6 +11,7 @@ from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
 from percept_obs.figures.structure import cases, quantities
 from percept_obs.figures.velocities import velocities
+from percept_obs.figures.trusting import scan, trust
 from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
@@ -28,7 +29,9 @@ __all__ = [
     "image_plane",
     "quantities",
     "runs_over_time",
+    "scan",
     "scene",
     "signals",
     "velocities",
+    "trust",
 ]

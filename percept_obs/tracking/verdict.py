@@ -46,6 +46,10 @@ VERDICTS = MappingProxyType(
             "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
             "to within {within} (2σ)"
         ),
+        "contradicted": (
+            "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} "
+            "apart, so that the motion is not as it is known"
+        ),
         "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
         "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
         "no estimate": "; do not trust it: there is no estimate at the end",
@@ -102,8 +106,9 @@ class Trust:
     Parameters
     ----------
     kind : str
-        "agrees" (with what the samples tell), "differs", "vague" (they tell too little), "hidden" (they tell nothing),
-        "nowhere" (the estimate is infinitely far away or behind the camera) or "no estimate".
+        "agrees" (with what the samples tell), "differs", "contradicted" (longer windows tell something else, so that
+        the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
+        estimate is infinitely far away or behind the camera) or "no estimate".
     judged : str
         What the estimate is of.
     length : float
@@ -111,7 +116,9 @@ class Trust:
     information : Information, optional
         What the samples tell.
     difference : float
-        How far the estimate is from that, relatively; NaN where they tell too little.
+        How far the estimate is from that, relatively; NaN where they tell too little or contradict each other.
+    disagreement : float
+        See `Information.disagreement`.
     claimed : float, optional
         The relative standard deviation that the observer claims, if it claims one.
     """
@@ -121,6 +128,7 @@ class Trust:
     length: float
     information: Information | None = None
     difference: float = math.nan
+    disagreement: float = 0.0
     claimed: float | None = None
 
     @property
@@ -135,7 +143,7 @@ class Trust:
 
     def __str__(self) -> str:
         """What is known, in words."""
-        words = {"judged": self.judged, "difference": percent(self.difference)}
+        words = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
