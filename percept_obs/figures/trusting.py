@@ -36,19 +36,20 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     ax.set(xlabel="time (s)", ylabel=f"{word} ${symbol}$ (m)")
     yield f"Estimated {word} in metres over {words.times(run)}, with what the samples tell at {len(found.time)} times."
     yield found.sentence
-    firm = told[there & ~found.unexcited]
+    firm = told[there & (spread < 0.5)]
     yield axis.linear(ax, firm if firm.size else axis.bulk(estimate), estimate, f"the estimated {word}", reach=1.0)
     legend_above(ax)
     return [ax]
 
 
 def _shade(ax: Axes, found: TrustOverTime) -> None:
-    """Shade from the time before each at which the samples told too little up to that time."""
-    before = np.concatenate([[found.run.elapsed[0]], found.time[:-1]])
-    name = "hardly excited"
-    for begin, end in zip(before[found.unexcited], found.time[found.unexcited], strict=True):
-        ax.axvspan(begin, end, color=look.ORANGE, alpha=0.25, linewidth=0, label=name)
-        name = "_again"
+    """Shade the seconds in which the samples told nothing."""
+    time = found.run.elapsed
+    ends = zip(found.time, found.unexcited, strict=True)
+    told_nothing = np.any([(time >= end - length) & (time <= end) & (length > 0) for end, length in ends], axis=0)
+    band = {"color": look.ORANGE, "alpha": 0.3, "linewidth": 0, "label": "hardly excited"}
+    if told_nothing.any():
+        ax.fill_between(time, 0, 1, where=told_nothing, transform=ax.get_xaxis_transform(), **band)
 
 
 @figure("it is something else, or nothing was found that has values to scan")

@@ -45,9 +45,10 @@ class TrustOverTime:
         return np.array([trust.trusted for trust in self.trusts])
 
     @property
-    def unexcited(self) -> Flags:
-        """Where the samples told too little of what is sought, shape (T,)."""
-        return ~(2 * self.deviation <= self.tolerance)
+    def unexcited(self) -> Array:
+        """For how many seconds the samples had told nothing, shape (T,)."""
+        found = [trust.information for trust in self.trusts]
+        return np.array([0.0 if information is None else information.unexcited for information in found])
 
     @property
     def deviation(self) -> Array:

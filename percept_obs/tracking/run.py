@@ -157,7 +157,7 @@ class Run:
         measured = self._columns(self.observer.form.measured)
         claimed = self.covariance[:, measured][:, :, measured]
         left = self._noise_variance * np.eye(len(measured)) - claimed
-        there = np.isfinite(left).all(axis=(1, 2))
+        there = np.asarray(np.isfinite(left).all(axis=(1, 2)))
         values, vectors = np.linalg.eigh(np.where(there[:, None, None], left, np.eye(len(measured))))
         return np.where(there[:, None] & (values > 0), values, np.nan), vectors
 
@@ -185,7 +185,7 @@ class Run:
         """
         columns = self._columns(names)
         claimed = self.covariance[:, columns][:, :, columns]
-        there = np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0)
+        there = np.asarray(np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0))
         claimed = np.where(there[:, None, None], claimed, np.nan)
         error = self.error[:, columns, None]
         return np.asarray((np.swapaxes(error, 1, 2) @ np.linalg.solve(claimed, error))[:, 0, 0])

@@ -120,7 +120,7 @@ EXPERIMENTS = (
     ),
     Experiment(
         "distortion ignored",
-        "the lens bends the images, by 1 + {value:.3f} |y|^2",
+        "the lens bends the images, by the factor 1 {value:+.3f} |y|^2",
         tuple(np.linspace(-0.45, 0.45, 10).tolist()),
         lambda recording, bend: replace(recording, outputs=unbent(recording.outputs, bend)),
         0.02,
