@@ -81,9 +81,11 @@ def test_pixels_are_told_by_their_size():
         scan(found)
 
 
-def test_a_constant_motion_shows_no_offset():
+def test_a_constant_motion_shows_no_offset_and_without_noise_nothing_is_wrong():
     steady = Scenario("steady", rigid([0, 0.1, 0], [0.3, 0.1, 0], [0, 0, 0]), (0.2, 0.1, 3), 5, pinhole())
-    assert "time offset" in diagnose(record(steady)).not_tried
+    found = diagnose(record(steady))
+    assert "time offset" in found.not_tried
+    assert found.named == "nothing"
 
 
 def test_a_distortion_is_taken_out_and_a_shift_undone():

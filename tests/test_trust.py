@@ -28,9 +28,9 @@ def test_what_cannot_be_right_is_flagged_and_good_ones_are_not(make):
     assert share <= 0.05
 
 
-def test_an_object_that_moves_is_contradicted_or_vague():
-    kinds = {judged(OBSERVERS[2], seed, "moving object")[1].kind for seed in range(3)}
-    assert kinds <= {"contradicted", "vague", "hidden", "differs", "nowhere"}
+@pytest.mark.slow
+def test_an_object_that_moves_is_not_trusted_and_a_good_estimate_is():
+    assert not judged(OBSERVERS[2], 0, "moving object")[1].trusted
     error, good = judged(OBSERVERS[2], 1, "good")
     assert error < RIGHT
     assert good.trusted

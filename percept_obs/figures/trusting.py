@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -47,7 +49,7 @@ def _shade(ax: Axes, found: TrustOverTime) -> None:
     time = found.run.elapsed
     ends = zip(found.time, found.unexcited, strict=True)
     told_nothing = np.any([(time >= end - length) & (time <= end) & (length > 0) for end, length in ends], axis=0)
-    band = {"color": look.ORANGE, "alpha": 0.3, "linewidth": 0, "label": "hardly excited"}
+    band: dict[str, Any] = {"color": look.ORANGE, "alpha": 0.3, "linewidth": 0, "label": "hardly excited"}
     if told_nothing.any():
         ax.fill_between(time, 0, 1, where=told_nothing, transform=ax.get_xaxis_transform(), **band)
 

@@ -108,9 +108,7 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
         raise ValueError(f"the run has {length} samples; {2 * FEWEST} are needed to say how far it can be trusted")
     if not 1 <= count <= length:
         raise ValueError(f"{count} times were asked for; from 1 to the {length} samples of the run make sense")
-    index = np.unique(np.linspace(FEWEST, length - 1, count).astype(int))
-    if count == 1:
-        index = index[-1:]
+    index = np.unique(np.linspace(length - 1, FEWEST, count).astype(int))
     return TrustOverTime(run, tolerance, index, tuple(_until(run, int(k)).trust(tolerance) for k in index))
 
 

@@ -23,6 +23,9 @@ FEWEST = 10
 PLACES = 12
 """Places in a recording at which another point may begin, as first tried."""
 
+FINEST = 1e-4
+"""What is left of the samples of the best camera, in focal lengths: a twentieth of a pixel."""
+
 UNEXPLAINED = 1.5
 """Times the noise that may be left before it is said that something is unexplained."""
 
@@ -189,8 +192,9 @@ class _Left:
 
     def gain(self, before: _Left, unknowns: int) -> float:
         """Logarithm by which samples are more likely than before, less Schwarz's price of the unknowns."""
-        count = self.independent
-        return count / 2 * math.log(before.squares / self.squares) - unknowns / 2 * math.log(count)
+        count, finest = self.independent, FINEST**2 * sum(part.count for part in self.parts)
+        ratio = (before.squares + finest) / (self.squares + finest)
+        return count / 2 * math.log(ratio) - unknowns / 2 * math.log(count)
 
     def evidence(self, before: _Left) -> str:
         fell = f"{1000 * before.rms:.3g} to {1000 * self.rms:.3g} thousandths of the focal length"

@@ -99,9 +99,9 @@ def explain(recording: Recording) -> Explained:
 
 def _step(rows: Array, off: Array, x: Array) -> Array:
     """By Gauss and Newton, but not behind the camera: to an inverse distance of 0 instead."""
-    step: Array = np.linalg.lstsq(rows, off, rcond=1e-9)[0]
+    step = np.asarray(np.linalg.lstsq(rows, off, rcond=1e-9)[0], dtype=np.float64)
     if x[-1] + step[-1] < 0:
-        step = np.linalg.lstsq(rows[:, :-1], off + rows[:, -1] * x[-1], rcond=1e-9)[0]
+        step = np.asarray(np.linalg.lstsq(rows[:, :-1], off + rows[:, -1] * x[-1], rcond=1e-9)[0], dtype=np.float64)
         return np.append(step, -x[-1])
     return step
 
