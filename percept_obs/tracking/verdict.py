@@ -46,10 +46,6 @@ VERDICTS = MappingProxyType(
             "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
             "to within {within} (2σ)"
         ),
-        "contradicted": (
-            "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} "
-            "apart, so that the motion is not as it is known"
-        ),
         "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
         "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
         "no estimate": "; do not trust it: there is no estimate at the end",
@@ -67,6 +63,13 @@ VERDICTS = MappingProxyType(
     }
 )
 """What a verdict says, by what happened; live labs use the same words.  Times count from the first sample."""
+
+
+CONTRADICTED = (
+    "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so that "
+    "the motion is not as it is known"
+)
+"""The same where samples contradict the motion; live labs, which know the truth, do not say it."""
 
 
 def for_the_page() -> dict[str, Any]:
@@ -148,7 +151,7 @@ class Trust:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
         words |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = VERDICTS[self.kind].format(**words)
+        said = (CONTRADICTED if self.kind == "contradicted" else VERDICTS[self.kind]).format(**words)
         if unexcited >= SETTLED_PART * self.length:
             said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
