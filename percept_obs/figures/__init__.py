@@ -10,8 +10,8 @@ from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
 from percept_obs.figures.structure import cases, quantities
-from percept_obs.figures.velocities import velocities
 from percept_obs.figures.trusting import scan, trust
+from percept_obs.figures.velocities import velocities
 from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
@@ -32,6 +32,6 @@ __all__ = [
     "scan",
     "scene",
     "signals",
-    "velocities",
     "trust",
+    "velocities",
 ]

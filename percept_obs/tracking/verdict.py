@@ -66,8 +66,8 @@ VERDICTS = MappingProxyType(
 
 
 CONTRADICTED = (
-    "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so that "
-    "the motion is not as it is known"
+    "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so "
+    "that the motion is not as it is known"
 )
 """The same where samples contradict the motion; live labs, which know the truth, do not say it."""
 
