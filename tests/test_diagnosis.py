@@ -36,7 +36,7 @@ def test_lost_samples_and_one_output_are_explained_as_well():
 @pytest.mark.slow
 def test_seven_mistakes_are_named_and_nothing_where_nothing_is():
     """20 recordings with each mistake and 100 clean ones with ALL_SAMPLES=1."""
-    found = figures(sampled(2, 20), sampled(4, 100))
+    found = figures(sampled(1, 20), sampled(2, 100))
     for fault, names in found.items():
         assert names[fault] >= (0.9 if fault == "nothing" else 0.85) * names.total(), (fault, names)
 
@@ -53,6 +53,7 @@ def test_the_offset_is_found_with_its_size_and_drawn():
     assert min(found.findings[0].left) < found.left
 
 
+@pytest.mark.slow
 def test_the_mismatched_recording_is_named_and_one_alone_cannot_be():
     found = diagnose(spoiled(SESSION, "mismatch", np.random.default_rng(0)))
     assert found.named == "mismatch"

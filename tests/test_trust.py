@@ -20,7 +20,7 @@ FILTER = ekf(FORM, noise_variance=4e-6, hidden_variance=0.1)
 @pytest.mark.parametrize("make", sampled(OBSERVERS[2:3], OBSERVERS), ids=lambda make: make.key)
 def test_what_cannot_be_right_is_flagged_and_good_ones_are_not(make):
     """100 of each for every observer with ALL_SAMPLES=1."""
-    count = sampled(5, 100)
+    count = sampled(3, 100)
     for kind in WRONG:
         assert flagged(make, kind, count)[0] >= 0.95, kind
     share, counted = flagged(make, "good", count)
@@ -58,6 +58,7 @@ def paused(truth=True):
     return seen if truth else replace(seen, truth=None, signal=None)
 
 
+@pytest.mark.slow
 def test_a_pause_is_shaded_and_not_trusted():
     found = trust_over_time(track(paused(), FILTER, {"y3": 0.25}), count=6)
     assert not found.trusted[0]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from distrust_study import drawn
 from examples import BOTH
+from sample_sizes import sampled
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, ekf, pinhole, record, rigid, scenarios, track
 from percept_obs.observers.gains import grid
@@ -63,9 +64,10 @@ def both_ways(form, choosing, reporting, start, after=(1.0, 2.0, 3.0)):
 
 
 def halves(make):
-    """Twelve recordings to choose on and twenty-four to report on."""
-    made = [make(seed) for seed in range(36)]
-    return made[:12], made[12:], {"y3": 0.3}
+    """Twelve recordings to choose on and twenty-four to report on, or fewer for a sample."""
+    choosing = sampled(6, 12)
+    made = [make(seed) for seed in range(3 * choosing)]
+    return made[:choosing], made[choosing:], {"y3": 0.3}
 
 
 def near_ma():
