@@ -83,9 +83,7 @@ def observed(make, recording):
 GAINS = {
     "de_luca": {"measured_gain": 6, "hidden_gain": 120},
     "spica": {"hidden_gain": 110},
-    "range_identification": {"filter_rate": 4, "feedback": 4, "switching_gain": 1, "boundary_layer": 0.2},
     "integral_sliding_mode": {"feedback": 2, "switching_gain": 0.5, "sharpening": 0},
-    "linear_approximation": {"process_weight": 1e-3, "measurement_weight": 0.005, "start_weight": 1},
 }
 """Those for a camera that a hand carries, where the defaults are for another one."""
 
