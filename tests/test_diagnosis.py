@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_study import FAULTS, drawn, figures, spoiled
+from diagnosis_study import drawn, figures, spoiled
 from sample_sizes import sampled
 
 from percept_obs import Scenario, diagnose, pinhole, record, rigid, scenarios
@@ -13,7 +13,7 @@ from percept_obs.recording import Unlikely
 from percept_obs.studies.diagnosis import explain
 from percept_obs.studies.diagnosis.experiments import LARGEST_OFFSET, later, unbent
 
-SESSION, DRAW = drawn(3, points=3)
+SESSION, DRAW = drawn(3, points=2)
 
 
 def test_the_point_that_explains_a_recording_leaves_its_noise():
@@ -46,7 +46,7 @@ def test_the_offset_is_found_with_its_size_and_drawn():
     found = diagnose(late)
     assert found.named == "time offset"
     assert found.findings[0].value == pytest.approx(0.11, abs=0.005)
-    assert "the images are 0.11" in found.sentence
+    assert f"the images are {found.findings[0].value:.3f} s late" in found.sentence
     assert found.left > 2 * np.sqrt(SESSION[0].noise_variance)
     drawn_scan = scan(found)
     assert drawn_scan.text.endswith(found.sentence)
@@ -63,13 +63,10 @@ def test_the_mismatched_recording_is_named_and_one_alone_cannot_be():
 
 
 def test_what_none_of_the_mistakes_explains_is_said():
-    """An object that moves although it is believed to stand."""
-    moved = []
-    for recording in SESSION:
-        drift = 0.02 * np.sin(2 * recording.time)[:, None] * [1.0, -1.0]
-        moved.append(replace(recording, outputs=recording.outputs + drift))
-    found = diagnose(moved[:1])
-    assert found.findings or "something is not as it is known" in found.sentence
+    """Noise ten times as large as it is said to be is none of them."""
+    found = diagnose(replace(SESSION[0], noise_variance=SESSION[0].noise_variance / 100))
+    assert found.named == "nothing"
+    assert "something is not as it is known" in found.sentence
 
 
 def test_pixels_are_told_by_their_size():
@@ -102,4 +99,3 @@ def test_what_makes_no_sense_is_refused():
         diagnose([])
     with pytest.raises(ValueError, match="20 are needed"):
         diagnose(SESSION[0].between(0, 2 * LARGEST_OFFSET))
-    assert set(FAULTS) | {"nothing"} > {finding.key for finding in diagnose(SESSION).findings}

@@ -14,9 +14,10 @@ RECORDINGS = [record(scenarios.ma2005_eq35(), 3, Camera(0.06, Gaussian(SIGMA)), 
 
 
 def follow(recording, observer):
-    return track(recording, observer, {"y3": 0.3})
+    return track(recording, observer, {"y3": 0.3}, language="numba")
 
 
+@pytest.mark.slow
 def test_the_noise_is_found_and_a_doubt_that_nothing_speaks_for_is_none():
     ranges = {"noise_variance": (1e-6, 1e-2), "process_noise": (1e-9, 1e-3)}
     found = tune_by_likelihood(RECORDINGS, ekf(BOTH), ranges, follow)

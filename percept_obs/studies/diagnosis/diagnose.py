@@ -88,20 +88,16 @@ class Diagnosis:
     @property
     def sentence(self) -> str:
         """What looks wrong, with the evidence."""
+        left = f"{1000 * self.left:.3g} thousandths of the focal length are left of the samples"
+        left += "" if self.noise is None else f", with noise of {1000 * self.noise:.3g}"
         if self.findings:
-            first = self.findings[0]
+            first, *others = self.findings
             said = f"It looks as if {first.sentence}: {first.evidence}."
-            others = ", ".join(finding.key for finding in self.findings[1:])
-            said += f" Less would be explained by: {others}." if others else ""
+            said += f" Less would be explained by: {', '.join(other.key for other in others)}." if others else ""
+        elif self.noise and self.left > UNEXPLAINED * self.noise:
+            said = f"None of the usual mistakes explains the samples, but something is not as it is known: {left}."
         else:
-            said = (
-                f"Nothing looks wrong: {1000 * self.left:.3g} thousandths of the focal length are left of the samples"
-            )
-            said += "." if self.noise is None else f", with noise of {1000 * self.noise:.3g}."
-            if self.noise and self.left > UNEXPLAINED * self.noise:
-                said = (
-                    f"None of the usual mistakes explains the samples, but something is not as it is known: {said[21:]}"
-                )
+            said = f"Nothing looks wrong: {left}."
         said += "".join(f" Not tried: {key}, for {reason}." for key, reason in self.not_tried.items())
         return said
 
@@ -215,7 +211,8 @@ def _tried(experiment: Experiment, recordings: Sequence[Recording], before: _Lef
     after = left(best)
     if not experiment.worth_telling(best):
         return None
-    sentence = experiment.sentence.format(value=best, frame=[*FRAMES][int(best) % len(FRAMES)])
+    words = {"late": "late" if best > 0 else "early", "frame": [*FRAMES][int(best) % len(FRAMES)]}
+    sentence = experiment.sentence.format(value=best, size=abs(best), **words)
     gain = after.gain(before, 1)
     value = best if experiment.continuous else math.nan
     return Finding(experiment.key, sentence, after.evidence(before), gain, value, tried, remaining)

@@ -37,7 +37,7 @@ class Experiment:
     key : str
         Such as "time offset".
     sentence : str
-        What is wrong, in words, with a place for the value.
+        What is wrong, in words, with places for the value, its size, "late" or "early", and the frame.
     values : tuple of float
         What is tried; between neighbours the best one is looked for if there are several and it is `continuous`.
     undone : function of a recording and a value
@@ -90,7 +90,7 @@ def unbent(outputs: Array, bend: float) -> Array:
 EXPERIMENTS = (
     Experiment(
         "time offset",
-        "the images are {value:.3f} s late against the motion, or early if that is negative",
+        "the images are {size:.3f} s {late} against the motion",
         tuple(np.linspace(-LARGEST_OFFSET, LARGEST_OFFSET, 11).tolist()),
         lambda recording, offset: replace(recording, motion=later(recording.motion, -offset)),
         0.01,
