@@ -25,6 +25,7 @@ from percept_obs.recording.text_table import Clock
 from percept_obs.structure import StructureAndMotion
 from percept_obs.structure.stages import semigeneral
 from percept_obs.studies.consistency import check_consistency
+from percept_obs.studies.diagnosis import diagnose
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.motion import Motion, affine, linear, rigid
 from percept_obs.system.perspective import PerspectiveSystem
@@ -68,6 +69,7 @@ __all__ = [
     "chained",
     "check",
     "check_consistency",
+    "diagnose",
     "ekf",
     "extended_kalman",
     "ibo",

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from examples import BOTH, ONE, ZERO
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
-from percept_obs import Camera, Gaussian, check_consistency, ekf, ibo, record, scenarios, track
+from percept_obs import Camera, Gaussian, affine, check_consistency, ekf, ibo, record, scenarios, track
 from percept_obs.studies.consistency import claimed_distance, claimed_interval
 
 SIGMA = 0.01
@@ -52,6 +52,34 @@ def test_the_interval_is_that_of_chi_squared():
         assert inside == pytest.approx(0.95)
     narrow = replace(found, confidence=0.5)
     assert found.interval(50)[0] < narrow.interval(50)[0] < 2 < narrow.interval(50)[1] < found.interval(50)[1]
+
+
+def test_whiteness_of_the_innovations_is_told():
+    """A filter that believes its samples too little follows too slowly, so that its innovations drift."""
+    right = check_consistency(filtered(BOTH))
+    assert right.white
+    assert abs(right.autocorrelation) < 0.07
+    believed = affine(*(np.array(part, dtype=float) for part in (np.zeros((3, 3)), np.array([0.5, 0.25, 0.3]))))
+    known = dict(zip(("y1", "y2", "y3"), RECORDING.truth[0], strict=True))
+    run = track(RECORDING, ekf(BOTH, noise_variance=SIGMA**2, process_noise=0.01), known, believed=believed)
+    wrong = check_consistency(run)
+    assert not wrong.white
+    assert "not white: each tells of the next" in wrong.verdict()
+    np.testing.assert_allclose((right.whitened**2).sum(axis=1), right.nis)
+
+
+def test_nis_nees_and_likelihood_are_those_of_the_innovations_before_the_update():
+    """Recomputed from the covariance before each update, which the flow gives from the one after the last."""
+    run = filtered(ONE)
+    R, sizes = SIGMA**2, run.nis[np.isfinite(run.nis)]
+    after = run.covariance[1:, 0, 0]
+    S = R**2 / (R - after)  # of one output: P = R (S - R) / S after the update
+    innovation = run.innovation[1:, 0] * S / R
+    np.testing.assert_allclose(sizes[-400:], innovation**2 / S, rtol=1e-6)
+    np.testing.assert_allclose(run.log_likelihood[1:], norm.logpdf(innovation, scale=np.sqrt(S)), rtol=1e-6)
+    np.testing.assert_allclose(run.nees("y3"), run.error[:, 2] ** 2 / run.covariance[:, 2, 2])
+    joint = run.error[:, None, 1:] @ np.linalg.inv(run.covariance[:, 1:, 1:]) @ run.error[:, 1:, None]
+    np.testing.assert_allclose(run.nees(), joint[:, 0, 0], rtol=1e-6)
 
 
 def test_averages_move_over_the_samples_that_there_are():

@@ -15,7 +15,7 @@ from sympy.printing.pycode import PythonCodePrinter
 Printed = Literal["python", "javascript"]
 
 LARGEST_PRODUCT = 8
-"""Integer powers up to this are printed as products, the same in every language."""
+"""Powers of numbers or of roots up to this are printed as products, the same in every language."""
 
 FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh, sp.atan2)
 """Functions that have the same name in sympy, Python and JavaScript."""
@@ -32,9 +32,7 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
     """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
     for expression in expressions:
         for node in sp.preorder_traversal(expression):
-            power_fits = isinstance(node, sp.Pow) and (
-                (node.exp.is_Integer and abs(node.exp) <= LARGEST_PRODUCT) or abs(node.exp) == sp.Rational(1, 2)
-            )
+            power_fits = isinstance(node, sp.Pow) and (2 * node.exp).is_Integer and abs(node.exp) <= LARGEST_PRODUCT
             finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
             if not (power_fits or finite or isinstance(node, KNOWN)):
                 raise NotCompilable(f"{node} cannot be printed alike in Python and JavaScript; write it otherwise")
@@ -57,10 +55,12 @@ class _Printer(PythonCodePrinter):
 
     def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
         base, exponent = expr.base, expr.exp
-        if abs(exponent) == sp.Rational(1, 2):
-            root = f"{self.words['math']}.sqrt({self._print(base)})"
-            return root if exponent > 0 else f"(1.0/{root})"
-        product = "*".join([self.parenthesize(base, PRECEDENCE["Pow"])] * abs(int(exponent)))
+        factors = [self.parenthesize(base, PRECEDENCE["Pow"])] * int(abs(exponent))
+        if not exponent.is_Integer:
+            factors.append(f"{self.words['math']}.sqrt({self._print(base)})")
+            if len(factors) == 1:
+                return factors[0] if exponent > 0 else f"(1.0/{factors[0]})"
+        product = "*".join(factors)
         return f"({product})" if exponent > 0 else f"(1.0/({product}))"
 
     def _print_Rational(self, expr: sp.Rational) -> str:

@@ -3,12 +3,14 @@
 from percept_obs.figures.base import Figure
 from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
+from percept_obs.figures.entries import entries
 from percept_obs.figures.image_plane import image_plane
 from percept_obs.figures.many_points import depth_errors, error_norm
 from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
 from percept_obs.figures.structure import cases, quantities
+from percept_obs.figures.trusting import scan, trust
 from percept_obs.figures.velocities import velocities
 from percept_obs.figures.windows import consistency, excitation, gramian
 
@@ -20,13 +22,16 @@ __all__ = [
     "consistency",
     "depth_errors",
     "distance",
+    "entries",
     "error_norm",
     "excitation",
     "gramian",
     "image_plane",
     "quantities",
     "runs_over_time",
+    "scan",
     "scene",
     "signals",
+    "trust",
     "velocities",
 ]

@@ -79,6 +79,8 @@ class Consistency:
         N, the number of samples that a moving average holds.
     confidence : float
         Probability of the two-sided intervals.
+    whitened : array of shape (K, outputs)
+        See `Run.whitened`.
     """
 
     time: Array
@@ -86,6 +88,7 @@ class Consistency:
     outputs: int
     samples: int
     confidence: float
+    whitened: Array
 
     @property
     def averages(self) -> Array:
@@ -111,6 +114,24 @@ class Consistency:
         return float(low) / count, float(high) / count
 
     @property
+    def autocorrelation(self) -> float:
+        """Of each normalised innovation with the one before it, over all outputs; 0 is expected."""
+        return float((self.whitened[1:] * self.whitened[:-1]).sum() / (self.whitened**2).sum())
+
+    @property
+    def white(self) -> bool:
+        """Whether the autocorrelation is as small as it is, with the probability `confidence`, in white noise."""
+        from scipy.stats import norm
+
+        return bool(abs(self.autocorrelation) <= norm.ppf((1 + self.confidence) / 2) / np.sqrt(self.whitened.size))
+
+    @property
+    def whiteness(self) -> str:
+        """The same in words, with the number."""
+        means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
+        return f"The innovations are {means}; neighbours have the correlation {self.autocorrelation:.2g}"
+
+    @property
     def judgement(self) -> str:
         """One of "consistent", "overconfident" (innovations are too large) and "conservative" (too small)."""
         low, high = self.interval(len(self.nis))
@@ -132,7 +153,7 @@ class Consistency:
         inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
         return (
             f"{self.summary}. Of the moving averages of {self.samples} samples {100 * inside:.0f} % lie in their "
-            f"interval, {lowest:.3g} to {highest:.3g}"
+            f"interval, {lowest:.3g} to {highest:.3g}. {self.whiteness}"
         )
 
     def __repr__(self) -> str:
@@ -179,4 +200,5 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     found = int(counted.sum())
     if not 1 <= samples <= found:
         raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} after {after} s")
-    return Consistency(run.time[counted], nis[counted], len(run.observer.form.x1), samples, confidence)
+    outputs = len(run.observer.form.x1)
+    return Consistency(run.time[counted], nis[counted], outputs, samples, confidence, run.whitened[counted])

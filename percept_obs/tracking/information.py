@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,12 @@ FEWEST = 20
 SPLIT = 500
 """Steps at most into which a window is divided; between their ends the outputs are interpolated."""
 
+LONGER = 2
+"""How often the window that is enough is doubled once more, to see whether the known motion still explains it."""
+
+SURELY = 3.5
+"""Standard deviations by which an autocorrelation must differ from that of white noise to be one."""
+
 FINEST = 1e-6
 """Noise of the best measurement, relative to the output's size: no camera is better, and rounding is not far below."""
 
@@ -48,6 +54,8 @@ class Information:
         Over how many seconds at the end the samples tell nothing; 0 where every window of them tells something.
     noise : array of shape (m,)
         Standard deviation of the measured outputs, as given or as large as what is left of them.
+    longer : tuple of Information
+        What longer windows tell, which agrees if the motion is as it is known.
     """
 
     estimate: Array
@@ -55,6 +63,17 @@ class Information:
     window: float
     unexcited: float
     noise: Array
+    longer: tuple[Information, ...] = ()
+
+    def disagreement(self, view: View, known: Array) -> float:
+        """How far longer windows are from it, relatively, beyond what the noise of both explains, or how vague."""
+        return max((self._beyond(other, view, known) for other in self.longer), default=0.0)
+
+    def _beyond(self, other: Information, view: View, known: Array) -> float:
+        if not other.deviation < NOTHING:
+            return math.inf
+        apart = float(view.relative_error(self.estimate[None], other.estimate[None], known)[0])
+        return max(apart - 2 * (self.deviation + other.deviation), 2 * (other.deviation - self.deviation))
 
 
 ROUNDING = 1e-7
@@ -84,16 +103,19 @@ def gathered(fit: Fit, elapsed: Array, guess: Array) -> Information:
     """
     guesses = [guess] if np.isfinite(guess).all() else []
     count, length, unexcited = len(elapsed), min(FEWEST, len(elapsed)), 0.0
+    found: list[Information] = []
     while True:
         first = count - length
         window = float(elapsed[-1] - elapsed[first])
         estimate, deviation, noise = fit(first, guesses)
-        if deviation >= NOTHING:
+        if deviation >= NOTHING and not found:
             unexcited = window
-        else:
+        elif deviation < NOTHING:
             guesses = [*guesses[:1], estimate]
-        if deviation <= ENOUGH or first == 0:
-            return Information(estimate, deviation, window, unexcited, noise)
+        if found or deviation <= ENOUGH or first == 0:
+            found.append(Information(estimate, deviation, window, unexcited, noise))
+        if len(found) > LONGER or first == 0:
+            return replace(found[0], longer=tuple(found[1:]))
         length = min(2 * length, count)
 
 
@@ -128,9 +150,12 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         for _ in range(2):
             start, left, jacobian = _least_squares(backwards, samples, noise, start)
             of_each = np.sqrt((left**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
+            if _lengthened(left / np.maximum(of_each, finest)) > 1:  # it drifts: no reason to believe one output more
+                of_each[:] = math.sqrt((of_each**2).mean())
             before, noise = noise, np.maximum(of_each, finest)
         weighted = jacobian * (before / noise)[np.nonzero(seen)[1]][:, None]
         deviations = np.array([_deviation(weighted, k) for k in range(size)])[order]
+        deviations *= _lengthened(left / noise) if (of_each > finest).any() else 1.0
         return start[order], relative_deviation(view, start[order], deviations, at_end), noise
 
     return fit
@@ -167,6 +192,16 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
         return np.asarray(CubicSpline(nodes[::-1] - time[0], states[::-1])(time - time[0]))
 
     return outputs
+
+
+def _lengthened(left: Array) -> float:
+    """By how much a standard deviation grows where what is left of the samples drifts: each tells little anew.
+
+    With the correlation r of neighbours, N samples count as N (1 - r)/(1 + r), as for a process of first order.
+    """
+    pairs = np.count_nonzero(left[1:] * left[:-1])
+    r = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), np.finfo(float).tiny))
+    return math.sqrt((1 + r) / (1 - r)) if r * math.sqrt(pairs) > SURELY else 1.0
 
 
 def _deviation(jacobian: Array, k: int) -> float:

@@ -121,23 +121,74 @@ class Run:
         """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
 
         Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost or is the
-        start itself, or where P equals R to rounding.  With the residual r after the update, its covariance R - P and
-        r = R S^-1 (innovation), the squared innovation is r^T (R - P)^-1 r.
+        start itself, or where P equals R to rounding.  For what is raised see `whitened`.
+        """
+        return np.asarray((self.whitened**2).sum(axis=1))
+
+    @cached_property
+    def whitened(self) -> Array:
+        """Innovations before the update, normalised to the identity as their covariance, shape (K, n1).
+
+        With the residual r after the update, its covariance R - P and r = R S^-1 (innovation), they are
+        (R - P)^(-1/2) r: a rotation of S^(-1/2) (innovation), with the same squared norm, the `nis`.
 
         Raises
         ------
         ValueError
             If the observer claims no covariance or has no measurement update.
         """
+        values, vectors = self._left
+        across = np.swapaxes(vectors, 1, 2) @ self.innovation[:, :, None]
+        return np.asarray((vectors @ (across / np.sqrt(values)[:, :, None]))[:, :, 0])
+
+    @cached_property
+    def log_likelihood(self) -> Array:
+        """Logarithm of the probability density that the observer gives each innovation, shape (K,); NaN as `nis`.
+
+        For what is raised see `whitened`.
+        """
+        values, _ = self._left
+        log_det = (2 * math.log(self._noise_variance) - np.log(values)).sum(axis=1)  # of S = R (R - P)^-1 R
+        return np.asarray(-(self.nis + log_det + values.shape[1] * math.log(2 * math.pi)) / 2)
+
+    @cached_property
+    def _left(self) -> tuple[Array, Array]:
+        """Eigenvalues, NaN unless positive, and eigenvectors of the covariance R - P that an update leaves."""
         measured = self._columns(self.observer.form.measured)
         claimed = self.covariance[:, measured][:, :, measured]
+        left = self._noise_variance * np.eye(len(measured)) - claimed
+        there = np.asarray(np.isfinite(left).all(axis=(1, 2)))
+        values, vectors = np.linalg.eigh(np.where(there[:, None, None], left, np.eye(len(measured))))
+        return np.where(there[:, None] & (values > 0), values, np.nan), vectors
+
+    @property
+    def _noise_variance(self) -> float:
         variance = dict((gain.name, gain.value) for gain in self.observer.gains).get("noise_variance")
         if variance is None or not self.observer.equations.update:
             raise ValueError(f"the {self.observer.name} observer has no measurement update")
-        residual = self.innovation[:, :, None]
-        left = variance * np.eye(len(measured)) - claimed
-        left[np.linalg.det(left) == 0] = np.nan
-        return (np.swapaxes(residual, 1, 2) @ np.linalg.solve(left, residual))[:, 0, 0]
+        return variance
+
+    def nees(self, *names: str) -> Array:
+        """Normalised estimation error squared (NEES): that over its claimed variance, shape (K,).
+
+        Its mean is the number of coordinates if the claims are right; its median is 0.45 for one.
+
+        Parameters
+        ----------
+        *names : str
+            Coordinates that it is taken of; all hidden ones when left out.
+
+        Raises
+        ------
+        ValueError
+            If there is no truth or no such coordinate, or the observer claims no covariance.
+        """
+        columns = self._columns(names)
+        claimed = self.covariance[:, columns][:, :, columns]
+        there = np.asarray(np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0))
+        claimed = np.where(there[:, None, None], claimed, np.nan)
+        error = self.error[:, columns, None]
+        return np.asarray((np.swapaxes(error, 1, 2) @ np.linalg.solve(claimed, error))[:, 0, 0])
 
     @cached_property
     def points(self) -> Array:
@@ -208,6 +259,9 @@ class Run:
         said = partial(said, information=found)
         if not 2 * found.deviation <= tolerance:
             return said("vague" if found.deviation < NOTHING else "hidden")
+        disagreement = found.disagreement(view, known)
+        if disagreement > tolerance:
+            return said("contradicted", disagreement=disagreement)
         difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
         agrees = difference <= tolerance + 2 * found.deviation
         return said("agrees" if agrees else "differs", difference=difference)

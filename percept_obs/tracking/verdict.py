@@ -65,6 +65,13 @@ VERDICTS = MappingProxyType(
 """What a verdict says, by what happened; live labs use the same words.  Times count from the first sample."""
 
 
+CONTRADICTED = (
+    "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so "
+    "that the motion is not as it is known"
+)
+"""The same where samples contradict the motion; live labs, which know the truth, do not say it."""
+
+
 def for_the_page() -> dict[str, Any]:
     """The same words and numbers for live labs."""
     return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
@@ -102,8 +109,9 @@ class Trust:
     Parameters
     ----------
     kind : str
-        "agrees" (with what the samples tell), "differs", "vague" (they tell too little), "hidden" (they tell nothing),
-        "nowhere" (the estimate is infinitely far away or behind the camera) or "no estimate".
+        "agrees" (with what the samples tell), "differs", "contradicted" (longer windows tell something else, so that
+        the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
+        estimate is infinitely far away or behind the camera) or "no estimate".
     judged : str
         What the estimate is of.
     length : float
@@ -111,7 +119,9 @@ class Trust:
     information : Information, optional
         What the samples tell.
     difference : float
-        How far the estimate is from that, relatively; NaN where they tell too little.
+        How far the estimate is from that, relatively; NaN where they tell too little or contradict each other.
+    disagreement : float
+        See `Information.disagreement`.
     claimed : float, optional
         The relative standard deviation that the observer claims, if it claims one.
     """
@@ -121,6 +131,7 @@ class Trust:
     length: float
     information: Information | None = None
     difference: float = math.nan
+    disagreement: float = 0.0
     claimed: float | None = None
 
     @property
@@ -135,12 +146,12 @@ class Trust:
 
     def __str__(self) -> str:
         """What is known, in words."""
-        words = {"judged": self.judged, "difference": percent(self.difference)}
+        words = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
         words |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = VERDICTS[self.kind].format(**words)
+        said = (CONTRADICTED if self.kind == "contradicted" else VERDICTS[self.kind]).format(**words)
         if unexcited >= SETTLED_PART * self.length:
             said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:

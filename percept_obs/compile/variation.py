@@ -1,0 +1,87 @@
+"""The variational equations: how a state changes along with the parameters of its equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from percept_obs.compile.equations import Equations, Expressions, Symbols
+
+
+def slopes(symbols: Sequence[sp.Symbol]) -> Symbols:
+    """Symbols of the changes of some symbols: d_y1 for y1."""
+    return tuple(sp.Symbol(f"d_{symbol.name}", real=True) for symbol in symbols)
+
+
+def slope(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Expressions:
+    """How expressions change, to first order, when symbols change by their `slopes`.
+
+    A sign counts as constant: it jumps at single instants only.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from percept_obs.compile.variation import slope
+    >>> x = sp.Symbol("x", real=True)
+    >>> slope([x**2], [x])
+    (2*d_x*x,)
+    """
+    changes = dict(zip(symbols, slopes(symbols), strict=True))
+    return tuple(
+        sum(
+            (
+                expression.diff(symbol).replace(sp.DiracDelta, lambda *_: sp.S.Zero) * changes[symbol]
+                for symbol in symbols
+                if expression.has(symbol)
+            ),
+            sp.S.Zero,
+        )
+        for expression in map(sp.sympify, expressions)
+    )
+
+
+def variation(equations: Equations, moved: Sequence[sp.Symbol]) -> Equations:
+    """The equations together with the change of their state when some of their parameters change.
+
+    With the state x, the parameters p and their changes dx and dp::
+
+        x' = f(x, p),   dx' = (df/dx) dx + (df/dp) dp
+
+    and alike at a sample and at a reset.  Stepped by the same method this is the derivative of the stepped state
+    itself, not only of the solution that it approximates; a change that moves a reset by a step is left out.
+
+    Parameters
+    ----------
+    equations : Equations
+    moved : sequence of symbols
+        Those of its parameters that change; their `slopes` become parameters behind all others.
+
+    Returns
+    -------
+    Equations
+        Of the state (x, dx).
+
+    Raises
+    ------
+    ValueError
+        If one is no parameter of the equations.
+    """
+    strange = [str(symbol) for symbol in moved if symbol not in equations.parameters]
+    if strange:
+        known = ", ".join(map(str, equations.parameters)) or "none"
+        raise ValueError(f"the equations have no parameter {', '.join(strange)}; they have {known}")
+    variables = (*equations.state, *moved)
+
+    def both(expressions: Expressions) -> Expressions:
+        return (*expressions, *slope(expressions, variables)) if expressions else ()
+
+    return replace(
+        equations,
+        state=(*equations.state, *slopes(equations.state)),
+        flow=both(equations.flow),
+        parameters=(*equations.parameters, *slopes(moved)),
+        update=tuple(map(both, equations.update)),
+        reset=both(equations.reset),
+    )

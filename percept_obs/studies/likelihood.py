@@ -1,0 +1,191 @@
+"""Tuning without a truth: the gains under which a filter finds its own innovations most likely."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from percept_obs.border import checked
+from percept_obs.compile import Array
+from percept_obs.observers.base import Observer
+from percept_obs.recording import Recording
+from percept_obs.system.signal import from_the_start
+from percept_obs.tracking.following import StepTooLong
+from percept_obs.tracking.run import Run
+
+Follow = Callable[[Recording, Observer], Run]
+
+EDGE = 0.02
+"""Part of a range, in powers of ten, within which a gain counts as being at its end."""
+
+MOST = 80
+"""Settings that are tried at most from each start."""
+
+
+NEEDED = 1.92
+"""By how much the log-likelihood must fall without a doubt for that to stay: 95 % of chi-squared with one degree."""
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class Tuned:
+    """A filter whose gains were chosen by the likelihood of its innovations.
+
+    Parameters
+    ----------
+    observer : Observer
+        With the chosen gains.
+    gains : mapping of names to values
+        Those that were chosen.
+    at_edge : tuple of str
+        Names of those at an end of what was tried, beyond which better ones may lie.
+    log_likelihood : float
+        Of all innovations of the recordings.
+    tried : int
+        How many settings were tried.
+    """
+
+    observer: Observer
+    gains: Mapping[str, float]
+    at_edge: tuple[str, ...]
+    log_likelihood: float
+    tried: int
+
+    def __repr__(self) -> str:
+        gains = ", ".join(f"{name} {value:.3g}" for name, value in self.gains.items())
+        edge = f"; at the edge of what was tried: {', '.join(self.at_edge)}" if self.at_edge else ""
+        return f"<Tuned {self.observer.name}: {gains}, log-likelihood {self.log_likelihood:.5g}{edge}>"
+
+
+@checked
+def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
+    """Logarithm of the probability density that a filter gives all innovations of some runs.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        Of an observer that claims a covariance and has a measurement update.
+    after : float
+        Seconds since the first sample of each run to leave out.
+
+    Returns
+    -------
+    float
+        Minus infinity if a run diverged.
+
+    Raises
+    ------
+    ValueError
+        If there is no run, or an observer claims no covariance or has no measurement update.
+    """
+    if not len(runs):
+        raise ValueError("there is no run; give one at least, such as [track(recording, ekf(form))]")
+    if not after >= 0:
+        raise ValueError(f"after is {after} s; it must not be negative")
+    if any(run.diverged_at is not None for run in runs):
+        return -math.inf
+    return float(sum(np.nansum(run.log_likelihood[from_the_start(run.elapsed, after)]) for run in runs))
+
+
+@checked
+def tune_by_likelihood(
+    recordings: Sequence[Recording],
+    observer: Observer,
+    ranges: Mapping[str, Sequence[float]],
+    follow: Follow,
+    after: float = 0.0,
+) -> Tuned:
+    """Choose a filter's gains such that its innovations are as likely as they can be; no truth is needed.
+
+    The likelihood punishes both claims: a small variance makes a large innovation unlikely, a large one makes every
+    innovation unlikely.  A gain that may be 0, such as a process noise, is 0 if the innovations do not clearly speak
+    against it.  Choose on some recordings and report on others.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    observer : Observer
+        That claims a covariance and has a measurement update, such as the extended Kalman filter.
+    ranges : mapping of names of gains to pairs of their smallest and largest values
+        Positive; powers of ten between them are searched, from the middle and from two other places.
+    follow : function of (recording, observer)
+        How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
+    after : float
+        Seconds since the first sample of each recording whose innovations do not count.
+
+    Returns
+    -------
+    Tuned
+
+    Raises
+    ------
+    ValueError
+        If there are no recordings or no gains, a range makes no sense, or every setting diverges.
+
+    Notes
+    -----
+    Mehra, On the identification of variances and adaptive Kalman filtering, IEEE Trans. Automatic Control 15(2), 1970.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
+    >>> from percept_obs.studies.likelihood import tune_by_likelihood
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = [record(scenarios.ma2005_eq35(), 4, Camera(0.05, Gaussian(0.01)), seed=1)]
+    >>> found = tune_by_likelihood(seen, ekf(form), {"noise_variance": (1e-6, 1e-2)}, lambda r, o: track(r, o))
+    >>> 0.7e-4 < found.gains["noise_variance"] < 1.4e-4
+    True
+    """
+    from scipy.optimize import minimize
+
+    if not len(recordings) or not ranges:
+        raise ValueError(f"{len(recordings)} recordings and {len(ranges)} gains: at least one of each is needed")
+    for name, ends in ranges.items():
+        if len(ends) != 2 or not 0 < ends[0] < ends[1] < math.inf:
+            raise ValueError(f"the range of {name} is {tuple(ends)}; give a smallest and a largest positive value")
+    names = tuple(ranges)
+    low, high = np.log10(np.array([ranges[name] for name in names], dtype=float)).T
+    found: dict[tuple[float, ...], float] = {}
+
+    def unlikely_with(gains: Mapping[str, float]) -> float:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
+            runs = [follow(recording, observer.with_gains(**gains)) for recording in recordings]
+        return -log_likelihood(runs, after)
+
+    def gains_at(place: Sequence[float]) -> dict[str, float]:
+        return dict(zip(names, (10.0 ** np.array(place)).tolist(), strict=True))
+
+    def unlikely(place: Array) -> float:
+        key = tuple(np.clip(place, low, high).tolist())
+        if key not in found:
+            found[key] = unlikely_with(gains_at(key))
+        return found[key]
+
+    for share in (0.5, 0.25, 0.75):
+        start = low + share * (high - low)
+        corners = np.vstack([start, start + np.diag(np.where(share < 0.6, 0.2, -0.2) * (high - low))])
+        minimize(
+            unlikely,
+            start,
+            method="Nelder-Mead",
+            options={"initial_simplex": corners, "maxfev": MOST, "xatol": 0.02, "fatol": 0.05},
+        )
+    best = min(found, key=lambda place: found[place])
+    least, gains = found[best], gains_at(best)
+    if not math.isfinite(least):
+        raise ValueError(f"the {observer.name} observer diverged with every setting in the ranges; try others")
+    near = np.minimum(best - low, high - best) <= EDGE * (high - low)
+    at_edge = [name for name, is_near in zip(names, near.tolist(), strict=True) if is_near]
+    for gain in observer.gains:
+        if gain.name in gains and gain.condition.subs(gain.symbol, 0):
+            without = gains | {gain.name: 0.0}
+            also = unlikely_with(without)
+            if also < least + NEEDED:
+                least, gains = also, without
+    at_edge = [name for name in at_edge if gains[name]]
+    return Tuned(observer.with_gains(**gains), gains, tuple(at_edge), -least, len(found))

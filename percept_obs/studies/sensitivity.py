@@ -1,0 +1,226 @@
+"""How an observer's estimate changes with each entry of the motion that it believes in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from percept_obs.border import checked
+from percept_obs.compile import Array
+from percept_obs.compile.variation import slope, slopes, variation
+from percept_obs.observers.base import Observer
+from percept_obs.recording import Recording
+from percept_obs.system.motion import TIME, Motion
+from percept_obs.system.signal import OverTime, Signal
+from percept_obs.tracking.following import track
+from percept_obs.tracking.run import Run
+
+SHARE = 0.01
+"""The share of a motion's size by which an entry is taken to be wrong, unless another is asked for."""
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class Sensitivity:
+    """Derivatives of an estimate with respect to entries of the believed motion.
+
+    Parameters
+    ----------
+    run : Run
+        With the motion as it is believed.
+    entries : tuple of str
+        Names of q entries, such as "a13", "b3" or "w2".
+    derivatives : array of shape (K, n, q)
+        Of the estimates at the samples; NaN where there is no estimate.
+    sizes : array of shape (q,)
+        Root mean square over the run of the part of the motion to which an entry belongs: of all entries of A in 1/s,
+        or of all of b in m/s.
+    """
+
+    run: Run
+    entries: tuple[str, ...]
+    derivatives: Array
+    sizes: Array
+
+    def change(self, **errors: float) -> Array:
+        """By how much the estimates change, to first order, when entries are believed larger by so much, shape (K, n).
+
+        Raises
+        ------
+        ValueError
+            If a name is none of the `entries`.
+        """
+        changes = np.zeros(len(self.entries))
+        for name, value in errors.items():
+            changes[self._column(name)] = value
+        return np.asarray(self.derivatives @ changes)
+
+    def distance_change(self, share: float = SHARE) -> Array:
+        """By which share the distance changes when each entry is off by a share of its part's size, shape (K, q)."""
+        view = self.run.view
+        inverse = view.inverse(self.run.estimate)
+        slope_of_inverse = np.stack(
+            [view.inverse(self.derivatives[:, :, k]) for k in range(len(self.entries))], axis=-1
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(-slope_of_inverse * share * self.sizes / inverse[:, None])
+
+    def ranking(self, share: float = SHARE) -> dict[str, float]:
+        """Entries with the median size of their `distance_change` over the last half of the run, the largest first."""
+        late = np.abs(self.distance_change(share)[len(self.run.time) // 2 :])
+        medians = [float(np.median(column[np.isfinite(column)])) for column in late.T]
+        order = np.argsort(medians)[::-1]
+        return {self.entries[k]: medians[k] for k in order}
+
+    def _column(self, name: str) -> int:
+        if name not in self.entries:
+            raise ValueError(f"the sensitivity has no entry {name!r}; it has {', '.join(self.entries)}")
+        return self.entries.index(name)
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} {100 * value:.2g} %" for name, value in list(self.ranking().items())[:3])
+        return (
+            f"<Sensitivity of the {self.run.observer.name} observer to {len(self.entries)} entries; {100 * SHARE:g} % "
+            f"of the motion's size in one moves the distance most for {told}>"
+        )
+
+
+@checked
+def sensitivity(
+    recording: Recording,
+    observer: Observer,
+    start: Any = None,
+    entries: Sequence[str] | None = None,
+    believed: Motion | None = None,
+    **settings: Any,
+) -> Sensitivity:
+    """Derivative of an observer's estimate with respect to entries of the believed motion, along a run.
+
+    It steps the variational equations, which follow from the observer's own: flow, measurement update, reset, start
+    and estimate, each differentiated.
+
+    Parameters
+    ----------
+    recording : Recording
+    observer : Observer
+    start : see `track`
+    entries : sequence of str, optional
+        Such as "a13", "b3" or "w2"; every entry of the motion when left out.
+    believed : Motion, optional
+        The recording's own when left out.
+    **settings
+        Passed to `track`, such as ``hold``.
+
+    Raises
+    ------
+    ValueError
+        If the motion has no such entry, or none at all.
+    DoesNotFit
+        If the observer cannot follow the recording.
+
+    Notes
+    -----
+    Where an observer switches by a sign, or a change of the motion moves a reset, a first derivative predicts little.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios
+    >>> from percept_obs.studies.sensitivity import sensitivity
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = sensitivity(record(scenarios.ma2005_eq35(), 5), ibo(form), entries=("a13", "b3"))
+    >>> found.derivatives.shape
+    (501, 3, 2)
+    """
+    motion = recording.motion if believed is None else believed
+    moved = _moved(motion, entries)
+    run = track(recording, observer, start, believed=motion, **settings)
+    form, eq = observer.form, observer.equations
+    others = form.parameters[len(motion.parameters) :]
+    known = (*motion.parameters, *slopes(moved), *others)
+    varied = replace(
+        observer,
+        form=replace(form, parameters=known),
+        equations=replace(variation(eq, moved), parameters=known),
+        start=(*observer.start, *slope(observer.start, moved)),
+        estimate=slope(observer.estimate, (*eq.state, *moved)),
+        covariance=None,
+        unobservable=(),
+        fastest=None,
+    )
+    columns = []
+    for direction in np.eye(len(moved)):
+        along = _beside(motion, moved, direction)
+        columns.append(track(recording, varied, start, believed=along, **settings).estimate)
+    derivatives = np.stack(columns, axis=-1)
+    derivatives[np.isnan(run.estimate)] = np.nan
+    return Sensitivity(run, tuple(symbol.name for symbol in moved), derivatives, _sizes(motion, moved, recording.time))
+
+
+@checked
+def misbelieved(motion: Motion, **errors: float) -> Motion:
+    """The motion with some entries larger by so much at all times.
+
+    Parameters
+    ----------
+    motion : Motion
+        With numbers.
+    **errors : float
+        By names of entries, such as ``b3=0.006``.
+
+    Raises
+    ------
+    ValueError
+        If the motion has no such entry.
+
+    Examples
+    --------
+    >>> from percept_obs import scenarios
+    >>> from percept_obs.studies.sensitivity import misbelieved
+    >>> b3 = misbelieved(scenarios.ma2005_eq35().motion, b3=0.006).values
+    >>> [round(value, 4) for symbol, value in b3.items() if symbol.name == "b3"]
+    [0.306]
+    """
+    moved = _moved(motion, tuple(errors))
+    change = np.array([errors[s.name] if s in moved else 0.0 for s in motion.parameters])
+    return replace(motion, signal=_mapped(motion, lambda rows: rows + change))
+
+
+def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ...]:
+    """The entries' symbols."""
+    there = {symbol.name: symbol for symbol in motion.parameters if symbol != TIME}
+    if not there or motion.signal is None:
+        raise ValueError(
+            f"the {motion.name} motion has no entries with numbers that could be wrong; give its coefficients as "
+            "arrays or as functions of time"
+        )
+    strange = [name for name in entries or () if name not in there]
+    if strange or (entries is not None and not len(entries)):
+        raise ValueError(f"the {motion.name} motion has no entry {', '.join(strange)}; it has {', '.join(there)}")
+    return tuple(there[name] for name in (there if entries is None else entries))
+
+
+def _beside(motion: Motion, moved: Sequence[sp.Symbol], direction: Array) -> Motion:
+    """The motion with the changes of its entries as parameters of their own."""
+    beside = _mapped(motion, lambda rows: np.hstack([rows, np.broadcast_to(direction, (len(rows), len(direction)))]))
+    return replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=beside)
+
+
+def _mapped(motion: Motion, of: Any) -> Signal:
+    """A signal whose rows are a function of the motion's."""
+    signal = motion.signal
+    assert signal is not None
+    if callable(signal.samples):
+        return Signal(OverTime(lambda times: of(motion.known(times))))
+    return Signal(of(signal.samples), signal.times)
+
+
+def _sizes(motion: Motion, moved: Sequence[sp.Symbol], time: Array) -> Array:
+    """Root mean square over time of the norm of all entries of A, or of all of b, to which each entry belongs."""
+    rows = motion.known(time)
+    in_A = np.array([symbol in motion.A.free_symbols for symbol in motion.parameters])
+    sizes = {part: float(np.sqrt((rows[:, in_A == part] ** 2).sum(axis=1).mean())) for part in (True, False)}
+    return np.array([sizes[symbol in motion.A.free_symbols] for symbol in moved])

@@ -1,0 +1,125 @@
+"""How far an estimate can be trusted at several times of a run, by what was known then and without a truth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from percept_obs.border import checked
+from percept_obs.compile import Array, Flags
+from percept_obs.tracking.information import FEWEST
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE, Trust
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class TrustOverTime:
+    """What could be said of an estimate at some times.
+
+    Parameters
+    ----------
+    run : Run
+    tolerance : float
+        Relative error up to which an estimate is to be trusted.
+    index : array of shape (T,) of int
+        Numbers of the samples at which it was asked.
+    trusts : tuple of T Trust
+        Each by the samples up to then.
+    """
+
+    run: Run
+    tolerance: float
+    index: Array
+    trusts: tuple[Trust, ...]
+
+    @property
+    def time(self) -> Array:
+        """Seconds since the first sample, shape (T,)."""
+        return np.asarray(self.run.elapsed[self.index])
+
+    @property
+    def trusted(self) -> Flags:
+        """Where the estimate could be trusted, shape (T,)."""
+        return np.array([trust.trusted for trust in self.trusts])
+
+    @property
+    def unexcited(self) -> Array:
+        """For how many seconds the samples had told nothing, shape (T,)."""
+        found = [trust.information for trust in self.trusts]
+        return np.array([0.0 if information is None else information.unexcited for information in found])
+
+    @property
+    def deviation(self) -> Array:
+        """Relative standard deviation of what the samples told, shape (T,); infinite where that was nothing."""
+        return np.array([np.inf if trust.information is None else trust.information.deviation for trust in self.trusts])
+
+    @property
+    def told(self) -> Array:
+        """The distance in metres that the samples told, shape (T,); NaN where they told nothing."""
+        view, found = self.run.view, np.full(len(self.trusts), np.nan)
+        for k, trust in enumerate(self.trusts):
+            if trust.information is not None and trust.information.deviation < 1:
+                found[k] = 1 / view.inverse(trust.information.estimate)
+        return found
+
+    @property
+    def sentence(self) -> str:
+        """When it could be trusted, and how it stands at the end."""
+        share = f"{100 * self.trusted.mean():.0f} % of {len(self.trusts)} times"
+        return (
+            f"Trusted at {share}, hardly excited at {int(self.unexcited.sum())}. At the end: {self.trusts[-1].sentence}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<TrustOverTime of the {self.run.observer.name} observer: {self.sentence}>"
+
+
+@checked
+def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> TrustOverTime:
+    """Ask `Run.trust` at several times, each time with the samples up to then only.
+
+    Parameters
+    ----------
+    run : Run
+        Of one point.
+    tolerance : float
+        Relative, as for `Run.trust`.
+    count : int
+        Number of times, evenly spread from the first at which there are enough samples to the end.
+
+    Raises
+    ------
+    ValueError
+        If the run shows several points or has too few samples, or a number makes no sense.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> from percept_obs.studies.trust import trust_over_time
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> run = track(record(scenarios.ma2005_eq35(), 6, Camera(0.02, Gaussian(0.003)), seed=1), ibo(form))
+    >>> trust_over_time(run, count=4).trusted.tolist()
+    [False, True, True, True]
+    """
+    length = len(run.recording.imaging_surface.coordinates) and len(run.time)
+    if length < 2 * FEWEST:
+        raise ValueError(f"the run has {length} samples; {2 * FEWEST} are needed to say how far it can be trusted")
+    if not 1 <= count <= length:
+        raise ValueError(f"{count} times were asked for; from 1 to the {length} samples of the run make sense")
+    index = np.unique(np.linspace(length - 1, FEWEST, count).astype(int))
+    return TrustOverTime(run, tolerance, index, tuple(_until(run, int(k)).trust(tolerance) for k in index))
+
+
+def _until(run: Run, last: int) -> Run:
+    """The run as it was at one of its samples."""
+    end = last + 1
+    return replace(
+        run,
+        recording=run.recording.between(run.time[0], run.time[last]),
+        estimate=run.estimate[:end],
+        state=run.state[:end],
+        resets=run.resets[run.resets <= run.time[last]],
+        unobservable=run.unobservable[:end],
+    )

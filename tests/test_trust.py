@@ -1,0 +1,95 @@
+"""What cannot be right is flagged without a truth, good estimates are not, and a picture says when."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from distrust_study import FORM, RIGHT, WRONG, drawn, flagged, judged
+from sample_sizes import sampled
+
+from percept_obs import Camera, Gaussian, Scenario, ekf, pinhole, record, rigid, track
+from percept_obs.figures import trust
+from percept_obs.observers import OBSERVERS
+from percept_obs.studies.trust import trust_over_time
+
+STILL = (0.0, 0.0, 0.0)
+FILTER = ekf(FORM, noise_variance=4e-6, hidden_variance=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", sampled(OBSERVERS[2:3], OBSERVERS), ids=lambda make: make.key)
+def test_what_cannot_be_right_is_flagged_and_good_ones_are_not(make):
+    """100 of each for every observer with ALL_SAMPLES=1."""
+    count = sampled(3, 100)
+    for kind in WRONG:
+        assert flagged(make, kind, count)[0] >= 0.95, kind
+    share, counted = flagged(make, "good", count)
+    assert counted
+    assert share <= 0.05
+
+
+@pytest.mark.slow
+def test_an_object_that_moves_is_not_trusted_and_a_good_estimate_is():
+    assert not judged(OBSERVERS[2], 0, "moving object")[1].trusted
+    error, good = judged(OBSERVERS[2], 1, "good")
+    assert error < RIGHT
+    assert good.trusted
+
+
+def test_a_longer_window_that_tells_something_else_is_said():
+    recording, _ = drawn(1, "good")
+    run = track(recording, FILTER, {"y3": 0.3})
+    found = run.information
+    assert 1 <= len(found.longer) <= 2
+    known = recording.motion.known(recording.time[-1:])
+    assert found.disagreement(run.view, known) < 0.05
+    (other, *_) = found.longer
+    far = replace(other, estimate=other.estimate * [1, 1, 2], deviation=0.01)
+    apart = replace(found, longer=(far,)).disagreement(run.view, known)
+    assert apart == pytest.approx(0.5 - 2 * (found.deviation + 0.01), abs=0.05)
+    lost = replace(other, deviation=np.inf)
+    assert replace(found, longer=(lost,)).disagreement(run.view, known) == np.inf
+
+
+def paused(truth=True):
+    """A camera that stands for 1.6 s and then moves."""
+    motion = rigid(STILL, lambda t: [0.4 * max(0, -np.cos(t)), 0, 0], STILL)
+    seen = record(Scenario("paused", motion, (0.6, 0.2, 3), 4, pinhole()), camera=Camera(0.05, Gaussian(0.002)), seed=1)
+    return seen if truth else replace(seen, truth=None, signal=None)
+
+
+@pytest.mark.slow
+def test_a_pause_is_shaded_and_not_trusted():
+    found = trust_over_time(track(paused(), FILTER, {"y3": 0.25}), count=6)
+    assert not found.trusted[0]
+    assert found.unexcited[0] == pytest.approx(found.time[0], abs=0.06)
+    assert found.trusted[-1]
+    assert found.told[-1] == pytest.approx(3, rel=0.1)
+    assert np.isnan(found.told[0])
+    drawn_trust = trust(found)
+    assert found.sentence in drawn_trust.text
+    assert len(drawn_trust.axes[0].collections) >= 2
+    blind = trust_over_time(track(paused(truth=False), FILTER, {"y3": 0.25}), count=6)
+    np.testing.assert_array_equal(blind.trusted, found.trusted)
+    assert "truth" not in [line.get_label() for line in trust(blind).axes[0].lines]
+
+
+def test_it_says_what_was_known_then():
+    """What comes later changes nothing."""
+    run = track(paused(), FILTER, {"y3": 0.25})
+    early = trust_over_time(track(paused().between(0, run.time[50]), FILTER, {"y3": 0.25}), count=1)
+    whole = trust_over_time(run, count=3)
+    assert whole.index.tolist() == [20, 50, 80]
+    assert str(early.trusts[0]) == str(whole.trusts[1])
+
+
+def test_what_makes_no_sense_is_refused():
+    run = track(paused(), FILTER)
+    for ask, message in (
+        (lambda: trust_over_time(run, count=0), "0 times were asked for"),
+        (lambda: trust_over_time(run, tolerance=0), "must be positive"),
+        (lambda: trust_over_time(track(paused().between(0, 1), FILTER)), "40 are needed"),
+        (lambda: trust(run), "a TrustOverTime is needed"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            ask()
