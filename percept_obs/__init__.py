@@ -28,7 +28,16 @@ from percept_obs.studies.consistency import check_consistency
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.motion import Motion, affine, linear, rigid
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane, sphere
+from percept_obs.system.surfaces import (
+    BehindCamera,
+    ImagingSurface,
+    chained,
+    ellipsoid,
+    pinhole,
+    plane,
+    sphere,
+    unified,
+)
 from percept_obs.tracking.following import DoesNotFit, track
 from percept_obs.tracking.run import Run
 
@@ -69,6 +78,7 @@ __all__ = [
     "check",
     "check_consistency",
     "ekf",
+    "ellipsoid",
     "extended_kalman",
     "ibo",
     "identifier_based",
@@ -90,6 +100,7 @@ __all__ = [
     "smo",
     "sphere",
     "track",
+    "unified",
     "windowed",
     "with_point",
 ]
