@@ -13,11 +13,11 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.compile import intermediates
 from percept_obs.checking.deciding import explicit, written_out
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Reading, read, words_of
 from percept_obs.checking.tokens import FUNCTIONS, Token, tokens
+from percept_obs.compile import intermediates
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
