@@ -16,7 +16,7 @@ from percept_obs.observers import (
     with_point,
 )
 from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
+from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios, seen_on
 from percept_obs.recording.derivatives import Neighbours, Quadratic, SmoothingSpline
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.pose_files import read_euroc, read_tum
@@ -95,6 +95,7 @@ __all__ = [
     "rigid",
     "rigid_from_poses",
     "scenarios",
+    "seen_on",
     "semigeneral",
     "sliding_mode",
     "smo",

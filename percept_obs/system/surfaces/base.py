@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -192,9 +193,31 @@ class ImagingSurface(OnePoint):
                 f"coordinates have shape {coordinates.shape}; expected (..., {len(self.coordinates)}) for the "
                 f"{self.name}: {', '.join(map(str, self.coordinates))}"
             )
-        ray = np.stack(self._evaluate(self.image_coordinates, self.ray, coordinates[..., :-1]), axis=-1)
+        ray = self.along(coordinates[..., :-1])
         inverse = coordinates[..., -1:]
         return np.divide(ray, inverse, out=np.full_like(ray, np.inf), where=inverse > 0)
+
+    def along(self, image: ArrayLike) -> Array:
+        """Points at the distance 1, shape (..., 3), along the rays of image points of shape (..., m); NaN for none."""
+        with np.errstate(invalid="ignore"):  # a root of what no point of space has for its image
+            return np.stack(self._evaluate(self.image_coordinates, self.ray, np.asarray(image, dtype=float)), axis=-1)
+
+    @cached_property
+    def field_of_view(self) -> float:
+        """The full angle in radians of the largest cone around the optical axis that is seen, up to 2 pi."""
+        turns = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+
+        def seen(angle: float) -> bool:
+            across = np.sin(angle) * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+            return bool(self.sees(np.column_stack([across, np.full(len(turns), np.cos(angle))])).all())
+
+        low, high = 0.0, np.pi
+        if seen(high):
+            return 2 * high
+        for _ in range(50):
+            middle = (low + high) / 2
+            low, high = (middle, high) if seen(middle) else (low, middle)
+        return 2 * low
 
     def _evaluate(self, symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr], values: Array) -> list[Array]:
         missing = [str(s) for s in self.parameters if s not in self.values]
