@@ -30,7 +30,7 @@ from percept_obs.checking.deciding import same
 from percept_obs.compile import Intermediate, definitions, executed, function_source, vectorised
 from percept_obs.system import surfaces
 from percept_obs.system.surfaces.ellipsoid import zeta
-from percept_obs.system.surfaces.unified import mu
+from percept_obs.system.surfaces.lift import mu
 
 THREE = {f"{make.__name__} with three outputs": partial(make, outputs=3) for make in (plane, sphere, ellipsoid)}
 SYMBOLIC = {make.__name__: make for make in surfaces.SURFACES} | THREE

@@ -8,6 +8,7 @@ from functools import cached_property
 import sympy as sp
 
 from percept_obs.border import checked, expression
+from percept_obs.compile import written_out
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 
@@ -46,12 +47,14 @@ class InstantaneousObservability:
     @cached_property
     def zero_set(self) -> list[dict[sp.Symbol, sp.Expr]]:
         """Where all of w vanishes: solutions for the measured outputs, none if there is no such place."""
-        return sp.solve(list(self.form.w), self.form.x1, dict=True)
+        return sp.solve([written_out(entry) for entry in self.form.w], self.form.x1, dict=True)
 
     @cached_property
     def growth(self) -> sp.Expr | None:
         """The factor c if |w|^2 = c |x1 - centre|^2, so that w is small in a circle; None if it is not."""
         x1 = self.form.x1
+        if not all(entry.is_polynomial(*x1) for entry in self.form.w):
+            return None
         curvature = sp.hessian(sum(entry**2 for entry in self.form.w), x1) / 2
         growth = sp.factor(curvature[0, 0])
         same_all_round = (curvature - growth * sp.eye(len(x1))).expand() == sp.zeros(len(x1))

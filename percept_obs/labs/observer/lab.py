@@ -12,16 +12,17 @@ import numpy as np
 
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEMA, STANDARD, as_settings
-from percept_obs.labs.observer.texts import SURFACES, form_of, key_of, observer_of, with_every_gain
+from percept_obs.labs.observer.texts import form_of, key_of, observer_of, with_every_gain
 from percept_obs.labs.observer.tracks import fitting, refused_for, track_for_the_page, with_affine_motion
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.offered import SHAPES, SURFACES, surface_of
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.sampling import as_far_as_seen, exact_path, too_fast, too_short, within_reach
 from percept_obs.labs.shared.schema import Choice, Schema, Settings, gains, standard_gains
 from percept_obs.recording import Camera, Recording, Scenario
 from percept_obs.system.motion import affine
-from percept_obs.system.surfaces import BehindCamera, plane
+from percept_obs.system.surfaces import BehindCamera
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
@@ -163,16 +164,15 @@ def _way(settings: Settings, name: str) -> str:
 
 def _simulated(settings: Settings) -> Recording:
     """What the camera records, as far as the point stays in front of it."""
-    keys = ("surface", "normal", "A", "b", "X0", "noise", "dropout", "seed", "period", "duration")
+    keys = ("surface", *SHAPES.values(), "A", "b", "X0", "noise", "dropout", "seed", "period", "duration")
     return _simulated_once(json.dumps({key: settings[key] for key in keys}))
 
 
 @lru_cache(maxsize=4)
 def _simulated_once(text: str) -> Recording:
     settings = json.loads(text)
-    surface = plane(settings["normal"]) if settings["surface"] == "plane" else SURFACES[settings["surface"]]()
     motion = affine(settings["A"], settings["b"])
-    scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
+    scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface_of(settings))
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])
     return as_far_as_seen(scenario, camera, settings["seed"])

@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
+from percept_obs.labs.shared.offered import SURFACES, shape_of
 from percept_obs.labs.shared.schema import (
     DROPOUT,
     KEPT,
@@ -42,7 +43,7 @@ def as_settings(scenario: Scenario) -> Settings:
     Raises
     ------
     ValueError
-        If the motion varies.
+        If the motion varies, or labs do not offer the surface.
     """
     values = scenario.motion.values
     if not values:
@@ -51,10 +52,8 @@ def as_settings(scenario: Scenario) -> Settings:
             "recording"
         )
     A, b = (np.array(block.subs(values), dtype=float) for block in (scenario.motion.A, scenario.motion.b))
-    normal = list(scenario.surface.values.values())
-    surface = {"surface": scenario.surface.name, **({"normal": normal} if normal else {})}
     X0, duration = list(map(float, scenario.position)), scenario.duration
-    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **surface}
+    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **shape_of(scenario.surface)}
 
 
 _TILT: Settings = {"usual": (-1, 1), "step": 0.05}
@@ -76,6 +75,7 @@ SCHEMA = Schema(
         ],
         about="the normal vector of a plane",
     ),
+    xi=Number(0.8, 0, 1, (0, 1), 0.01, label="ξ", about="of the mirror or lens of the unified model"),
     outputs=Names(["y1", "y2"], ("y1", "y2"), label="Measured outputs", about="names of what is measured"),
     observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
     gains=Group({}, about="for each observer, its gains by name"),

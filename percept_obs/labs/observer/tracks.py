@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.observer.texts import BY_NAME, SURFACES
+from percept_obs.labs.observer.texts import BY_NAME
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.recording import Recording
 from percept_obs.system.motion import affine

@@ -6,7 +6,7 @@ import sympy as sp
 
 from percept_obs.border import checked
 from percept_obs.system.surfaces.base import POINT, ImagingSurface, X, Y, Z
-from percept_obs.system.surfaces.unified import mu
+from percept_obs.system.surfaces.lift import mu
 
 
 @checked

@@ -13,8 +13,9 @@ export class Camera extends PointCamera {
     return super.record(settings, functions);
   }
 
-  placeOf({ surface, normal, A, b, X0, period, duration }) {
-    return [surface, normal, A, b, X0, period, duration];
+  placeOf(settings) {
+    const { surface, A, b, X0, period, duration } = settings;
+    return [surface, shapeOf(settings), A, b, X0, period, duration];
   }
 
   path(settings) {
@@ -44,8 +45,9 @@ export class Camera extends PointCamera {
   }
 }
 
-export function shapeOf(settings) {
-  return settings.surface === "plane" ? settings.normal : [];
+/** The numbers of the surface's shape, as Python's offered.py keeps them. */
+export function shapeOf({ surface, normal, xi }) {
+  return { plane: normal, unified: [xi] }[surface] ?? [];
 }
 
 /** A motion that stays as it is, as a table of one row. */

@@ -34,7 +34,8 @@ function simulation(shown, names) {
   const { settings } = shown;
   for (const name of ["affine", "Camera", "Scenario", "record", NOISES[settings.noise.kind]]) names.add(name);
   const noise = `${NOISES[settings.noise.kind]}(${settings.noise.size})`;
-  const surface = settings.surface === "plane" ? `plane(${list(settings.normal)})` : `${settings.surface}()`;
+  const shape = { plane: list(settings.normal), unified: settings.xi }[settings.surface] ?? "";
+  const surface = `${settings.surface}(${shape})`;
   return [
     `motion = affine(${matrix(settings.A)}, ${list(settings.b)})`,
     `scenario = Scenario("from the lab", motion, ${list(settings.X0)}, ${durationOf(shown)}, ${surface})`,
