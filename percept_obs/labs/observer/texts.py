@@ -12,8 +12,8 @@ import sympy as sp
 from percept_obs.compile import definitions, function_source
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import formula, markup
-from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, with_all_gains
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
