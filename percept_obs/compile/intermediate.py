@@ -74,7 +74,7 @@ class Intermediate(sp.Function):
 
 
 @lru_cache
-def _derivatives(kind: type[Intermediate], count: int) -> tuple[sp.Symbol, tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
+def _derivatives(kind: Any, count: int) -> tuple[sp.Symbol, tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
     """A letter for itself, letters for what it depends on, and its derivatives by those, from its equation."""
     own, *letters = (sp.Dummy(real=True) for _ in range(count + 1))
     equation = kind.equation(own, *letters)

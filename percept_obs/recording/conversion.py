@@ -73,7 +73,7 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
 def _seen(surface: ImagingSurface, points: Array) -> Array:
     """Coordinates of points of shape (K, 3), shape (K, n); NaN where they are not known or not seen."""
     coordinates = np.full((len(points), len(surface.coordinates)), np.nan)
-    seen = np.isfinite(points).all(axis=-1)
-    seen[seen] = surface.sees(points[seen])
+    known = np.flatnonzero(np.isfinite(points).all(axis=-1))
+    seen = known[surface.sees(points[known])]
     coordinates[seen] = surface.project(points[seen])
     return coordinates
