@@ -16,7 +16,7 @@ from percept_obs.observers import (
     with_point,
 )
 from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios
+from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios, seen_on
 from percept_obs.recording.derivatives import Neighbours, Quadratic, SmoothingSpline
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.pose_files import read_euroc, read_tum
@@ -29,7 +29,16 @@ from percept_obs.studies.diagnosis import diagnose
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.motion import Motion, affine, linear, rigid
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import BehindCamera, ImagingSurface, chained, pinhole, plane, sphere
+from percept_obs.system.surfaces import (
+    BehindCamera,
+    ImagingSurface,
+    chained,
+    ellipsoid,
+    pinhole,
+    plane,
+    sphere,
+    unified,
+)
 from percept_obs.tracking.following import DoesNotFit, track
 from percept_obs.tracking.run import Run
 
@@ -71,6 +80,7 @@ __all__ = [
     "check_consistency",
     "diagnose",
     "ekf",
+    "ellipsoid",
     "extended_kalman",
     "ibo",
     "identifier_based",
@@ -87,11 +97,13 @@ __all__ = [
     "rigid",
     "rigid_from_poses",
     "scenarios",
+    "seen_on",
     "semigeneral",
     "sliding_mode",
     "smo",
     "sphere",
     "track",
+    "unified",
     "windowed",
     "with_point",
 ]

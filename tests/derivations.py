@@ -55,7 +55,7 @@ def _systems():
             system, name = PerspectiveSystem(motion, make()), f"{kind}, {make.__name__}"
             yield from ((f"rate, {name}", system), (f"focus of expansion, {name}", system.foe))
             yield from ((f"step {k}, {name}", step) for k, step in enumerate(system.derivation(), 1) if step.values)
-            if make is not surfaces.sphere:
+            if not system.surface.intermediates:
                 yield f"Jacobian, {name}", system.jacobian()
             for outputs in system.output_choices:
                 form = system.measure(*outputs)

@@ -44,6 +44,8 @@ SMOOTH_CASES = {
     "the point leaves": {"b": [0.5, 0.25, -0.9], "observers": SMOOTH, "noise": NOISY, "dropout": 0.1},
     "chained": {"surface": "chained", "observers": SMOOTH},
     "plane": {"surface": "plane", "normal": PLANE, "observers": SMOOTH, "outputs": ["y1"]},
+    "sphere": {"surface": "sphere", "observers": SMOOTH},
+    "unified": {"surface": "unified", "xi": 0.6, "observers": SMOOTH, "duration": 30.0},
     "switches": {
         "observers": ALL,
         "switches": {"sliding_mode": "sign", "range_identification": "fraction"},

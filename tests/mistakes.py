@@ -118,4 +118,14 @@ MISTAKES = {
             "chi' = v_z chi^2",
         ],
     },
+    "10_imaging_surfaces": {
+        "direction": [
+            "y1' = b1 y4",  # the range's own change is forgotten
+            "y1' = (b1 + y1 (b1 y1 + b2 y2 + b3 y3)) y4",
+            "y1' = (b1 - b3 y1) y4",  # that of the pinhole
+            "y1' = b1 - y1 (b1 y1 + b2 y2 + b3 y3)",
+        ],
+        "ahead": ["a", "b", "d"],
+        "lens": [0.0, 0.5, 0.8, 1.0],
+    },
 }

@@ -134,13 +134,13 @@ def test_what_is_known_of_an_observer_is_told_beside_it(fresh):
     about.click()
 
 
-@pytest.mark.parametrize("surface", ["chained", "plane", "sphere"])
+@pytest.mark.parametrize("surface", ["chained", "plane", "sphere", "unified"])
 def test_every_surface_is_there_with_the_outputs_that_it_allows(fresh, surface):
     fresh.check(control("outputs y2"))
     fresh.select_option(control("surface"), surface)
     rested(fresh)
     shown = state(fresh)
-    only_both = surface == "sphere"
+    only_both = surface in ("sphere", "unified")
     assert shown["settings"]["outputs"] == (["y1", "y2"] if only_both else ["y2"])
     assert ("needs y1 and y2" in shown["notice"]) == only_both
     assert fresh.locator(control("outputs y1")).is_disabled() == only_both

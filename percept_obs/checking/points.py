@@ -24,6 +24,8 @@ import mpmath
 import sympy as sp
 from sympy.core.relational import Relational
 
+from percept_obs.compile import Intermediate
+
 PRIME = 315613022149747294991914860978434342099
 ANGLE = 1312494765889401371
 GROWTH = 1849897281939139319
@@ -94,6 +96,8 @@ class ModularPoint:
             return self._power(self(e.base), e.exp)
         if e in (sp.zoo, sp.nan, sp.oo, -sp.oo):
             raise NoValue
+        if isinstance(e, Intermediate):
+            return self(e.written_out)
         if self.outer is not None:
             return _drawn(self.seed, f"inside {self.outer(e)}")
         known = _MODULAR.get(e.func)
@@ -241,6 +245,8 @@ class RealPoint:
                     return self(branch)
         if e.func in (sp.Max, sp.Min):
             return (max if e.func is sp.Max else min)(map(self._real, e.args))
+        if isinstance(e, Intermediate):
+            return self(e.written_out)
         if e.func in _REAL:
             return getattr(self.mp, _REAL[e.func])(*map(self, e.args))
         if isinstance(e, sp.Integral) and [len(limit) for limit in e.limits] == [3]:

@@ -17,6 +17,7 @@ from percept_obs.checking.deciding import explicit, written_out
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Reading, read, words_of
 from percept_obs.checking.tokens import FUNCTIONS, Token, tokens
+from percept_obs.compile import intermediates
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
@@ -180,7 +181,8 @@ class Target:
         """The letters that are read, and what may stand on the left of a line besides."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
         matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
-        return extra | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
+        named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
+        return extra | named | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """A formula of sympy in the target's own letters, matched by name."""

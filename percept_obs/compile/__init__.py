@@ -2,6 +2,7 @@
 
 from percept_obs.compile.arrays import Array, Flags, Indices
 from percept_obs.compile.functions import executed, function_source, python_text, right_hand_side, vectorised
+from percept_obs.compile.intermediate import Intermediate, definitions, in_letters, intermediates, written_out
 from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
 from percept_obs.compile.loop import source
 from percept_obs.compile.machine_code import machine_code
@@ -11,18 +12,23 @@ __all__ = [
     "Array",
     "Flags",
     "Indices",
+    "Intermediate",
     "Language",
     "NotCompilable",
     "Printed",
     "Table",
     "Trace",
     "choose",
+    "definitions",
     "executed",
     "function_source",
+    "in_letters",
+    "intermediates",
     "machine_code",
     "python_text",
     "right_hand_side",
     "solve",
     "source",
     "vectorised",
+    "written_out",
 ]

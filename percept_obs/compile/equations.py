@@ -9,6 +9,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.border import derived
+from percept_obs.compile.intermediate import definitions
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
@@ -93,6 +94,8 @@ class Equations:
                 new = sp.MatMul(factors.pop(), old)
             when = sp.latex(self.reset_condition)
             lines.append(rf"{sp.latex(old)}^+ &= {sp.latex(new)} \quad \text{{when }} {when}")
+        known = definitions((*self.flow, *self.reset, *(entry for block in self.update for entry in block)))
+        lines += [f"{sp.latex(letter)} &= {sp.latex(value)}" for letter, value in known.items()]
         return r"$\displaystyle \begin{aligned}" + r" \\ ".join(lines) + r"\end{aligned}$"
 
 

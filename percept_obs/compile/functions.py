@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from percept_obs.border import derived
 from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Equations
+from percept_obs.compile.intermediate import common_subexpressions
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
 
 
@@ -38,7 +39,15 @@ def vectorised(
 
 @lru_cache(maxsize=512)
 def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> Callable[..., tuple[Any, ...]]:
-    return sp.lambdify(symbols, expressions, "numpy", cse=True)
+    return sp.lambdify(symbols, expressions, "numpy", cse=_shared)
+
+
+def _shared(expressions: Any, **_: Any) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Any]:
+    """What `sympy.lambdify` asks for: common subexpressions, and what is left of one expression or of several."""
+    if isinstance(expressions, sp.Basic):
+        shared, (left,) = common_subexpressions([expressions])
+        return shared, left
+    return common_subexpressions(expressions)
 
 
 def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
@@ -49,7 +58,7 @@ def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> 
     numbers = {symbol: sp.Float(value, 17) for symbol, value in values.items()}
     left = [symbol for symbol in equations.parameters if symbol not in numbers]
     flow = [entry.xreplace(numbers) for entry in equations.flow]
-    return sp.lambdify([equations.state, equations.measured, left], flow, "math", cse=True)
+    return sp.lambdify([equations.state, equations.measured, left], flow, "math", cse=_shared)
 
 
 @lru_cache(maxsize=512)

@@ -12,6 +12,8 @@ from sympy.logic.boolalg import Boolean
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
+from percept_obs.compile.intermediate import Intermediate, common_subexpressions, intermediates
+
 Printed = Literal["python", "javascript"]
 
 LARGEST_PRODUCT = 8
@@ -20,7 +22,8 @@ LARGEST_PRODUCT = 8
 FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh, sp.atan2)
 """Functions that have the same name in sympy, Python and JavaScript."""
 
-KNOWN = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, *FUNCTIONS)
+BUILT = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, Intermediate)
+KNOWN = (*BUILT, *FUNCTIONS)
 """What is printed alike, besides numbers and some powers."""
 
 
@@ -30,7 +33,8 @@ class NotCompilable(ValueError):
 
 def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
     """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
-    for expression in expressions:
+    named = [each.written_out for each in intermediates(expressions)]
+    for expression in (*expressions, *named):
         for node in sp.preorder_traversal(expression):
             power_fits = isinstance(node, sp.Pow) and (2 * node.exp).is_Integer and abs(node.exp) <= LARGEST_PRODUCT
             finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
@@ -160,7 +164,7 @@ class Text:
         """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
         key = tuple(expressions)
         if key not in self.printed:
-            shared, results = sp.cse(expressions, symbols=sp.numbered_symbols("c", real=True))
+            shared, results = common_subexpressions(expressions, sp.numbered_symbols("c", real=True))
             self.printed[key] = [(s.name, self.print(e)) for s, e in shared], [self.print(e) for e in results]
         named, formulas = self.printed[key]
         for name, formula in (*named, *((f"{targets}{k}", formula) for k, formula in enumerate(formulas))):

@@ -4,6 +4,7 @@ from percept_obs.figures.base import Figure
 from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
 from percept_obs.figures.entries import entries
+from percept_obs.figures.fields import fields
 from percept_obs.figures.image_plane import image_plane
 from percept_obs.figures.many_points import depth_errors, error_norm
 from percept_obs.figures.over_time import distance, runs_over_time
@@ -25,6 +26,7 @@ __all__ = [
     "entries",
     "error_norm",
     "excitation",
+    "fields",
     "gramian",
     "image_plane",
     "quantities",

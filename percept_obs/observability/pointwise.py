@@ -8,6 +8,7 @@ from functools import cached_property
 import sympy as sp
 
 from percept_obs.border import checked, expression
+from percept_obs.compile import written_out
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 
 
@@ -46,7 +47,7 @@ class InstantaneousObservability:
     @cached_property
     def zero_set(self) -> list[dict[sp.Symbol, sp.Expr]]:
         """Where all of w vanishes: solutions for the measured outputs, none if there is no such place."""
-        return sp.solve(list(self.form.w), self.form.x1, dict=True)
+        return sp.solve([written_out(entry) for entry in self.form.w], self.form.x1, dict=True)
 
     @cached_property
     def growth(self) -> sp.Expr | None:

@@ -2,6 +2,7 @@
 
 from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
+from percept_obs.recording.conversion import seen_on
 from percept_obs.recording.frames import Frames, render
 from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
@@ -22,5 +23,6 @@ __all__ = [
     "record",
     "render",
     "seeded",
+    "seen_on",
     "step_grid",
 ]

@@ -84,6 +84,8 @@ class Camera:
         Probability that a sample of a point is lost, from 0 to below 1; the first one never is.
     reach : float
         Largest absolute image coordinate that is seen; a point outside is not.
+    field_of_view : float
+        Full angle in radians of the cone around the optical axis that is seen, on whatever surface; all around at 2 pi.
 
     Raises
     ------
@@ -95,6 +97,7 @@ class Camera:
     noise: Noise = NO_NOISE
     dropout: float = 0.0
     reach: float = np.inf
+    field_of_view: float = 2 * math.pi
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.period) and self.period > 0):
@@ -103,6 +106,11 @@ class Camera:
             raise ValueError(f"the camera's dropout is {self.dropout}; it is a probability, 0 or more and below 1")
         if not self.reach > 0:
             raise ValueError(f"the camera's reach is {self.reach}; the largest coordinate it sees must be positive")
+        if not 0 < self.field_of_view <= 2 * math.pi:
+            raise ValueError(
+                f"the camera's field of view is {self.field_of_view} rad; it must be above 0 and at most 2 pi: use "
+                "np.radians(...) for degrees"
+            )
 
     def times(self, duration: float, each: int = 1) -> Array:
         """Times of the samples in seconds, from 0 on.
@@ -155,8 +163,15 @@ class Camera:
         exact = scene.view.outputs(truth)
         outputs = exact + self.noise.draw(generator, exact.shape)
         lost = self.lost(generator, exact.shape[:-1])
-        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach)] = np.nan
+        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._beside(scene.view, truth)] = np.nan
         return outputs, self.noise.variance
+
+    def _beside(self, view: View, truth: Array) -> Flags | bool:
+        """Which points lie outside of the field of view, shape (K, ...)."""
+        if self.field_of_view == 2 * math.pi:
+            return False
+        points = view.locate(truth)
+        return np.asarray(points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1))
 
     def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         """Which samples are lost by chance, the first ones never."""

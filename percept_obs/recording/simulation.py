@@ -82,7 +82,7 @@ class Scenario(Scene):
 
     def in_front(self, times: ArrayLike) -> Flags:
         """At which times, as `points` takes them, the point is in front of the camera, shape (K,)."""
-        return self.surface.distances(self._path(times)) > 0
+        return self.surface.sees(self._path(times))
 
     def _path(self, times: ArrayLike) -> Array:
         """Positions of the point, NaN from where it left every bound on."""
@@ -118,7 +118,7 @@ class Scenario(Scene):
         try:
             seen = self.surface.project(points)
         except BehindCamera as error:
-            when = times[np.argmin(self.surface.distances(points) > 0)]
+            when = times[np.argmin(self.surface.sees(points))]
             raise BehindCamera(f"in the scenario {self.name!r}, at {when:.4g} s, {error}") from None
         self._refuse_a_dip(times, points)
         return seen
@@ -133,14 +133,14 @@ class Scenario(Scene):
             A, b = _coefficients(self.motion, times)
         velocities = (A @ points[:, :, None])[..., 0] + b
         surface = self.surface
-        expressions = (surface.distance, *(surface.distance.diff(x) for x in POINT))
-        distance, *gradient = vectorised(POINT, expressions, surface.values)(*points.T)
-        lowest, time = lowest_between(distance, np.einsum("ik,ki->k", gradient, velocities), times)
-        if lowest <= 0:
-            raise BehindCamera(
-                f"in the scenario {self.name!r} the point dips behind the {surface.name} between two samples, at about "
-                f"{time:.4g} s; stop before, or change the motion"
-            )
+        for bound in surface.bounds:
+            height, *gradient = vectorised(POINT, (bound, *map(bound.diff, POINT)), surface.values)(*points.T)
+            lowest, time = lowest_between(height, np.einsum("ik,ki->k", gradient, velocities), times)
+            if lowest <= 0:
+                raise BehindCamera(
+                    f"in the scenario {self.name!r} the point dips behind the {surface.name} between two samples, at "
+                    f"about {time:.4g} s; stop before, or change the motion"
+                )
 
 
 @checked

@@ -8,6 +8,8 @@ from typing import Any, overload
 
 import sympy as sp
 
+from percept_obs.compile import definitions
+
 
 @dataclass(frozen=True)
 class Step:
@@ -86,3 +88,13 @@ def rates(symbols: Iterable[sp.Symbol], values: Iterable[sp.Expr]) -> dict[str, 
 def equals(left: str, right: object) -> str:
     """The formula ``left = right`` in LaTeX, the right side printed by sympy."""
     return f"{left} = {right if isinstance(right, str) else sp.latex(right)}"
+
+
+def where(*expressions: sp.Basic) -> list[str]:
+    """In LaTeX, what the intermediate results are whose letters expressions carry: a formula for each."""
+    return [equals(sp.latex(letter), value) for letter, value in definitions(expressions).items()]
+
+
+def joined(formulas: Iterable[str]) -> str:
+    """Formulas in LaTeX side by side."""
+    return r",\quad ".join(formulas)

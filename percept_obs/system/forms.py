@@ -11,7 +11,8 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.system.derivation import Derivation, equals, rates
+from percept_obs.compile import Intermediate
+from percept_obs.system.derivation import Derivation, equals, rates, where
 from percept_obs.system.view import View
 
 
@@ -99,7 +100,7 @@ class PartitionedSystem:
         away = dict.fromkeys(self.x2, sp.S.Zero)
         # What is affine but not written so still holds hidden coordinates; their value does not matter there.
         w = w if not w.free_symbols & set(self.x2) else w.subs(away)
-        phi, g = self.rate[:n1, :].expand().subs(away), self.rate[n1:, :]
+        phi, g = _multiplied_out(self.rate[:n1, :]).subs(away), self.rate[n1:, :]
         return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.view, w=w, phi=phi, g=g)
 
     @cached_property
@@ -110,7 +111,7 @@ class PartitionedSystem:
     @cached_property
     def _weight(self) -> sp.ImmutableMatrix:
         """What multiplies the hidden coordinates in the measured ones' rate, shape (n2, n1)."""
-        return self.rate[: len(self.x1), :].expand().jacobian(self.x2).T.expand()
+        return _multiplied_out(_multiplied_out(self.rate[: len(self.x1), :]).jacobian(self.x2).T)
 
     def _repr_latex_(self) -> str:
         n1 = len(self.x1)
@@ -119,7 +120,8 @@ class PartitionedSystem:
     def _displayed(self, *rates: str) -> str:
         """The rates of the measured and of the hidden part in LaTeX, one below the other."""
         parts = zip((self.x1, self.x2), rates, strict=True)
-        lines = (rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {rate}" for part, rate in parts)
+        lines = [rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {rate}" for part, rate in parts]
+        lines += [formula.replace("=", "&=", 1) for formula in where(self.rate)]
         return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
 
 
@@ -236,6 +238,11 @@ def partition(
     return PartitionedSystem(x1, x2, ordered, parameters, coordinates, view)
 
 
+def _multiplied_out(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """A matrix multiplied out, unless intermediate results with a name would make that long."""
+    return matrix if matrix.has(Intermediate) else matrix.expand()
+
+
 def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> tuple[str, ...]:
     """Hidden coordinates on which w depends, or that multiply those: where a second derivative is not zero."""
     draw = random.Random(0)
@@ -244,6 +251,6 @@ def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> tuple[str, ..
     for (row, hidden), other in product(enumerate(x2), x2):
         for entry in w.row(row):
             second = entry.diff(other)
-            if any(abs(second.evalf(30, point)) > 1e-20 for point in points):
+            if any(abs(sp.N(second.xreplace(point), 30)) > 1e-20 for point in points):
                 guilty |= {hidden, other}
     return tuple(symbol.name for symbol in x2 if symbol in guilty)

@@ -11,7 +11,7 @@ from typing import Any
 import sympy as sp
 
 from percept_obs.border import checked
-from percept_obs.system.derivation import Derivation, equals, rates
+from percept_obs.system.derivation import Derivation, equals, joined, rates, where
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -63,8 +63,14 @@ class PerspectiveSystem:
 
     @cached_property
     def rate(self) -> sp.ImmutableMatrix:
-        """Time derivative of `coordinates`, expanded.  Ma 2005, (4), p. 64 for affine motion and the pinhole."""
-        return self._moved(self._gradients, self._velocity).expand()
+        """Time derivative of `coordinates`.  Ma 2005, (4), p. 64 for affine motion and the pinhole.
+
+        It is expanded, unless roots or letters of the surface's shape would make it long.
+        """
+        moved = self._moved(self._gradients, self._velocity)
+        if self.surface.multiplied_out:
+            return moved.expand()
+        return moved if self._image_over_distance.free_symbols else self._shortly_moved(self._velocity)
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of `rate` with respect to `coordinates`."""
@@ -120,6 +126,9 @@ class PerspectiveSystem:
         eta = sp.latex(surface.inverse_distance)
         ways = [f"{y_k} = {e}" for y_k, e in zip(surface.image_coordinates, surface.image, strict=True)]
         ways += [f"{surface.inverse_distance} = {1 / surface.distance}"]
+        last = (
+            "Multiplied out:" if surface.multiplied_out else "Written shortly, with the distance's own rate in front:"
+        )
         formulas: dict[str, str | tuple[Any, ...]] = {
             "The point moves:": (
                 equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
@@ -131,7 +140,14 @@ class PerspectiveSystem:
                 dict(zip(map(str, surface.coordinates), (*surface.image, 1 / surface.distance), strict=True)),
             ),
             "So the point lies on a ray, at the distance one over the inverse distance:": (
-                rf"{point} = \frac{{1}}{{{eta}}}\, m(y),\quad m = {sp.latex(sp.Matrix(surface.ray))}",
+                joined(
+                    [
+                        rf"{point} = \frac{{1}}{{{eta}}}\, m(y)",
+                        equals("m", sp.Matrix(surface.ray)),
+                        *where(*surface.ray),
+                        *([] if surface.constraint is None else [equals(sp.latex(surface.constraint), "0")]),
+                    ]
+                ),
                 {f"m{k}": entry for k, entry in enumerate(surface.ray, 1)},
                 lambda ray: self._moved(self._gradients, self._velocity_along(ray)),
             ),
@@ -154,7 +170,7 @@ class PerspectiveSystem:
                 rates(self.coordinates, self._moved(self._gradients, self._velocity)),
                 sp.ImmutableMatrix,
             ),
-            "Multiplied out:": (
+            last: (
                 equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate),
                 rates(self.coordinates, self.rate),
                 sp.ImmutableMatrix,
@@ -167,7 +183,8 @@ class PerspectiveSystem:
         return Derivation.of(formulas)
 
     def _repr_latex_(self) -> str:
-        return rf"$\displaystyle \frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))} = {sp.latex(self.rate)}$"
+        rate = equals(rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(self.coordinates))}", self.rate)
+        return rf"$\displaystyle {joined([rate, *where(self.rate)])}$"
 
     @cached_property
     def _velocity(self) -> sp.ImmutableMatrix:
@@ -188,6 +205,19 @@ class PerspectiveSystem:
         *image, distance = gradients * velocity
         return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * distance])
 
+    def _shortly_moved(self, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """`_moved` for an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1."""
+        y = sp.ImmutableMatrix(self.surface.image_coordinates)
+        along = (self._distance_gradient * velocity)[0]
+        image = self._image_over_distance * velocity - y * along
+        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * along])
+
+    @cached_property
+    def _image_over_distance(self) -> sp.ImmutableMatrix:
+        """Gradient of the image times the distance; it holds no letters if that is linear in the point."""
+        y = sp.ImmutableMatrix(self.surface.image_coordinates)
+        return (self._image_gradient + y * self._distance_gradient).applyfunc(sp.cancel)
+
     @cached_property
     def _gradients(self) -> sp.ImmutableMatrix:
         return self._image_gradient.col_join(self._distance_gradient)
@@ -204,4 +234,4 @@ class PerspectiveSystem:
         """A gradient at X = m(y), where the distance is 1."""
         at_one = gradient.subs(self.surface.distance, 1)
         ray = dict(zip(POINT, self.surface.ray, strict=True))
-        return at_one.subs(ray, simultaneous=True).applyfunc(sp.cancel)
+        return at_one.subs(dict(self.surface.roots)).subs(ray, simultaneous=True).applyfunc(sp.cancel)

@@ -4,7 +4,8 @@ from typing import Any
 
 from percept_obs.checking.review import HINTS
 from percept_obs.labs.desk.sheets import PARTS
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, SURFACES
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
 
 MOST_LINES, LONGEST_LINE = 200, 2000

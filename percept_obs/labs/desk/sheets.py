@@ -12,6 +12,7 @@ import sympy as sp
 from percept_obs.checking import Target, target_of
 from percept_obs.checking.deciding import explicit
 from percept_obs.checking.target import Line
+from percept_obs.compile import definitions, in_letters
 from percept_obs.labs.desk.systems import OBSERVERS, observer_of
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import dotted, formula, markup, row, words
@@ -58,7 +59,7 @@ class Sheet:
     @cached_property
     def letters(self) -> list[str]:
         """The letters that occur in the lines, as MathML."""
-        used = {s for line in self.goal.lines for s in line.formula.free_symbols}
+        used = {s for line in self.goal.lines for s in in_letters(line.formula).free_symbols}
         return [markup(s) for s in sorted(used, key=str)]
 
     def rows(self, step: int) -> range:
@@ -88,6 +89,7 @@ def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) ->
     given = [
         formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(system.motion.A, sp.Matrix(POINT)), system.motion.b)),
         row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
+        *_named_in(surface.ray),
     ]
     image = tuple(f"{s.name}'" for s in surface.image_coordinates)
     return _sheet(given, kept, target_of(system), image)
@@ -135,8 +137,14 @@ def _known(system: PerspectiveSystem, outputs: tuple[str, ...]) -> list[str]:
     hidden = [markup(s) for s in system.coordinates if s.name not in outputs]
     return [
         *(formula(dotted(s), rate) for s, rate in zip(system.coordinates, system.rate, strict=True)),
+        *_named_in(system.rate),
         row("measured", *_listed(measured), "; hidden", *_listed(hidden)),
     ]
+
+
+def _named_in(expressions: Iterable[sp.Expr]) -> list[str]:
+    """What the letters of roots stand for; they may be typed."""
+    return [formula(letter, value) for letter, value in definitions(expressions).items()]
 
 
 def _in_letters(observer: str) -> list[str]:

@@ -8,13 +8,12 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.observers import Observer, de_luca, identifier_based, spica
-from percept_obs.system import surfaces
 from percept_obs.system.motion import Motion, affine, rigid
 from percept_obs.system.perspective import PerspectiveSystem
 
 MOTIONS = {make.__name__: make for make in (affine, rigid)}
-SURFACES = {make.__name__: make for make in surfaces.SURFACES}
 OBSERVERS = {make.key: make for make in (identifier_based, de_luca, spica)}
 """Observers whose equations can be typed in a line: those without a covariance and without branches."""
 

@@ -1,7 +1,8 @@
 """What the page needs before Python answers: which choices there are, and how they are called."""
 
 from percept_obs.labs.desk.sheets import PARTS
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, SURFACES, system_of
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, system_of
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts
 
 

@@ -38,6 +38,7 @@ from percept_obs.labs.observer.tracks import (
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.brought import brought
 from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.offered import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.sampling import (
     as_far_as_seen,
     exact_path,
@@ -53,7 +54,7 @@ from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
-from percept_obs.system.surfaces import BehindCamera, ImagingSurface, plane
+from percept_obs.system.surfaces import BehindCamera, ImagingSurface
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
@@ -267,7 +268,7 @@ class ObserverLab(Lab):
         """What the camera records, as far as the point stays in front of it."""
         if recording := self._recordings.get(settings["scenario"]):
             return recording
-        keys = ("surface", "normal", "X0", "noise", "dropout", "seed", "period", "duration")
+        keys = ("surface", *SHAPES.values(), "X0", "noise", "dropout", "seed", "period", "duration")
         told = json.dumps({key: settings[key] for key in keys})
         return _simulated(told, self._motion_of(settings), self._offer.surfaces[settings["surface"]])
 
@@ -311,8 +312,7 @@ def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
 
 def _shaped(given: Any, name: str) -> Settings:
     """The settings of a surface of the package that was given with numbers."""
-    values = given.values if isinstance(given, ImagingSurface) and name == "plane" else {}
-    return {"normal": list(values.values())} if values else {}
+    return numbers_of(given, name) if isinstance(given, ImagingSurface) else {}
 
 
 def _numbers(settings: Settings) -> np.ndarray:
@@ -332,7 +332,7 @@ def _motion(text: str) -> Motion:
 @lru_cache(maxsize=4)
 def _simulated(text: str, motion: Motion, seen_on: ImagingSurface) -> Recording:
     settings = json.loads(text)
-    surface = plane(settings["normal"]) if settings["surface"] == "plane" else seen_on
+    surface = shaped_surface(settings) if settings["surface"] in SHAPES else seen_on
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])

@@ -14,7 +14,6 @@ import sympy as sp
 from percept_obs.labs.observer.texts import (
     BY_NAME,
     MOTION,
-    SURFACES,
     form_for_the_page,
     form_on,
     key_of,
@@ -30,6 +29,7 @@ from percept_obs.labs.shared.brought import (
     origin,
 )
 from percept_obs.labs.shared.observer_texts import with_all_gains
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
 from percept_obs.observers import Observer
 from percept_obs.system.forms import PartitionedSystem

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from percept_obs.labs.observer.offer import Offer
-from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
+from percept_obs.labs.shared.offered import SURFACES, numbers_of
 from percept_obs.labs.shared.schema import (
     DROPOUT,
     KEPT,
@@ -53,9 +54,8 @@ def as_settings(scenario: Scenario, surface: str = "") -> Settings:
     motion = scenario.motion
     numbers = dict(zip(motion.parameters, motion.known(0.0)[0].tolist(), strict=True))
     A, b = (np.array(block.subs(numbers), dtype=float) for block in (motion.A, motion.b))
-    normal = list(scenario.surface.values.values())
     surface = surface or scenario.surface.name
-    shaped = {"surface": surface, **({"normal": normal} if surface == "plane" and normal else {})}
+    shaped = {"surface": surface, **numbers_of(scenario.surface, surface)}
     X0, duration = list(map(float, scenario.position)), float(scenario.duration)
     return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **shaped}
 
@@ -80,6 +80,7 @@ SCHEMA = Schema(
         ],
         about="the normal vector of a plane",
     ),
+    xi=Number(0.8, 0, 1, (0, 1), 0.01, label="ξ", about="of the mirror or lens of the unified model"),
     outputs=Names(["y1", "y2"], ("y1", "y2"), label="Measured outputs", about="names of what is measured"),
     observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
     gains=Group({}, about="for each observer, its gains by name"),

@@ -9,20 +9,19 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from percept_obs.compile import function_source, source
+from percept_obs.compile import definitions, function_source, source
 from percept_obs.labs.shared.brought import Maker, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.markup import dotted, formula, markup
+from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.recording.simulation import point_in_motion
-from percept_obs.system import surfaces
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface
 
-SURFACES = {make.__name__: make for make in surfaces.SURFACES}
 BY_NAME = {make.key: make for make in OBSERVERS}
 
 WAYS = MappingProxyType({name: make.switches or ("",) for name, make in BY_NAME.items()})
@@ -140,6 +139,7 @@ def _of_canonical(form: CanonicalForm, letters: Mapping[str, sp.Symbol]) -> Text
             formula(f"<msup>{markup(sp.Symbol('w'))}<mi>T</mi></msup>", form.w.T, letters),
             formula(sp.Symbol("phi"), form.phi, letters),
             formula(sp.Symbol("g"), form.g, letters),
+            *(formula(letter, value, letters) for letter, value in definitions(form.rate).items()),
         ],
     }
 

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 
 import sympy as sp
 
+from percept_obs.compile import in_letters
+
 BETTER = (
     ("<mi>phi</mi>", "<mi>φ</mi>"),
     ("<mi>xi</mi>", "<mi>ξ</mi>"),
@@ -65,6 +67,8 @@ def words(text: str) -> str:
 
 
 def _mathml(expression: object) -> str:
+    if isinstance(expression, sp.Basic) and not isinstance(expression, sp.MatrixExpr):
+        expression = in_letters(expression)
     if isinstance(expression, sp.Piecewise):
         cases = [(_mathml(value), "" if when == sp.true else _mathml(when)) for value, when in expression.args]
         rows = [

@@ -11,6 +11,8 @@ from percept_obs.system.surfaces.pinhole import pinhole as pinhole
 from percept_obs.system.surfaces.chained import chained as chained
 from percept_obs.system.surfaces.plane import plane as plane
 from percept_obs.system.surfaces.sphere import sphere as sphere
+from percept_obs.system.surfaces.ellipsoid import ellipsoid as ellipsoid
+from percept_obs.system.surfaces.unified import unified as unified
 
 SURFACES = tuple(value for value in list(globals().values()) if isinstance(value, FunctionType))
 """Every surface; the laws that tests hold run over this list, and the labs offer it."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -14,7 +15,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.border import checked, expression, expressions
-from percept_obs.compile import Array, vectorised
+from percept_obs.compile import Array, Flags, definitions, vectorised
 from percept_obs.system.view import OnePoint
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
@@ -43,6 +44,12 @@ class ImagingSurface(OnePoint):
         The point of the surface, at distance 1, whose image coordinates are y1, y2, ...
     values : mapping of sympy symbols to floats, optional
         Numbers for the symbols that shape the surface, such as a plane's normal vector.
+    region : sequence of sympy expressions, optional
+        What must be positive for the point (X, Y, Z) to be seen, besides the distance.
+    roots : mapping of sympy expressions to sympy expressions, optional
+        What roots of the point (X, Y, Z), besides the distance, are on the ray.
+    constraint : sympy expression, optional
+        What is 0 for the image coordinates of every point, if they depend on each other.
 
     Raises
     ------
@@ -55,11 +62,18 @@ class ImagingSurface(OnePoint):
     distance: sp.Expr
     ray: Sequence[sp.Expr]
     values: Mapping[sp.Symbol, float] = field(default_factory=dict, hash=False)
+    region: Sequence[sp.Expr] = ()
+    roots: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict, hash=False, compare=False)
+    constraint: sp.Expr | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "image", expressions(self.image, "the surface's image"))
         object.__setattr__(self, "ray", expressions(self.ray, "the surface's ray"))
         object.__setattr__(self, "distance", expression(self.distance, "the surface's distance"))
+        object.__setattr__(self, "region", expressions(self.region, "the surface's region"))
+        if self.constraint is not None:
+            object.__setattr__(self, "constraint", expression(self.constraint, "the surface's constraint"))
+        object.__setattr__(self, "roots", MappingProxyType(dict(self.roots)))
         object.__setattr__(self, "values", MappingProxyType({s: float(v) for s, v in self.values.items()}))
         if not self.image or len(self.ray) != 3:
             raise ValueError(
@@ -97,6 +111,16 @@ class ImagingSurface(OnePoint):
         used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
+    @property
+    def intermediates(self) -> dict[sp.Symbol, sp.Expr]:
+        """What the named roots of the ray are, by their letters; they are carried by name in all that is derived."""
+        return definitions(self.ray)
+
+    @property
+    def multiplied_out(self) -> bool:
+        """Whether rates are written multiplied out: where the distance is one coordinate of the point."""
+        return self.distance in POINT
+
     def project(self, points: ArrayLike) -> Array:
         """Coordinates of points of space.
 
@@ -120,16 +144,26 @@ class ImagingSurface(OnePoint):
         points = np.asarray(points, dtype=float)
         if points.shape[-1:] != (3,) or not np.isfinite(points).all():
             raise ValueError(f"points have shape {points.shape}; expected (..., 3), all finite")
-        distance = self.distances(points)
-        if not (distance > 0).all():
-            where = np.unravel_index(int(np.argmin(distance > 0)), distance.shape) if distance.ndim else ()
+        distance, sees = self.distances(points), self.sees(points)
+        if not sees.all():
+            where = np.unravel_index(int(np.argmin(sees)), distance.shape) if distance.ndim else ()
             point = ", ".join(f"{entry:.4g}" for entry in points[where])
+            at = "a positive distance" if distance[where] <= 0 else "a positive distance and in its field of view"
             raise BehindCamera(
                 f"the point ({point}) has the distance {float(distance[where]):.4g} from the {self.name}; only points "
-                "at a positive distance are seen, so start the point in front of the camera or stop the motion before "
-                "it passes"
+                f"at {at} are seen, so start the point in front of the camera or stop the motion before it passes"
             )
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
+
+    def sees(self, points: ArrayLike) -> Flags:
+        """Whether points of shape (..., 3) are seen, shape (...): whether each of `bounds` is positive."""
+        points = np.asarray(points, dtype=float)
+        return np.asarray(np.all([bound > 0 for bound in self._evaluate(POINT, self.bounds, points)], axis=0))
+
+    @property
+    def bounds(self) -> tuple[sp.Expr, ...]:
+        """What must be positive for the point (X, Y, Z) to be seen: its distance first, then the `region`."""
+        return (self.distance, *self.region)
 
     def distances(self, points: ArrayLike) -> Array:
         """Depths or ranges in metres, shape (...), of points of shape (..., 3); not positive behind the camera."""
@@ -159,9 +193,31 @@ class ImagingSurface(OnePoint):
                 f"coordinates have shape {coordinates.shape}; expected (..., {len(self.coordinates)}) for the "
                 f"{self.name}: {', '.join(map(str, self.coordinates))}"
             )
-        ray = np.stack(self._evaluate(self.image_coordinates, self.ray, coordinates[..., :-1]), axis=-1)
+        ray = self.along(coordinates[..., :-1])
         inverse = coordinates[..., -1:]
         return np.divide(ray, inverse, out=np.full_like(ray, np.inf), where=inverse > 0)
+
+    def along(self, image: ArrayLike) -> Array:
+        """Points at the distance 1, shape (..., 3), along the rays of image points of shape (..., m); NaN for none."""
+        with np.errstate(invalid="ignore"):  # a root of what no point of space has for its image
+            return np.stack(self._evaluate(self.image_coordinates, self.ray, np.asarray(image, dtype=float)), axis=-1)
+
+    @cached_property
+    def field_of_view(self) -> float:
+        """The full angle in radians of the largest cone around the optical axis that is seen, up to 2 pi."""
+        turns = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+
+        def seen(angle: float) -> bool:
+            across = np.sin(angle) * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+            return bool(self.sees(np.column_stack([across, np.full(len(turns), np.cos(angle))])).all())
+
+        low, high = 0.0, np.pi
+        if seen(high):
+            return 2 * high
+        for _ in range(50):
+            middle = (low + high) / 2
+            low, high = (middle, high) if seen(middle) else (low, middle)
+        return 2 * low
 
     def _evaluate(self, symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr], values: Array) -> list[Array]:
         missing = [str(s) for s in self.parameters if s not in self.values]

@@ -20,7 +20,7 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
     normal : three floats, optional
         Normal vector n with n3 not zero; symbols n1, n2, n3 when left out.
     outputs : 2 or 3
-        Image coordinates X/l, Y/l, and also Z/l, with l = n . X.  The third depends on the other two.
+        Image coordinates X/l, Y/l, and also Z/l, with l = n . X.  The third follows from n . y = 1.
 
     Raises
     ------
@@ -39,4 +39,6 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
             raise ValueError(f"the normal vector {normal!r} must be three finite numbers, the third not zero")
         values = dict(zip(n, entries.tolist(), strict=True))
     ray = y if outputs == 3 else (y[0], y[1], (1 - n[0] * y[0] - n[1] * y[1]) / n[2])
-    return ImagingSurface("plane", [p / distance for p in POINT[:outputs]], distance, ray, values)
+    constraint = sum(a * b for a, b in zip(n, y, strict=True)) - 1 if outputs == 3 else None
+    image = [p / distance for p in POINT[:outputs]]
+    return ImagingSurface("plane", image, distance, ray, values, constraint=constraint)

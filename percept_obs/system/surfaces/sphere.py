@@ -1,17 +1,36 @@
 """A unit sphere around the camera's centre."""
 
+from __future__ import annotations
+
 import sympy as sp
 
-from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
+from percept_obs.border import checked
+from percept_obs.system.surfaces.base import POINT, ImagingSurface, X, Y, Z
+from percept_obs.system.surfaces.lift import mu
 
 
-def sphere() -> ImagingSurface:
-    """Unit sphere in stereographic projection: y = (X, Y) / (R + Z), inverse range 1/R.
+@checked
+def sphere(outputs: int = 2) -> ImagingSurface:
+    """Unit sphere: stereographic projection y = (X, Y) / (R + Z), or the unit direction y = (X, Y, Z) / R.
 
-    It sees every direction but straight back.  Ma 2005 wishes for it in a remark (section 5, p. 72).
+    The inverse range is 1/R.  The first sees every direction but straight back, the second every direction.  Ma 2005
+    wishes for a sphere in a remark (section 5, p. 72).
+
+    Parameters
+    ----------
+    outputs : 2 or 3
+        Of the unit direction there are three, which depend on each other: y . y = 1.
+
+    Raises
+    ------
+    ValueError
+        If outputs is not 2 or 3.
     """
-    y1, y2 = sp.symbols("y1 y2", real=True)
+    if outputs not in (2, 3):
+        raise ValueError(f"a sphere has 2 or 3 outputs, not {outputs!r}")
+    y1, y2, y3 = y = sp.symbols("y1:4", real=True)
     R = sp.sqrt(X**2 + Y**2 + Z**2)
-    squared = y1**2 + y2**2
-    ray = (2 * y1 / (1 + squared), 2 * y2 / (1 + squared), (1 - squared) / (1 + squared))
-    return ImagingSurface("sphere", (X / (R + Z), Y / (R + Z)), R, ray)
+    if outputs == 3:
+        return ImagingSurface("sphere", [p / R for p in POINT], R, y, constraint=y1**2 + y2**2 + y3**2 - 1)
+    lift = mu(y1, y2, sp.S.One)
+    return ImagingSurface("sphere", (X / (R + Z), Y / (R + Z)), R, (lift * y1, lift * y2, lift - 1))

@@ -41,7 +41,7 @@ export class ObserverLab extends Live {
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
-      numbersOf: ({ A, b, normal }) => lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }),
+      numbersOf: ({ A, b, normal, xi }) => ({ ...lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }), xi }),
     });
     this.panel = new Panel(this);
     this.open(place);

@@ -17,8 +17,10 @@ export class Camera extends PointCamera {
     return super.record(settings, functions);
   }
 
-  placeOf({ surface, normal, A, b, motion, X0, period, duration, scenario }) {
-    return [surface, normal, A, b, motion, X0, period, duration, this.sampledMotion(scenario) ? scenario : ""];
+  placeOf(settings) {
+    const { surface, A, b, motion, X0, period, duration, scenario } = settings;
+    const sampled = this.sampledMotion(scenario) ? scenario : "";
+    return [surface, shapeOf(settings), A, b, motion, X0, period, duration, sampled];
   }
 
   /** The motion of a scenario that was sampled, if it was. */
@@ -81,9 +83,9 @@ export function varies(settings, { recordings, scenarios }) {
   return settings.scenario in recordings || Boolean(scenarios[settings.scenario]?.track) || isTyped(settings);
 }
 
-
-export function shapeOf(settings) {
-  return settings.surface === "plane" ? settings.normal : [];
+/** The numbers of the surface's shape, as Python's offered.py keeps them. */
+export function shapeOf({ surface, normal, xi }) {
+  return { plane: normal, unified: [xi] }[surface] ?? [];
 }
 
 /** A motion that stays as it is, as a table of one row. */

@@ -56,7 +56,9 @@ function simulation(shown, names, model) {
   const { settings } = shown;
   for (const name of ["affine", "Camera", "Scenario", "record", NOISES[settings.noise.kind]]) names.add(name);
   const noise = `${NOISES[settings.noise.kind]}(${settings.noise.size})`;
-  const surface = settings.surface === "plane" ? `plane(${list(settings.normal)})` : (model.own[settings.surface]?.call ?? `${settings.surface}()`);
+  const shape = { plane: list(settings.normal), unified: settings.xi }[settings.surface];
+  const own = model.own[settings.surface]?.call;
+  const surface = own ?? `${settings.surface}(${shape ?? ""})`;
   return [
     ...motionOf(settings, model),
     `scenario = Scenario("from the lab", motion, ${list(settings.X0)}, ${durationOf(shown)}, ${surface})`,

@@ -81,6 +81,7 @@ export class Panel extends Fieldsets {
       this.simulated(
         this.choice("surface", { choices: Object.fromEntries(named(model.surfaces)) }),
         this.onlyIf(({ surface }) => surface === "plane", element("div", {}, ...this.each("normal"))),
+        this.numberIf("xi", ({ surface }) => surface === "unified"),
         this.number("duration"),
         this.onlyIf(({ scenario }) => !model.scenarios[scenario]?.track, element("div", {}, ...this.litList("b"), this.matrix("A"), this.typed())),
         ...this.each("X0"),

@@ -6,7 +6,7 @@ import { percent } from "../../common/model/words.js";
 import { SOLID } from "../../common/page/lines.js";
 import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 
-const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range" };
+const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range", unified: "Distance Z + ξR" };
 
 export const LABELS = {
   outputs: "Image coordinates over time",

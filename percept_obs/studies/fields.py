@@ -1,0 +1,231 @@
+"""Imaging surfaces compared over a field of view: how well distance can be known in each direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from percept_obs.border import checked, limit
+from percept_obs.compile import Array, Flags, vectorised
+from percept_obs.recording import NO_NOISE, Camera
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT, ImagingSurface
+
+
+@checked
+@dataclass(frozen=True)
+class PixelNoise:
+    """Noise that is the same everywhere in the picture, whose pixels span the field of view.
+
+    Parameters
+    ----------
+    sigma : float
+        Standard deviation in pixels, in each output.
+    across : float
+        Pixels from one edge of the field of view to the other.
+    """
+
+    sigma: float = 0.5
+    across: float = 640.0
+
+    def __post_init__(self) -> None:
+        _refuse_what_is_not_positive(sigma=self.sigma, across=self.across)
+
+
+@checked
+@dataclass(frozen=True)
+class AngleNoise:
+    """Noise that is the same angle in every direction, as if the ray itself were measured.
+
+    Parameters
+    ----------
+    sigma : float
+        Standard deviation in radians, across the ray in both directions.
+    """
+
+    sigma: float = 0.002
+
+    def __post_init__(self) -> None:
+        _refuse_what_is_not_positive(sigma=self.sigma)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FieldBound:
+    """The Cramer-Rao bound of the distance over a field of view.
+
+    Parameters
+    ----------
+    surface : ImagingSurface
+    measured : tuple of str
+    angles : array of shape (N,)
+        Angles from the optical axis in radians, of columns and rows alike.
+    relative : array of shape (N, N)
+        Least relative standard deviation of the range of a point that is first seen in this direction; NaN outside of
+        the field of view.
+    seconds, distance : float
+        How long the points are seen, and their range at the beginning in metres.
+    """
+
+    surface: ImagingSurface
+    measured: tuple[str, ...]
+    angles: Array
+    relative: Array
+    seconds: float
+    distance: float
+
+    @property
+    def median(self) -> float:
+        """Median over the field of view."""
+        return float(np.nanmedian(self.relative))
+
+    def within(self, low: float, high: float) -> float:
+        """Median over the directions between two angles from the optical axis, in radians."""
+        away = np.hypot(*np.meshgrid(self.angles, self.angles))
+        return float(np.nanmedian(self.relative[(away >= low) & (away <= high)]))
+
+    def __repr__(self) -> str:
+        return (
+            f"<FieldBound of {', '.join(self.measured)} on the {self.surface.name}, {self.seconds:g} s: the range to "
+            f"{100 * self.median:.3g} % in the middle of all directions, {100 * np.nanmin(self.relative):.3g} to "
+            f"{100 * np.nanmax(self.relative):.3g} %>"
+        )
+
+
+@checked
+def field_bound(
+    surface: ImagingSurface,
+    motion: Motion,
+    noise: PixelNoise | AngleNoise,
+    field_of_view: float = np.pi / 2,
+    measured: tuple[str, ...] | None = None,
+    seconds: float = 2.0,
+    distance: float = 5.0,
+    period: float = 0.05,
+    size: int = 41,
+    doubt: float = 1.0,
+) -> FieldBound:
+    """How well the range of a point can be known, for each direction in which it is first seen.
+
+    A point in space moves linearly, X(t) = Phi(t) X(0) + d(t), so that what its images tell of X(0) adds up exactly;
+    `cramer_rao` says the same of one trajectory.  What is not in the field of view tells nothing.
+
+    Parameters
+    ----------
+    surface : ImagingSurface
+        With numbers for its shape; its centre and the field of view must be seen on it.
+    motion : Motion
+        With constant numbers.
+    noise : PixelNoise or AngleNoise
+    field_of_view : float
+        Full angle in radians of the cone around the optical axis.
+    measured : tuple of str, optional
+        Outputs that are measured; all of them when left out.
+    seconds : float
+        How long the points are seen.
+    distance : float
+        Their range at the beginning in metres.
+    period : float
+        Seconds between samples.
+    size : int
+        Directions across the field of view.
+    doubt : float
+        Relative standard deviation, in each direction of space, with which a point is known beforehand.
+
+    Raises
+    ------
+    ValueError
+        If the surface does not see the field of view, the motion varies or has no numbers, an output is not there, or a
+        number is not positive.
+
+    Examples
+    --------
+    >>> from percept_obs import affine, pinhole, sphere
+    >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
+    >>> wide = [field_bound(s, sideways, PixelNoise(), np.radians(150)).median for s in (pinhole(), sphere())]
+    >>> wide[0] > wide[1]
+    True
+    """
+    _refuse_what_is_not_positive(seconds=seconds, distance=distance, period=period, doubt=doubt)
+    if not 0 < field_of_view <= surface.field_of_view + 1e-6:
+        raise ValueError(
+            f"the field of view is {np.degrees(field_of_view):.4g} degrees; the {surface.name} sees "
+            f"{np.degrees(surface.field_of_view):.4g} around its optical axis: take a smaller one, in radians"
+        )
+    names = [symbol.name for symbol in surface.image_coordinates]
+    measured = tuple(names) if measured is None else tuple(measured)
+    if not measured or not set(measured) <= set(names):
+        raise ValueError(f"the {surface.name} has the outputs {', '.join(names)}; {measured} cannot be measured")
+    times = Camera(period, NO_NOISE).times(seconds)
+    limit(len(times) * size**2, "directions and samples", "take fewer directions or a longer period", 1e7)
+    angles = field_of_view / 2 * np.linspace(-1, 1, size)
+    starts = distance * _directions(angles).reshape(-1, 3)
+    inside = _inside(starts, field_of_view) & surface.sees(starts)
+    starts = starts[inside]
+    information = np.eye(3) / (doubt * distance) ** 2 + np.zeros((len(starts), 3, 3))
+    rows = [surface.image[names.index(name)] for name in measured]
+    gradient = vectorised(POINT, [row.diff(axis) for row in rows for axis in POINT], surface.values)
+    for Phi, moved in _paths(motion, times):
+        points = starts @ Phi.T + moved
+        seen = _inside(points, field_of_view) & surface.sees(points)
+        D = np.stack(gradient(*points[seen].T), axis=-1).reshape(-1, len(rows), 3)
+        told = D.swapaxes(1, 2) @ _weights(D, surface, points[seen], noise, field_of_view) @ D
+        information[seen] += Phi.T @ told @ Phi
+    ends, lengths = starts @ Phi.T + moved, np.linalg.norm(starts @ Phi.T + moved, axis=1)
+    along = (ends / lengths[:, None]) @ Phi
+    variance = np.einsum("ki,ki->k", along, np.linalg.solve(information, along[:, :, None])[:, :, 0])
+    relative = np.full(size**2, np.nan)
+    relative[inside] = np.sqrt(variance) / lengths
+    return FieldBound(surface, measured, angles, relative.reshape(size, size), seconds, distance)
+
+
+def pixel(surface: ImagingSurface, field_of_view: float, across: float) -> float:
+    """Size of a pixel in image coordinates, if so many of them span the widest side of the field of view."""
+    turns = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+    # a hair inside, for on the edge itself some surfaces end
+    away = field_of_view / 2 * (1 - 1e-9)
+    ring = np.stack([np.sin(away) * np.cos(turns), np.sin(away) * np.sin(turns), np.full(360, np.cos(away))], axis=-1)
+    return float(np.ptp(surface.project(ring)[:, :2], axis=0).max() / across)
+
+
+def _weights(
+    D: Array, surface: ImagingSurface, points: Array, noise: PixelNoise | AngleNoise, field_of_view: float
+) -> Array:
+    """Inverse of the covariance of the outputs' noise, shape (K, m, m) or (m, m)."""
+    if isinstance(noise, PixelNoise):
+        return np.eye(D.shape[1]) / (noise.sigma * pixel(surface, field_of_view, noise.across)) ** 2
+    spread = (noise.sigma**2 * np.sum(points**2, axis=1))[:, None, None] * D @ D.swapaxes(1, 2)
+    # three outputs depend on each other, so that their noise has no share along one direction
+    return np.asarray(np.linalg.pinv(spread, rcond=1e-10, hermitian=True))
+
+
+def _directions(angles: Array) -> Array:
+    """Unit vectors at angles from the optical axis, to the right and up, shape (N, N, 3)."""
+    right, up = np.meshgrid(angles, angles)
+    away = np.hypot(right, up)
+    share = np.sinc(away / np.pi)
+    return np.stack([share * right, share * up, np.cos(away)], axis=-1)
+
+
+def _inside(points: Array, field_of_view: float) -> Flags:
+    angle = np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    return np.asarray(angle <= field_of_view / 2 * (1 + 1e-9))
+
+
+def _paths(motion: Motion, times: Array) -> list[tuple[Array, Array]]:
+    """Phi and d of X(t) = Phi X(0) + d at the times."""
+    from scipy.linalg import expm
+
+    if motion.signal is None or not motion.signal.constant:
+        raise ValueError(f"the {motion.name} motion has no constant numbers; give it some, such as affine(A, b)")
+    values = vectorised(motion.parameters, [*motion.A, *motion.b])(*motion.known(times[:1])[0])
+    A, b = np.split(np.array(values, dtype=float), [9])
+    both = np.zeros((4, 4))
+    both[:3, :3], both[:3, 3] = A.reshape(3, 3), b
+    return [(step[:3, :3], step[:3, 3]) for step in (expm(both * t) for t in times.tolist())]
+
+
+def _refuse_what_is_not_positive(**numbers: float) -> None:
+    for name, value in numbers.items():
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} is {value}; it must be positive and finite")
