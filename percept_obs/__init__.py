@@ -2,7 +2,7 @@
 
 from percept_obs.border import TooMuchWork, WrongKind
 from percept_obs.checking import CannotRead, Review, check
-from percept_obs.observability import instantaneous, windowed
+from percept_obs.observability import Bound, Efficiency, cramer_rao, efficiency, instantaneous, windowed
 from percept_obs.observers import (
     Observer,
     ekf,
@@ -36,11 +36,13 @@ __version__ = "0.1.0"
 
 __all__ = [
     "BehindCamera",
+    "Bound",
     "Camera",
     "CannotRead",
     "CanonicalForm",
     "Clock",
     "DoesNotFit",
+    "Efficiency",
     "FirstSight",
     "Gaussian",
     "ImagingSurface",
@@ -68,6 +70,8 @@ __all__ = [
     "chained",
     "check",
     "check_consistency",
+    "cramer_rao",
+    "efficiency",
     "ekf",
     "extended_kalman",
     "ibo",
