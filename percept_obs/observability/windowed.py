@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
@@ -29,7 +29,7 @@ class Excitation(OverWindows):
         Integral of w w^T over the window that ends there.
     window : float
         Length of the windows in seconds.
-    reference : array of shape (T,)
+    uncancelled : array of shape (T,)
         How large its trace would be if no two terms of w cancelled each other.
     """
 
@@ -37,12 +37,17 @@ class Excitation(OverWindows):
     time: Array
     matrices: Array
     window: float
-    reference: Array = field(kw_only=True)
+    uncancelled: Array
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of the hidden coordinates."""
         return self.form.hidden
+
+    @property
+    def reference(self) -> Array:
+        """With one hidden coordinate the largest eigenvalue is the smallest one, and would not tell it from zero."""
+        return np.maximum(self.uncancelled, 1e-300)
 
 
 @checked
@@ -77,7 +82,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     begins = np.maximum(ends - window, time[0])
     at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in gathered.T], axis=-1)
     matrices = at[:, :-1].reshape(-1, size, size)
-    return Excitation(canonical, ends, matrices, window, reference=np.maximum(at[:, -1], 1e-300))
+    return Excitation(canonical, ends, matrices, window, at[:, -1])
 
 
 def _without_cancelling(entry: sp.Expr) -> sp.Expr:
