@@ -2,7 +2,16 @@
 
 from percept_obs.border import TooMuchWork, WrongKind
 from percept_obs.checking import CannotRead, Review, check
-from percept_obs.observability import Bound, Efficiency, cramer_rao, efficiency, instantaneous, windowed
+from percept_obs.observability import (
+    Bound,
+    Efficiency,
+    cramer_rao,
+    efficiency,
+    how_observable,
+    instantaneous,
+    lie_derivatives,
+    windowed,
+)
 from percept_obs.observers import (
     Observer,
     ekf,
@@ -74,11 +83,13 @@ __all__ = [
     "efficiency",
     "ekf",
     "extended_kalman",
+    "how_observable",
     "ibo",
     "identifier_based",
     "instantaneous",
     "integral_sliding_mode",
     "ismo",
+    "lie_derivatives",
     "linear",
     "luenberger",
     "pinhole",

@@ -1,8 +1,28 @@
-"""What can be observed: at an instant, over a window of the trajectory, by the Gramian, and how well at best."""
+"""What can be observed, in all its meanings, and how well at best."""
 
 from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.efficiency import Efficiency, efficiency
+from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
+from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives, lie_ranks
+from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observability.windowed import windowed
 
-__all__ = ["Bound", "Efficiency", "cramer_rao", "efficiency", "instantaneous", "windowed"]
+__all__ = [
+    "Bound",
+    "Codistribution",
+    "Efficiency",
+    "ErrorGramian",
+    "LieRanks",
+    "Measure",
+    "Observability",
+    "cramer_rao",
+    "efficiency",
+    "empirical_gramian",
+    "error_gramian",
+    "how_observable",
+    "instantaneous",
+    "lie_derivatives",
+    "lie_ranks",
+    "windowed",
+]

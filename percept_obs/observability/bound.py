@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,12 +39,15 @@ class Bound:
         After each sample, in the order of the form's coordinates.
     prediction : array of shape (K, n, n)
         The same had there been no sample but those that the start needs.
+    information : array of shape (K, n, n)
+        Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
     """
 
     form: PartitionedSystem
     recording: Recording
     covariance: Array
     prediction: Array
+    information: Array
 
     @property
     def time(self) -> Array:
@@ -83,6 +87,30 @@ class Bound:
         """Least relative standard deviation of the distance, to first order, shape (K,)."""
         assert self.recording.truth is not None
         return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
+
+    def kept(self, sample: int = -1) -> tuple[Array, Array]:
+        """Shares of their standard deviations at the start that hidden directions keep once a sample has come.
+
+        Parameters
+        ----------
+        sample : int
+            Its number.
+
+        Returns
+        -------
+        shares : array of shape (n2,)
+            Increasing; 1 where the samples tell nothing.
+        directions : array of shape (n2, n2)
+            Of the hidden coordinates at the start, one a column.
+        """
+        hidden = places(self.form, self.form.hidden)
+        root = np.linalg.cholesky(self.prediction[0])
+        size = np.eye(len(root))
+        left = root @ np.linalg.solve(size + root.T @ self.information[sample] @ root, root.T)
+        before = np.linalg.cholesky(self.prediction[0][np.ix_(hidden, hidden)])
+        inverse = np.linalg.inv(before)
+        values, vectors = np.linalg.eigh(inverse @ left[np.ix_(hidden, hidden)] @ inverse.T)
+        return np.sqrt(np.clip(values, 0.0, 1.0)), before @ vectors
 
     def __repr__(self) -> str:
         last = ", ".join(f"{s.name} {d:.3g}" for s, d in zip(self.form.coordinates, self.deviation[-1], strict=True))
@@ -164,9 +192,19 @@ def cramer_rao(
         )
     used = along.seen.copy()
     used[0] &= not begun
-    return Bound(
-        form, recording, covariances(along, start, noise, used), covariances(along, start, noise, np.zeros_like(used))
-    )
+    least, predicted = (covariances(along, start, noise, each) for each in (used, np.zeros_like(used)))
+    return Bound(form, recording, least, predicted, _information(along, noise, used))
+
+
+def _information(along: Linearised, noise: Array, used: Flags) -> Array:
+    """Fisher information about the start, gathered up to each sample, shape (K, n, n)."""
+    n, (count, m) = along.transitions.shape[-1], used.shape
+    since = np.stack([*accumulate(along.transitions, lambda Phi, each: each @ Phi, initial=np.eye(n))])
+    # a lost sample has no weight: its row and its column are taken out before the covariance is inverted
+    both = used[:, :, None] & used[:, None]
+    weights = np.where(both, np.linalg.inv(np.where(both, noise, np.eye(m))), 0.0)
+    rows = since[:, along.measured]
+    return np.asarray(np.cumsum(np.swapaxes(rows, 1, 2) @ weights @ rows, axis=0)).reshape(count, n, n)
 
 
 def covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> Array:

@@ -112,7 +112,7 @@ def linearised(
     count = max(1, int(np.ceil(lengths.max() / longest - 1e-4)))
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
-    h, rate = lengths / count, rates_along(form, recording, doubt)
+    h, rate = lengths / count, _rates_along(form, recording, doubt)
     state = np.zeros((len(lengths), n, 2 * n + 1))
     state[:, :, 0], state[:, :, 1 : n + 1] = recording.truth[:-1], np.eye(n)
     for k in range(count):
@@ -128,26 +128,38 @@ def linearised(
     return Linearised(form, recording, state[:, :, 1 : n + 1], state[:, :, n + 1 :])
 
 
-def rates_along(
-    form: PartitionedSystem, recording: Recording, doubt: Doubt = 0.0
+def flow_along(form: PartitionedSystem, recording: Recording) -> Callable[[Array, Array], Array]:
+    """The rate, shape (T, n), as a function of times (T,) and coordinates (T, n), with a recording's known motion."""
+    return _along(form, recording, list(rate_of(form)))
+
+
+def _rates_along(
+    form: PartitionedSystem, recording: Recording, doubt: Doubt
 ) -> Callable[[Array, Array], tuple[Array, Array, Array]]:
-    """A function of times (T,) and coordinates (T, n): rate (T, n), its Jacobian and a doubt's spread a second.
+    """The same with the rate's Jacobian and a doubt's spread a second, both of shape (T, n, n)."""
+    rate, n = rate_of(form), len(form.coordinates)
+    at = _along(form, recording, [*rate, *rate.jacobian(form.coordinates), *_spread(form, rate, doubt)])
 
-    Both of shape (T, n, n), in the order of the form's coordinates.
-    """
-    x, n = form.coordinates, len(form.coordinates)
+    def parts(times: Array, states: Array) -> tuple[Array, Array, Array]:
+        f, F, Q = np.split(at(times, states), [n, n + n * n], axis=1)
+        return f, F.reshape(-1, n, n), Q.reshape(-1, n, n)
+
+    return parts
+
+
+def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
+    """The rate in the order of the form's coordinates."""
     by_name = dict(zip((*form.x1, *form.x2), form.rate, strict=True))
-    rate = sp.ImmutableMatrix([by_name[symbol] for symbol in x])
-    entries = [*rate, *rate.jacobian(x), *_spread(form, rate, doubt)]
-    evaluate = vectorised((*x, *form.parameters), entries)
+    return sp.ImmutableMatrix([by_name[symbol] for symbol in form.coordinates])
+
+
+def _along(
+    form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]
+) -> Callable[[Array, Array], Array]:
+    """Values of expressions, one a column, as a function of times and coordinates."""
+    evaluate = vectorised((*form.coordinates, *form.parameters), expressions)
     surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
-
-    def at(times: Array, states: Array) -> tuple[Array, Array, Array]:
-        found = np.stack(evaluate(*states.T, *recording.motion.known(times).T, *surface), axis=-1)
-        found = np.broadcast_to(found, (len(states), n + 2 * n * n))
-        return found[:, :n], found[:, n : n + n * n].reshape(-1, n, n), found[:, n + n * n :].reshape(-1, n, n)
-
-    return at
+    return lambda times, states: np.stack(evaluate(*states.T, *recording.motion.known(times).T, *surface), axis=-1)
 
 
 def _spread(form: PartitionedSystem, rate: sp.ImmutableMatrix, doubt: Doubt) -> sp.ImmutableMatrix:

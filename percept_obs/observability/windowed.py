@@ -74,15 +74,22 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
 
     time = recording.time
     check_window(recording, window)
-    canonical = form.canonical_form()
-    size, terms = len(canonical.x2), _along(canonical, recording, [_without_cancelling(entry) for entry in canonical.w])
-    rows = np.hstack([information_along(form, recording).reshape(len(time), -1), (terms**2).sum(axis=1, keepdims=True)])
+    found = instants(form, recording)
+    rows = np.hstack([found.matrices.reshape(len(time), -1), found.uncancelled[:, None]])
     gathered = cumulative_trapezoid(rows, time, axis=0, initial=0)
     ends = time[from_the_start(recording.elapsed, window)]
     begins = np.maximum(ends - window, time[0])
     at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in gathered.T], axis=-1)
-    matrices = at[:, :-1].reshape(-1, size, size)
-    return Excitation(canonical, ends, matrices, window, at[:, -1])
+    matrices = at[:, :-1].reshape(-1, *found.matrices.shape[1:])
+    return Excitation(found.form, ends, matrices, window, at[:, -1])
+
+
+def instants(form: PartitionedSystem, recording: Recording) -> Excitation:
+    """The matrix w w^T at the samples: what windows of no length gather; see `windowed`."""
+    canonical = form.canonical_form()
+    terms = _along(canonical, recording, [_without_cancelling(entry) for entry in canonical.w])
+    matrices = information_along(form, recording)
+    return Excitation(canonical, recording.time, matrices, 0.0, (terms**2).sum(axis=1))
 
 
 def _without_cancelling(entry: sp.Expr) -> sp.Expr:
