@@ -8,7 +8,7 @@ import numpy as np
 
 from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step
+from percept_obs.compile.integrator import INSTANTS, step
 from percept_obs.observability.linearised import System, fitting, flow_along, linearised, places
 from percept_obs.observability.windows import OverWindows, check_samples, gathered
 from percept_obs.recording import Recording
@@ -17,6 +17,9 @@ from percept_obs.system.signal import slack_of
 
 PERTURBED = 1e-3
 """Share of a coordinate by which a run begins beside the truth."""
+
+STEP = 0.05
+"""Longest step of such runs in seconds: of what a perturbation of this size leaves, its error is a small part."""
 
 SOME = 24
 """Windows that are looked at by perturbed runs."""
@@ -144,7 +147,7 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
         if j:
             found += (before + now) * (time[at] - time[np.minimum(begins + j - 1, ends)])[:, None, None] / 2
         before = now
-        pieces = max(1, int(np.ceil(h.max() / LONGEST_STEP - 1e-4)))
+        pieces = max(1, int(np.ceil(h.max() / STEP - 1e-4)))
         for k in range(pieces):
             part, start = np.repeat(h / pieces, 2 * n), np.repeat(time[at] + k * h / pieces, 2 * n)
 

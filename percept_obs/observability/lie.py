@@ -77,12 +77,14 @@ class Codistribution:
     def along(self, recording: Recording) -> LieRanks:
         """The ranks along the truth of a recording."""
         time = recording.time
-        known = np.broadcast_to(recording.motion.known(time), (len(time), len(recording.motion.parameters)))
-        surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
-        columns = [*known.T, *surface]
-        for _ in self.derivatives:
-            known = np.gradient(known, time, axis=0)
-            columns += [*known.T, *(0.0 for _ in surface)]
+        columns: list[ArrayLike] = []
+        if self.form.parameters:
+            known = np.broadcast_to(recording.motion.known(time), (len(time), len(recording.motion.parameters)))
+            surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
+            columns = [*known.T, *surface]
+            for _ in self.derivatives:
+                known = np.gradient(known, time, axis=0)
+                columns += [*known.T, *(0.0 for _ in surface)]
         assert recording.truth is not None
         rows = self._evaluate(*recording.truth.T, *columns)
         return LieRanks(self.form, time, _scaled(rows))
@@ -229,7 +231,12 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     form = fitting(system, recording)
     signal = recording.motion.signal
     orders = len(form.coordinates) if orders is None else orders
-    return lie_derivatives(form, orders, signal is not None and not signal.constant).along(recording)
+    varying = signal is not None and not signal.constant
+    if not varying:  # with numbers, for what is 0 then drops out
+        numbers = recording.motion.values | dict(recording.view.values)
+        rate = sp.ImmutableMatrix(form.rate.xreplace({s: sp.Float(v) if v else sp.S.Zero for s, v in numbers.items()}))
+        form = PartitionedSystem(form.x1, form.x2, rate, (), form.coordinates, form.view)
+    return lie_derivatives(form, orders, varying).along(recording)
 
 
 def lost(rows: Array) -> Array:

@@ -249,9 +249,9 @@ def how_observable(
 
     Examples
     --------
-    >>> from percept_obs import PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
     >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1")
-    >>> found = how_observable(record(scenarios.ma2005_eq36(), 40), form)
+    >>> found = how_observable(record(scenarios.ma2005_eq36(), camera=Camera(0.1)), form)
     >>> [(measure.name, measure.holds) for measure in found.measures][2:5]
     [('excitation', False), ('Lie rank', True), ('error Gramian', True)]
     """
