@@ -18,6 +18,7 @@ from percept_obs import (
     cramer_rao,
     efficiency,
     ekf,
+    figures,
     pinhole,
     record,
     scenarios,
@@ -181,3 +182,14 @@ def test_efficiency_refuses_what_it_cannot_compare():
     other = track(record(scenarios.ma2005_eq36(), 10, CAMERA), ekf(BOTH))
     with pytest.raises(ValueError, match="run 2 is on another truth"):
         efficiency([run, other], bound)
+
+
+def test_the_bound_is_drawn_under_the_errors():
+    run, bound = track(RECORDING, ekf(BOTH, noise_variance=1e-4)), cramer_rao(RECORDING, BOTH)
+    figure = figures.runs_over_time(run, bound=bound)
+    (line,) = (each for each in figure.axes[1].lines if each.get_label() == "Cramer-Rao bound")
+    np.testing.assert_array_equal(line.get_xydata(), np.stack([bound.elapsed, bound.of("y3")], axis=1))
+    assert f"from {bound.of('y3')[0]:.3g} to {bound.of('y3')[-1]:.3g}, y1, y2 measured" in figure.text
+    other = cramer_rao(record(scenarios.ma2005_eq36(), 10, CAMERA), BOTH)
+    with pytest.raises(ValueError, match="along another truth"):
+        figures.runs_over_time(run, bound=other)

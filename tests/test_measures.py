@@ -13,8 +13,11 @@ from scipy.linalg import expm
 from percept_obs import (
     Camera,
     Gaussian,
+    PerspectiveSystem,
     Scenario,
     affine,
+    chained,
+    figures,
     how_observable,
     lie_derivatives,
     pinhole,
@@ -25,6 +28,7 @@ from percept_obs.observability import empirical_gramian, error_gramian, lie_rank
 from percept_obs.system.forms import partition
 from percept_obs.system.motion import TIME
 
+CHAINED = chained()
 CAMERA = Camera(0.05, Gaussian(0.01))
 EQ35 = scenarios.ma2005_eq35().motion
 A35 = np.array(EQ35.A.subs(EQ35.values), dtype=float)
@@ -269,3 +273,18 @@ def test_other_requests_that_make_no_sense_are_refused():
         lie_derivatives(BOTH).ranks_at({})
     with pytest.raises(ValueError, match="seen on no view"):
         how_observable(crossing(), SQUARE)
+
+
+def test_the_figure_draws_every_measure():
+    found = how_observable(crossing(), BOTH)
+    figure = figures.observability(found)
+    assert len(figure.axes) == 4
+    drawn = {line.get_label(): line.get_ydata() for ax in figure.axes for line in ax.lines}
+    np.testing.assert_array_equal(drawn["error Gramian (beginning)"], found.error.smallest)
+    np.testing.assert_array_equal(drawn["bound of $y_{3}$"], found.bound.of("y3"))
+    for measure in found.measures:
+        assert f"{measure.name}: {'yes' if measure.holds else 'no'}, {measure.said}" in figure.text
+    alone = how_observable(record(scenarios.ma2005_eq35(CHAINED), 4, CAMERA), PerspectiveSystem(affine(), CHAINED))
+    assert "All measures agree" in figures.observability(alone).text
+    with pytest.raises(ValueError, match="an Observability is needed"):
+        figures.observability(3)

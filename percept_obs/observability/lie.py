@@ -221,7 +221,7 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     recording : Recording
         With a truth.
     system, orders
-        See `lie_derivatives`; one order more is taken when left out, for single states need more.
+        See `lie_derivatives`.
 
     Raises
     ------
@@ -230,7 +230,6 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     """
     form = fitting(system, recording)
     signal = recording.motion.signal
-    orders = len(form.coordinates) if orders is None else orders
     varying = signal is not None and not signal.constant
     if not varying:  # with numbers, for what is 0 then drops out
         numbers = recording.motion.values | dict(recording.view.values)
