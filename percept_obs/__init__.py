@@ -4,7 +4,9 @@ from percept_obs.border import TooMuchWork, WrongKind
 from percept_obs.checking import CannotRead, Review, check
 from percept_obs.observability import (
     Bound,
+    BoundMap,
     Efficiency,
+    bound_map,
     cramer_rao,
     efficiency,
     how_observable,
@@ -46,6 +48,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BehindCamera",
     "Bound",
+    "BoundMap",
     "Camera",
     "CannotRead",
     "CanonicalForm",
@@ -76,6 +79,7 @@ __all__ = [
     "Uniform",
     "WrongKind",
     "affine",
+    "bound_map",
     "chained",
     "check",
     "check_consistency",

@@ -5,7 +5,7 @@ from percept_obs.figures.chatter import chatter
 from percept_obs.figures.comparison import comparison
 from percept_obs.figures.image_plane import image_plane
 from percept_obs.figures.many_points import depth_errors, error_norm
-from percept_obs.figures.observability import observability
+from percept_obs.figures.observability import bound_map, observability
 from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
@@ -15,6 +15,7 @@ from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
     "Figure",
+    "bound_map",
     "cases",
     "chatter",
     "comparison",

@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.patches import Circle
 
-from percept_obs.figures import axis, given, look, words
-from percept_obs.figures.base import Array, Drawing, figure, legend_above, rows
+from percept_obs.figures import axis, focus, given, look, words
+from percept_obs.figures.base import Array, Drawing, canvas, figure, legend_above, rows
+from percept_obs.observability.maps import BoundMap
 from percept_obs.observability.measures import Observability
 
 
@@ -76,3 +79,71 @@ def _logarithmic(ax: Axes) -> None:
     ax.set_yscale("log")
     ax.set_ylim(max(float(every.min()) / 3, 1e-12 * high), high)
     ax.minorticks_off()
+
+
+@figure("it is something else, or the threshold is not positive")
+def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -> Drawing:
+    """How well the distance can be known at each place of the image, on a logarithmic scale of colours.
+
+    Over it the focus of expansion, where there is one, with both outputs and a constant motion the circle
+    |w| = threshold, and with one output the lines on which w vanishes.
+
+    Parameters
+    ----------
+    found : BoundMap
+    threshold : float
+        Positive; in m/s, as w is.
+    """
+    given.one(found, BoundMap, "bound_map(system)")
+    if not threshold > 0:
+        raise ValueError(f"the threshold is {threshold}; it must be positive")
+    own, system = ax is None, found.system
+    ax = canvas(ax, 5.6)
+    percent = np.ma.masked_invalid(100 * found.relative)
+    ends = (found.y1[0], found.y1[-1], found.y2[0], found.y2[-1])
+    colours: dict[str, Any] = {"norm": LogNorm(), "cmap": "viridis_r", "origin": "lower", "interpolation": "bilinear"}
+    picture = ax.imshow(percent, extent=ends, **colours)
+    ax.grid(False)
+    ax.set(xlabel=words.label("y1", system.surface), ylabel=words.label("y2", system.surface))
+    if own:
+        whole: Any = ax.get_figure(root=True)
+        bar = whole.colorbar(picture, ax=ax, shrink=0.8)
+        bar.set_label("least error of the distance (%)")
+    best, worst = (
+        np.unravel_index(pick(found.relative), found.relative.shape) for pick in (np.nanargmin, np.nanargmax)
+    )
+    yield (
+        f"Least relative standard deviation of the distance after {found.seconds:g} s at each place of the image, "
+        f"{', '.join(found.measured)} measured, of points {found.distance:g} m away at the beginning: "
+        f"{percent[best]:.3g} % at best, at {_where(found, best)}, and {percent[worst]:.3g} % at worst, at "
+        f"{_where(found, worst)}."
+    )
+    behind = int(np.isnan(found.relative).sum())
+    yield f"{behind} of {found.relative.size} places are empty: a point comes behind the camera." if behind else ""
+    yield _draw_zero_set(ax, found, threshold)
+    ax.set(xlim=ends[:2], ylim=ends[2:])
+    if ax.get_legend_handles_labels()[1]:
+        legend_above(ax, centred=True, fitting=66)
+    return [ax]
+
+
+def _where(found: BoundMap, place: Sequence[Any]) -> str:
+    return words.place(np.array([found.y1[place[1]], found.y2[place[0]]]))
+
+
+def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
+    """Draw where w vanishes or is small, and say it."""
+    system = found.system
+    centre = focus.of_expansion(system, np.zeros(1))[0]
+    if not np.isfinite(centre).all():
+        return "There is no focus of expansion in this plane."
+    if len(found.measured) == 1:
+        return focus.draw_blind_lines(ax, system, *found.measured)
+    ax.plot(*centre, color=look.VERMILLION, label="focus of expansion", **focus.CROSS)
+    radius = focus.blind_radius(system, found.measured, threshold)
+    told = f"The focus of expansion is at {words.place(centre)}."
+    if not np.isfinite(radius):
+        return told
+    name = f"$|w| = {threshold:g}$"
+    ax.add_patch(Circle(centre, radius, fill=False, edgecolor=look.VERMILLION, linewidth=1.4, label=name))
+    return f"{told} The circle |w| = {threshold:g} around it has the radius {radius:.3g}."
