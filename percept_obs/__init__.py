@@ -12,6 +12,8 @@ from percept_obs.observability import (
     how_observable,
     instantaneous,
     lie_derivatives,
+    steered,
+    steering,
     windowed,
 )
 from percept_obs.observers import (
@@ -108,6 +110,8 @@ __all__ = [
     "sliding_mode",
     "smo",
     "sphere",
+    "steered",
+    "steering",
     "track",
     "windowed",
     "with_point",

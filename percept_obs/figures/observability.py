@@ -101,7 +101,8 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     ax = canvas(ax, 5.6)
     percent = np.ma.masked_invalid(100 * found.relative)
     ends = (found.y1[0], found.y1[-1], found.y2[0], found.y2[-1])
-    colours: dict[str, Any] = {"norm": LogNorm(), "cmap": "viridis_r", "origin": "lower", "interpolation": "bilinear"}
+    scale = LogNorm(*np.nanpercentile(100 * found.relative, [2, 100]))  # what comes near has the rest for itself
+    colours: dict[str, Any] = {"norm": scale, "cmap": "viridis_r", "origin": "lower", "interpolation": "bilinear"}
     picture = ax.imshow(percent, extent=ends, **colours)
     ax.grid(False)
     ax.set(xlabel=words.label("y1", system.surface), ylabel=words.label("y2", system.surface))

@@ -7,6 +7,7 @@ from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivati
 from percept_obs.observability.maps import BoundMap, MapKernel, bound_map, map_kernel
 from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
+from percept_obs.observability.steering import Steering, steered, steering
 from percept_obs.observability.windowed import windowed
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "MapKernel",
     "Measure",
     "Observability",
+    "Steering",
     "bound_map",
     "cramer_rao",
     "efficiency",
@@ -29,5 +31,7 @@ __all__ = [
     "lie_derivatives",
     "lie_ranks",
     "map_kernel",
+    "steered",
+    "steering",
     "windowed",
 ]
