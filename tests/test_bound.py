@@ -28,6 +28,7 @@ from percept_obs import (
 from percept_obs.compile import Table, solve
 from percept_obs.compile.integrator import EACH, step_grid
 from percept_obs.observability import bound_filter
+from percept_obs.observers import OBSERVERS
 
 CAMERA = Camera(0.05, Gaussian(0.01))
 RECORDING = record(scenarios.ma2005_eq35(), 10, CAMERA)
@@ -131,10 +132,10 @@ def ratio(form, deviation, seeds, seconds):
 @pytest.mark.parametrize("form", [BOTH, ONE], ids=["y1+y2", "y1"])
 def test_the_extended_kalman_filter_reaches_the_bound(form):
     """Over 500 seeds the ratio is known to lie between 0.97 and 1.05; fewer seeds scatter more."""
-    found = ratio(form, 0.1, sampled(60, 500), 80)
+    found = ratio(form, 0.1, sampled(40, 500), 80)
     margin = sampled(3 * found.scatter(20, 80), 0)
     assert 0.95 - margin < found.mean(20, 80) < 1.1 + margin
-    assert found.scatter(20, 80) < sampled(0.15, 0.05)
+    assert found.scatter(20, 80) < sampled(0.2, 0.05)
 
 
 def test_scatter_is_that_of_repeated_sets_of_runs():
@@ -228,3 +229,38 @@ def test_the_page_s_language_computes_the_same(node):
     _, equations, start, table, gains, _, _ = told_the_truth(ONE)
     here, there = solve(equations, start, table, gains), solve_in_node(node, equations, start, table, gains)
     np.testing.assert_allclose(there.states, here.states, rtol=1e-9, atol=1e-12)
+
+
+def ratios(scenario, seeds, seconds, language):
+    """Every observer's errors over the bound in the later half, with the scatter and the largest bias."""
+    form, deviation, found = AFFINE.measure("y1", "y2"), 0.1, {}
+    recordings = [record(scenario, seconds, CAMERA, seed) for seed in range(seeds)]
+    starts = [each.truth[0] + np.random.default_rng(seed).normal(0, 0.1, 3) for seed, each in enumerate(recordings)]
+    bound = cramer_rao(recordings[0], form, deviation**2 * np.eye(3))
+    for make in OBSERVERS:
+        observer = make(form, *TUNED.get(make.key, ()))
+        runs = [
+            track(each, observer, start, hold="first", language=language)
+            for each, start in zip(recordings, starts, strict=True)
+        ]
+        errors = efficiency(runs, bound)
+        late = seconds / 2
+        found[make.key] = errors.mean(late), errors.scatter(late), errors.bias(late)
+    return found
+
+
+TUNED = {"linear_approximation": (2,)}
+SCENES = {"(35)": scenarios.ma2005_eq35(), "(36)": scenarios.ma2005_eq36(), "planar": scenarios.planar()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_no_observer_lies_below_the_bound(name):
+    """By more than three times the scatter that N seeds have at the bound, 1 / sqrt(2 N); the filter comes near it."""
+    seeds = sampled(24, 200)
+    scatter = 1 / np.sqrt(2 * seeds)
+    found = ratios(SCENES[name], seeds, sampled(4, 20), sampled("python", "numba"))
+    assert not {key: each for key, each in found.items() if each[0] < 1 - 3 * scatter}
+    nearest = min(found, key=lambda key: found[key][0])
+    assert nearest == "extended_kalman"
+    assert found[nearest][0] < 1.2 + 3 * scatter

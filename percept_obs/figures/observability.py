@@ -135,7 +135,7 @@ def _where(found: BoundMap, place: Sequence[Any]) -> str:
 def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
     """Draw where w vanishes or is small, and say it."""
     system = found.system
-    centre = focus.of_expansion(system, np.zeros(1))[0]
+    centre = focus.of_expansion(system, np.zeros(1))[0] + 0.0  # so that no zero has a sign
     if not np.isfinite(centre).all():
         return "There is no focus of expansion in this plane."
     if len(found.measured) == 1:

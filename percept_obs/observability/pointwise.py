@@ -116,7 +116,7 @@ class InstantaneousObservability:
         verdict = r"\text{an instant can suffice}"
         if not self.suffices:
             verdict = rf"\text{{rank }} {self.rank} < {len(self.form.x2)}\text{{: no instant suffices}}"
-        vanishes = rf"w = {sp.latex(self.factors)} = 0 \text{{ there, nothing is seen}}"
+        vanishes = rf"\text{{nothing is seen where }} w = {sp.latex(self.factors)} = 0"
         return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict};\quad {vanishes}$"
 
 
