@@ -164,6 +164,7 @@ def _efficiency(errors):
         ({"prior": np.eye(2)}, r"expected \(3, 3\)"),
         ({"prior": -np.eye(3)}, "not positive"),
         ({"doubt": -1.0}, "finite and not negative"),
+        ({"doubt": 1e308}, "too large or too small"),
         ({"doubt": {"c": 1.0}}, "no c to doubt"),
         ({"step": 0.0}, "must be positive"),
         ({"system": PerspectiveSystem(affine(), ON_SPHERE.surface)}, "use the same view"),

@@ -108,9 +108,11 @@ def test_the_figure_names_its_best_and_worst_places():
         ({"distance": -1.0}, "distance is -1"),
         ({"noise_variance": float("nan")}, "noise_variance is nan"),
         ({"y1": (1.0, -1.0)}, "the smaller one first"),
-        ({"measured": ("y3",)}, "cannot measure 'y3'"),
+        ({"measured": ("y3",)}, "name at least one of y1, y2"),
+        ({"period": 5e-324}, "lengthen the period"),
+        ({"distance": 1e308}, "no place of the image has a bound"),
         ({"resolution": 1}, "two places or more"),
-        ({"resolution": 5000}, "coarser map"),
+        ({"resolution": 5000}, "lower the resolution"),
         ({"system": PerspectiveSystem(EQ35, plane((0.0, 0.0, 1.0), outputs=3))}, "a map is of two"),
     ],
 )

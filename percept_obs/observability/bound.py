@@ -185,15 +185,23 @@ def cramer_rao(
         raise ValueError(f"the step is {step} s; it must be positive and finite")
     noise = _noise(recording, form, noise_variance)
     start, begun = _start(form, prior, noise[0])
-    along = linearised(form, recording, doubt, step)
+    with np.errstate(all="ignore"):  # what overflows is told below
+        along = linearised(form, recording, doubt, step)
     if begun and not along.seen[0].all():
         raise ValueError(
             "the first sample was lost, so that the measured outputs need a prior; give one, or cut it off"
         )
     used = along.seen.copy()
     used[0] &= not begun
-    least, predicted = (covariances(along, start, noise, each) for each in (used, np.zeros_like(used)))
-    return Bound(form, recording, least, predicted, _information(along, noise, used))
+    with np.errstate(all="ignore"):
+        least, predicted = (covariances(along, start, noise, each) for each in (used, np.zeros_like(used)))
+        information = _information(along, noise, used)
+    if not all(np.isfinite(each).all() for each in (least, predicted, information)):
+        raise ValueError(
+            "the bound leaves every range of numbers on the way: the doubt, the noise_variance or the prior is too "
+            "large or too small, or the step too long"
+        )
+    return Bound(form, recording, least, predicted, information)
 
 
 def _information(along: Linearised, noise: Array, used: Flags) -> Array:

@@ -173,7 +173,8 @@ def bound_map(
     surface, motion = system.surface, system.motion
     names = tuple(symbol.name for symbol in surface.image_coordinates)
     measured = names if measured is None else tuple(measured)
-    system.partition(*measured)
+    if not measured or len(set(measured)) != len(measured) or not set(measured) <= set(names):
+        raise ValueError(f"measured is {measured}; name at least one of {', '.join(names)}, each once")
     if len(names) != 2:
         raise ValueError(f"the {surface.name} has {len(names)} image coordinates; a map is of two")
     for name, value in {
@@ -190,8 +191,14 @@ def bound_map(
             raise ValueError(f"the image ends at {name} = {ends}; give two finite numbers, the smaller one first")
     if resolution < 2:
         raise ValueError(f"the resolution is {resolution}; a map has two places or more along a side")
-    count = int(np.floor(seconds / period + 1e-9)) + 1
-    limit(count * resolution**2, "places and samples", "take a coarser map or a longer period", 1e8)
+    samples = seconds / period
+    limit(
+        samples * resolution**2,
+        "places and samples",
+        "lower the resolution or the seconds, or lengthen the period",
+        1e8,
+    )
+    count = int(np.floor(samples + 1e-9)) + 1
     columns, rows = np.linspace(*y1, resolution), np.linspace(*y2, resolution)
     places = np.stack([each.ravel() for each in np.meshgrid(columns, rows)], axis=-1)
     points = surface.locate(np.hstack([places, np.full((len(places), 1), 1 / distance)]))
@@ -207,6 +214,12 @@ def bound_map(
             seen &= away > 0
         (relative,) = vectorised((*INFORMATION, *PLACE), [kernel.finish], values)(*J, *last)
     relative = np.where(seen, relative, np.nan).reshape(resolution, resolution)
+    if not np.isfinite(relative).any():
+        raise ValueError(
+            f"no place of the image has a bound: points seen from y1 = {y1}, y2 = {y2} at a distance of {distance} m "
+            f"come behind the camera within seconds = {seconds}, or noise_variance = {noise_variance} or "
+            f"hidden_variance = {hidden_variance} is beyond all measure; give other numbers"
+        )
     return BoundMap(system, measured, columns, rows, relative, float(period * (count - 1)), distance)
 
 
