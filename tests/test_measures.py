@@ -270,7 +270,7 @@ def test_other_requests_that_make_no_sense_are_refused():
     with pytest.raises(ValueError, match="order 0"):
         lie_derivatives(BOTH, -1)
     with pytest.raises(ValueError, match="fewer orders"):
-        lie_derivatives(BOTH, 12)
+        lie_derivatives(BOTH, 10**12)
     with pytest.raises(ValueError, match="no values for"):
         lie_derivatives(BOTH).ranks_at({})
     with pytest.raises(ValueError, match="seen on no view"):

@@ -196,7 +196,8 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
     orders = len(x) - 1 if orders is None else orders
     if orders < 0:
         raise ValueError(f"the orders are {orders}; the outputs themselves are the order 0")
-    limit(len(form.x1) * len(x) * 4**orders, "entries of Lie derivatives", "ask for fewer orders", MOST_TERMS)
+    terms = len(form.x1) * len(x) * 4.0 ** min(orders, 99)
+    limit(terms, "terms of Lie derivatives", "ask for fewer orders", MOST_TERMS)
     f = rate_of(form)
     names = [tuple(sp.Symbol(f"{s.name}^({k})", real=True) for s in p) for k in range(1, orders)] if varying else []
     chain = [p, *names]
