@@ -1,6 +1,9 @@
 """A map of the image is the bound at each place, quickly, with the focus of expansion where the motion has it."""
 
+import json
+import subprocess
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,7 +26,7 @@ from percept_obs import (
     scenarios,
     sphere,
 )
-from percept_obs.observability.maps import displacements
+from percept_obs.observability.maps import HIDDEN_VARIANCE, NOISE_VARIANCE, displacements, map_kernel
 
 EQ35 = scenarios.ma2005_eq35().motion
 SYSTEM = PerspectiveSystem(EQ35, pinhole())
@@ -126,3 +129,25 @@ def test_the_figure_refuses_what_is_no_map():
         figures.bound_map(1)
     with pytest.raises(ValueError, match="must be positive"):
         figures.bound_map(bound_map(SYSTEM, resolution=3), threshold=0)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize(
+    ("surface", "measured"), [(pinhole(), ("y1", "y2")), (sphere(), ("y1",)), (plane((0.1, -0.2, 0.9)), ("y1", "y2"))]
+)
+def test_the_page_computes_the_same(node, surface, measured):
+    """48 x 48 places; the printed functions and the page's loop over them, against numpy."""
+    found = bound_map(PerspectiveSystem(EQ35, surface), 1.0, 4.0, measured, (-0.5, 2.5), (-0.7, 2.3), 48)
+    Phi, moved = displacements(EQ35, 0.05 * np.arange(21.0))
+    grid = np.stack([each.ravel() for each in np.meshgrid(found.y1, found.y2)], axis=-1)
+    points = surface.locate(np.hstack([grid, np.full((len(grid), 1), 1 / 4)]))
+    kernel = map_kernel(surface, measured)
+    given = {"points": points, "Phi": Phi, "moved": moved, "shape": np.array([surface.values[s] for s in kernel.shape])}
+    given = {name: values.ravel().tolist() for name, values in given.items()}
+    given |= {"noiseVariance": NOISE_VARIANCE, "hiddenVariance": HIDDEN_VARIANCE}
+    task = json.dumps({"sources": kernel.sources(), "given": given})
+    script = Path(__file__).with_name("run_map.mjs")
+    answer = json.loads(subprocess.check_output([node, script], input=task, text=True))
+    there = np.array([np.nan if value is None else value for value in answer["found"]])
+    np.testing.assert_allclose(there, found.relative.ravel(), rtol=1e-9)
+    assert answer["seconds"] < 1

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.border import checked, limit
-from percept_obs.compile import Array, vectorised
+from percept_obs.compile import Array, Printed, function_source, vectorised
 from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
@@ -47,11 +47,23 @@ class MapKernel:
         A sample's share of the six entries, and the distance.
     finish : expression of J's entries and of `PLACE`
         The relative standard deviation of the distance.
+    shape : tuple of symbols
+        What shapes the surface, such as a plane's normal vector.
     """
 
     begin: Expressions
     gather: Expressions
     finish: sp.Expr
+    shape: tuple[sp.Symbol, ...] = ()
+
+    def sources(self, language: Printed = "javascript") -> dict[str, str]:
+        """Functions ``evaluate(x, out)`` for "begin", "gather" and "finish"; their arguments end with `shape`."""
+        place = (*PLACE, *self.shape)
+        return {
+            "begin": function_source((*START, *self.shape), self.begin, language),
+            "gather": function_source(place, self.gather, language),
+            "finish": function_source((*INFORMATION, *place), (self.finish,), language),
+        }
 
 
 @lru_cache(maxsize=64)
@@ -71,13 +83,16 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(begins)
     rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(there) * PHI
     slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(there) * PHI
+    # slope J^-1 slope^T with J = L D L^T, for less is lost to rounding than with determinants
     a, b, c, d, e, f = INFORMATION
-    J = sp.ImmutableMatrix([[a, b, c], [b, d, e], [c, e, f]])
-    adjugate = J.adjugate(method="laplace")
-    determinant = sum(a * b for a, b in zip(J.row(0), adjugate.col(0), strict=True))
-    variance = (slope * adjugate * slope.T)[0] / determinant
+    along, below = b / a, c / a
+    second = d - along * b
+    across = (e - below * b) / second
+    third = f - below * c - across**2 * second
+    z1, z2, z3 = slope[0], slope[1] - along * slope[0], slope[2] - below * slope[0]
+    variance = z1**2 / a + z2**2 / second + (z3 - across * z2) ** 2 / third
     distance = surface.distance.xreplace(there)
-    return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance)
+    return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance, surface.parameters)
 
 
 @checked
