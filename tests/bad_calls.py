@@ -22,7 +22,14 @@ import sympy as sp
 
 import percept_obs as po
 from percept_obs import observers, points, structure
-from percept_obs.observability import gramian, instantaneous
+from percept_obs.observability import (
+    bound_filter,
+    empirical_gramian,
+    error_gramian,
+    gramian,
+    instantaneous,
+    lie_ranks,
+)
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
 from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
@@ -63,6 +70,7 @@ def calls():
     recording = po.record(scenario, 2, po.Camera(0.05, po.Uniform(0.01)))
     observer, filter_ = po.ibo(form), po.ekf(form)
     run, filtered = po.track(recording, observer), po.track(recording, filter_)
+    bound, moving = po.cramer_rao(recording, form), po.PerspectiveSystem(motion, po.pinhole())
     body = points.rigid_body(2, [0, 0, 0.1], [0.1, 0, 0], [0, 0.2, 0])
     state = (0.2, 0.3, 2, 0.1, 0.2, 0.3)
     bodies = po.PointsScenario("b", body, state, 2.0)
@@ -194,6 +202,20 @@ def calls():
         (po.instantaneous, {"form": form}),
         (instantaneous(form).circle, {"threshold": 0.1}),
         (po.windowed, {"form": form, "recording": recording, "window": 1.0}),
+        (po.how_observable, {"recording": recording, "system": form, "window": 1.0, "noise_variance": 1e-4}),
+        (po.cramer_rao, {"recording": recording, "system": form, "prior": np.eye(3), "doubt": 0.1, "step": 0.01}),
+        (po.efficiency, {"runs": [run, run], "bound": bound, "coordinate": "y3"}),
+        (po.lie_derivatives, {"system": form, "orders": 1, "varying": False}),
+        (lie_ranks, {"recording": recording, "system": form, "orders": 1}),
+        (error_gramian, {"recording": recording, "system": form, "window": 1.0}),
+        (empirical_gramian, {"recording": recording, "system": form, "window": 1.0, "perturbed": 1e-3}),
+        (bound_filter, {"system": form}),
+        (
+            po.bound_map,
+            {"system": moving, "seconds": 1.0, "distance": 4.0, "measured": ("y1",), "y1": (-1, 1), "resolution": 4},
+        ),
+        (po.steering, {"system": system, "velocity": ("b1", "b2", "b3")}),
+        (po.steered, {"scenario": scenario, "gain": 5.0, "step": 0.01}),
         (gramian.gramian, {"recording": seen, "window": 1.0}),
         (gramian.linear_gramian, {"recording": seen, "window": 1.0}),
         (gramian.decay_bound, {"recording": seen, "observer": luenberger, "window": 1.0}),

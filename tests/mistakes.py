@@ -128,4 +128,24 @@ MISTAKES = {
         "ahead": ["a", "b", "d"],
         "lens": [0.0, 0.5, 0.8, 1.0],
     },
+    "11_observability": {
+        "rate": [
+            "y1' = a12 y2 - b1 y3",
+            "y1' = a12 y2 + b1",  # divided by Z in the first term only
+            "y1' = a12 y1 y2 + b1 y3",
+            "y1' = a12 y2",
+        ],
+        "dip": ["a", "b", "d"],
+        "best": [(0, 0, 1), (1, 0, 0), (0.4, 0.2, 1), (-0.2, 0.4, 0)],
+    },
+    "12_the_limit": {
+        "linear": [
+            "e3' = -b3 y3 e3",
+            "e3' = 2 b3 y3 e3",
+            "e3' = -2 b3 y3^2 e3",
+            "e3' = -b3 y3^2",
+        ],
+        "half": ["a", "b", "d"],
+        "wait": [2, 5, 7, 10],
+    },
 }

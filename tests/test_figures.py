@@ -560,9 +560,14 @@ def test_excitation_is_drawn_with_its_least_value(runs):
     paint(figure)
 
 
+def replaced(one, smallest):
+    """The excitation with other smallest eigenvalues."""
+    return replace(one, matrices=smallest[:, None, None] * np.eye(one.matrices.shape[1]))
+
+
 def test_round_off_is_clipped_and_counted(runs):
     one = windowed(form("y1"), runs("(35), both outputs").recording)
-    figure = figures.excitation(replace(one, smallest=np.where(one.time > 70, -1e-20, one.smallest)))
+    figure = figures.excitation(replaced(one, smallest=np.where(one.time > 70, -1e-20, one.smallest)))
     assert figure.axes[0].lines[0].get_ydata().min() == 1e-16
     assert f"{(one.time > 70).sum()} values below 1e-16" in figure.text
     paint(figure)
@@ -571,11 +576,11 @@ def test_round_off_is_clipped_and_counted(runs):
 def test_unknown_windows_are_gaps_and_counted(runs):
     one = windowed(form("y1"), runs("(35), both outputs").recording)
     late = one.time > 70
-    figure = figures.excitation(replace(one, smallest=np.where(late, np.nan, one.smallest)))
+    figure = figures.excitation(replaced(one, smallest=np.where(late, np.nan, one.smallest)))
     np.testing.assert_array_equal(np.isnan(figure.axes[0].lines[0].get_ydata()), late)
     assert f"Unknown: {late.sum()} of {len(late)} windows" in figure.text
     with pytest.raises(ValueError, match="no finite value"):
-        figures.excitation(replace(one, smallest=np.full(len(late), np.nan)))
+        figures.excitation(replaced(one, smallest=np.full(len(late), np.nan)))
 
 
 # ---- what a figure is

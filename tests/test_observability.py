@@ -10,6 +10,7 @@ from percept_obs import (
     PerspectiveSystem,
     Recording,
     Scenario,
+    StructureAndMotion,
     affine,
     ibo,
     instantaneous,
@@ -17,6 +18,7 @@ from percept_obs import (
     plane,
     record,
     scenarios,
+    sphere,
     track,
     windowed,
 )
@@ -86,3 +88,27 @@ def test_lost_samples_are_interpolated_where_there_is_no_truth():
 def test_windows_that_do_not_fit_are_refused(window):
     with pytest.raises(ValueError, match="must be positive and at most 20 s"):
         windowed(ONE, record(scenarios.ma2005_eq35(), 20), window)
+
+
+def test_one_output_has_the_eigenvalues_0_and_what_is_printed():
+    """(18) asks for the smaller one, (20) prints the larger one; the characteristic polynomial says so."""
+    found = instantaneous(ONE)
+    value = sp.Symbol("lambda")
+    expected = sp.Mul(*(value - each for each in found.eigenvalues)).expand()
+    assert sp.expand((value * sp.eye(2) - found.information).det() - expected) == 0
+    assert found.eigenvalues[0] == 0
+    a12, a32 = sp.symbols("a12 a32", real=True)
+    assert sp.expand(found.eigenvalues[1] - (a12 - a32 * y1) ** 2 - (b1 - b3 * y1) ** 2) == 0
+    assert found.condition == 0
+    with pytest.raises(ValueError, match="no short form"):
+        _ = instantaneous(StructureAndMotion(("v_p1", "v_p2", "v_p3")).form).eigenvalues
+
+
+def test_the_condition_is_shown_in_factors():
+    """On the sphere w is not zero at the focus of expansion by chance: its factors have the same zeros."""
+    assert instantaneous(BOTH).condition == (b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2
+    system = PerspectiveSystem(affine([[0] * 3] * 3, [1, 2, 2]), sphere())
+    found = instantaneous(system.measure("y1", "y2"))
+    focus = dict(zip(found.form.x1, system.foe.subs(system.values), strict=True))
+    values = found.form.values | system.values
+    assert [sp.simplify(entry.subs(values).subs(focus)) for entry in found.factors] == pytest.approx([0, 0], abs=1e-12)

@@ -21,6 +21,7 @@ Thing = TypeVar("Thing", bound=Callable[..., Any])
 
 EXAMPLES = MappingProxyType(
     {
+        "Bound": "cramer_rao(recording, form)",
         "Camera": "Camera(period=0.01)",
         "Clock": "Clock(zero=0, tick=1e-3)",
         "CanonicalForm": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',

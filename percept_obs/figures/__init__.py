@@ -7,6 +7,7 @@ from percept_obs.figures.entries import entries
 from percept_obs.figures.fields import fields
 from percept_obs.figures.image_plane import image_plane
 from percept_obs.figures.many_points import depth_errors, error_norm
+from percept_obs.figures.observability import bound_map, observability
 from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
 from percept_obs.figures.signals import signals
@@ -17,6 +18,7 @@ from percept_obs.figures.windows import consistency, excitation, gramian
 
 __all__ = [
     "Figure",
+    "bound_map",
     "cases",
     "chatter",
     "comparison",
@@ -29,6 +31,7 @@ __all__ = [
     "fields",
     "gramian",
     "image_plane",
+    "observability",
     "quantities",
     "runs_over_time",
     "scan",

@@ -7,8 +7,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.lib.stride_tricks import sliding_window_view
 
+from percept_obs.figures import given
 from percept_obs.figures.base import Array
-from percept_obs.figures.look import GREY
+from percept_obs.figures.look import BOUND, GREY
+from percept_obs.observability.bound import Bound
+from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_interval
 from percept_obs.tracking.run import Run
 
@@ -38,6 +41,19 @@ def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], loo
         note = f"bold: root mean square over {(time[-1] - time[0]) * width / len(time):.1g} s"
         ax.set_title(note, loc="right", fontsize="small", color=GREY)
     draw(ax, time, errors, labels, looks)
+
+
+def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) -> str:
+    """Draw the least standard deviation of a coordinate under its errors, and say it."""
+    given.one(bound, Bound, "cramer_rao(recording, system)")
+    if not given.equal(bound.recording.truth, recording.truth):
+        raise ValueError("the bound is along another truth than the runs; draw runs on the recording of the bound")
+    least = bound.of(coordinate)
+    ax.plot(bound.elapsed, least, label="Cramer-Rao bound", **BOUND)
+    return (
+        "No unbiased observer's root mean square error lies below the Cramer-Rao bound, a grey line from "
+        f"{least[0]:.3g} to {least[-1]:.3g}, {', '.join(bound.form.measured)} measured."
+    )
 
 
 def _root_mean_square(values: Array, width: int) -> Array:

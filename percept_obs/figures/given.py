@@ -48,7 +48,7 @@ def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
         same = {
             "surfaces": other.view.fits(first.view),
             "times": np.array_equal(other.time, first.time),
-            "truths": _equal(other.truth, first.truth),
+            "truths": equal(other.truth, first.truth),
         }
         differing = [what for what, alike in same.items() if not alike]
         if differing:
@@ -59,7 +59,8 @@ def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
     return found
 
 
-def _equal(one: Any, other: Any) -> bool:
+def equal(one: Any, other: Any) -> bool:
+    """Whether two arrays are the same, or both are missing."""
     return one is other if one is None or other is None else np.array_equal(one, other)
 
 

@@ -18,6 +18,7 @@ COLOURS = (VERMILLION, BLUE, GREEN, PURPLE, ORANGE)
 TRUTH: dict[str, Any] = {"color": BLACK, "linestyle": "-", "linewidth": 1.2, "label": "truth"}
 ESTIMATE: dict[str, Any] = {"color": VERMILLION, "linestyle": "--", "linewidth": 1.6, "label": "estimate"}
 SAMPLES: dict[str, Any] = {"color": SKY, "linestyle": "", "marker": ".", "alpha": 0.6, "label": "samples"}
+BOUND: dict[str, Any] = {"color": GREY, "linestyle": "-", "linewidth": 2.0, "zorder": 1.5}
 START: dict[str, Any] = {"marker": "o", "linestyle": "", "markerfacecolor": "white", "label": "start"}
 END: dict[str, Any] = {"marker": "s", "linestyle": "", "label": "end"}
 

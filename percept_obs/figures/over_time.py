@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from percept_obs.figures import axis, curves, given, look, words
 from percept_obs.figures.base import Array, Drawing, figure, legend_above, rows
+from percept_obs.observability.bound import Bound
 from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.system.surfaces import ImagingSurface
@@ -23,6 +24,7 @@ def runs_over_time(
     coordinate: str | None = None,
     axes: Sequence[Axes] | None = None,
     tolerance: float = TOLERANCE,
+    bound: Bound | None = None,
 ) -> Drawing:
     """One coordinate as several observers estimate it, and their errors.
 
@@ -37,6 +39,8 @@ def runs_over_time(
         Such as "y1"; the inverse distance when left out.
     tolerance : float
         Bound on the relative error of the distance, for the verdicts.
+    bound : Bound, optional
+        From `cramer_rao` on the same truth: the least standard deviation, drawn under the errors.
     """
     runs = given.runs_of_one_point(runs)
     labels = given.labels_for(labels, _descriptions(runs))
@@ -58,6 +62,7 @@ def runs_over_time(
     upper.plot(recording.elapsed, truth, **look.TRUTH)
     curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
     curves.draw_errors(lower, recording.elapsed, errors, labels, looks)
+    least = curves.draw_bound(lower, recording, bound, coordinate) if bound is not None else ""
     upper.set_ylabel(words.label(coordinate, view))
     lower.set_ylabel(f"|error of {words.letter(coordinate)}|")
     outside = axis.linear(upper, truth, estimates, f"the estimates of {said}")
@@ -70,7 +75,10 @@ def runs_over_time(
         yield words.joined(f"{name}:", words.story(run, tolerance), claim)
     yield outside
     yield axis.log(lower, errors, "the errors")
+    yield least
     legend_above(upper)
+    if least:
+        lower.legend(*(part[-1:] for part in lower.get_legend_handles_labels()), loc="upper right", frameon=False)
     return [upper, lower]
 
 

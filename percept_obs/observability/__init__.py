@@ -1,6 +1,39 @@
-"""What can be observed: at an instant, over a window of the trajectory, and by the Gramian."""
+"""What can be observed, in all its meanings, and how well at best."""
 
+from percept_obs.observability.bound import Bound, cramer_rao
+from percept_obs.observability.bound_filter import bound_filter
+from percept_obs.observability.efficiency import Efficiency, efficiency
+from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
+from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives, lie_ranks
+from percept_obs.observability.maps import BoundMap, MapKernel, bound_map, map_kernel
+from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
+from percept_obs.observability.steering import Steering, steered, steering
 from percept_obs.observability.windowed import windowed
 
-__all__ = ["instantaneous", "windowed"]
+__all__ = [
+    "Bound",
+    "BoundMap",
+    "Codistribution",
+    "Efficiency",
+    "ErrorGramian",
+    "LieRanks",
+    "MapKernel",
+    "Measure",
+    "Observability",
+    "Steering",
+    "bound_filter",
+    "bound_map",
+    "cramer_rao",
+    "efficiency",
+    "empirical_gramian",
+    "error_gramian",
+    "how_observable",
+    "instantaneous",
+    "lie_derivatives",
+    "lie_ranks",
+    "map_kernel",
+    "steered",
+    "steering",
+    "windowed",
+]

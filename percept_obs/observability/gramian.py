@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate
 from types import MappingProxyType
 
@@ -13,7 +12,7 @@ import numpy as np
 from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
-from percept_obs.observability.windowed import check_window
+from percept_obs.observability.windows import OverWindows, check_samples, gathered
 from percept_obs.points.conditions import conditions
 from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
@@ -21,13 +20,8 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
 from percept_obs.system.signal import slack_of
 
-Piece = tuple[Array, Array]
-
 LARGEST_TABLE = 2e7
 """Numbers that the transition matrices of all samples may take; of more samples only some are used."""
-
-UNSEEN = 1e-6
-"""A direction whose eigenvalue is below this share of the largest one is not seen."""
 
 PARTS = 40
 """Intervals into which a window is divided for the bound on the decay."""
@@ -47,7 +41,7 @@ VERDICTS = MappingProxyType(
 
 @checked
 @dataclass(frozen=True, eq=False)
-class Gramian:
+class Gramian(OverWindows):
     """The integral of Phi^T S Phi over windows, from the state at their beginnings.
 
     Parameters
@@ -68,43 +62,10 @@ class Gramian:
     window: float
     states: Array | None = None
 
-    @cached_property
-    def eigenvalues(self) -> Array:
-        """Eigenvalues of each window's matrix, increasing, shape (T, n)."""
-        return np.asarray(np.linalg.eigvalsh(self.matrices))
-
     @property
-    def smallest(self) -> Array:
-        """Smallest eigenvalue of each window, shape (T,)."""
-        return np.asarray(self.eigenvalues[:, 0])
-
-    @property
-    def least(self) -> float:
-        """The smallest of all windows: the epsilon of (14), or 0 but for rounding where it fails."""
-        return float(self.smallest.min())
-
-    @property
-    def holds(self) -> bool:
-        """Whether every direction is seen in every window."""
-        return bool((self.eigenvalues[:, 0] > UNSEEN * self.eigenvalues[:, -1]).all())
-
-    @cached_property
-    def weakest(self) -> int:
-        """Number of the first window that misses most directions, or if none is missed, of the one that shows least."""
-        largest = np.maximum(self.eigenvalues[:, -1:], 1e-300)
-        missed = (self.eigenvalues <= UNSEEN * largest).sum(axis=1)
-        return int(np.argmax(missed) if missed.any() else np.argmin(self.eigenvalues[:, 0] / largest[:, 0]))
-
-    def unseen(self, window: int | None = None) -> Array:
-        """Directions of the state that a window does not show, orthonormal, shape (n, q).
-
-        Parameters
-        ----------
-        window : int, optional
-            Its number; the weakest one when left out.
-        """
-        values, vectors = np.linalg.eigh(self.matrices[self.weakest if window is None else window])
-        return np.asarray(vectors[:, values <= UNSEEN * max(values[-1], 1e-300)])
+    def names(self) -> tuple[str, ...]:
+        """Of the states."""
+        return self.form.names
 
     def verdict(self) -> str:
         """Whether (14) holds, in words; if not, which directions of the state are not seen."""
@@ -245,7 +206,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    _check_window(recording, window)
+    check_samples(recording, window)
     time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
@@ -287,14 +248,6 @@ def true_images(recording: Recording) -> Array:
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
 
 
-def _check_window(recording: Recording, window: float) -> None:
-    """Refuse a window that does not fit into a recording, or fits between two samples."""
-    check_window(recording, window)
-    shortest = float(np.diff(recording.time).min())
-    if window < shortest * (1 - 1e-9):
-        raise ValueError(f"the window is {window} s, shorter than the {shortest:.4g} s between two samples; widen it")
-
-
 def _transitions(form: PointsForm, time: Array) -> Array:
     """Transition matrices from each time to the next, shape (K - 1, n, n), by one step each."""
     places = instants(time)
@@ -304,41 +257,10 @@ def _transitions(form: PointsForm, time: Array) -> Array:
 
 
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
-    """Integrals over all windows that begin at a sample, without inverting a transition.
-
-    A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
-    window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
-    """
-    _check_window(recording, window)
+    """Integrals over all windows that begin at a sample."""
+    check_samples(recording, window)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
-    S, Phi = information(used), _transitions(form, time)
-    h = np.diff(time)[:, None, None]
-    integrals = h / 2 * (S[:-1] + np.swapaxes(Phi, 1, 2) @ S[1:] @ Phi)
-    ends = np.searchsorted(time, time + window - slack_of(time))
-    begins = np.flatnonzero(ends < len(time))
-
-    front: list[Piece] = []
-    back: Piece | None = None
-    pushed, matrices = 0, []
-    for first in begins:
-        while pushed < ends[first]:
-            piece = (Phi[pushed], integrals[pushed])
-            back = piece if back is None else _join(back, piece)
-            pushed += 1
-        if not front:
-            # all pieces of the window, joined from the last one on
-            for j in range(pushed - 1, first - 1, -1):
-                piece = (Phi[j], integrals[j])
-                front.append(_join(piece, front[-1]) if front else piece)
-            back = None
-        whole = front.pop() if back is None else _join(front.pop(), back)
-        matrices.append((whole[1] + whole[1].T) / 2)
+    begins, matrices = gathered(time, information(used), _transitions(form, time), window)
     states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
-    return Gramian(form, time[begins], np.stack(matrices), window, states)
-
-
-def _join(first: Piece, second: Piece) -> Piece:
-    """One piece from two: the second one is seen through the first one's transition."""
-    (Phi, G), (Phi_next, G_next) = first, second
-    return Phi_next @ Phi, G + Phi.T @ G_next @ Phi
+    return Gramian(form, time[begins], matrices, window, states)

@@ -45,6 +45,40 @@ class InstantaneousObservability:
         return sp.factor(self.information.det()) if self.suffices else sp.S.Zero
 
     @cached_property
+    def factors(self) -> sp.ImmutableMatrix:
+        """Entries of w, factored: an instant shows nothing where all of them are zero."""
+        return self.form.w.applyfunc(sp.factor)
+
+    @cached_property
+    def condition(self) -> sp.Expr:
+        """What an instant needs: not zero where it suffices, and zero everywhere if it never does.
+
+        With one hidden coordinate it is the sum of the squares of `factors`, else the determinant.
+        """
+        if len(self.form.x2) == 1:
+            return sp.Add(*(entry**2 for entry in self.factors))
+        return self.determinant
+
+    @cached_property
+    def eigenvalues(self) -> tuple[sp.Expr, ...]:
+        """Eigenvalues of the information for one output, or for one hidden coordinate: zeros, and |w|^2.
+
+        What Ma 2005, (20), p. 67, prints as the condition for y1 alone is the last of them, the larger one; its (18)
+        asks for the smallest one, which is 0 everywhere.
+
+        Raises
+        ------
+        ValueError
+            With more of both, where they have no short form.
+        """
+        if 1 not in self.form.w.shape:
+            raise ValueError(
+                f"{len(self.form.x1)} outputs and {len(self.form.x2)} hidden coordinates have eigenvalues of no short "
+                "form; look at the determinant"
+            )
+        return (*[sp.S.Zero] * (len(self.form.x2) - 1), sp.Add(*(entry**2 for entry in self.factors)))
+
+    @cached_property
     def zero_set(self) -> list[dict[sp.Symbol, sp.Expr]]:
         """Where all of w vanishes: solutions for the measured outputs, none if there is no such place."""
         return sp.solve([written_out(entry) for entry in self.form.w], self.form.x1, dict=True)
@@ -83,7 +117,8 @@ class InstantaneousObservability:
         verdict = r"\text{an instant can suffice}"
         if not self.suffices:
             verdict = rf"\text{{rank }} {self.rank} < {len(self.form.x2)}\text{{: no instant suffices}}"
-        return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict}$"
+        vanishes = rf"\text{{nothing is seen where }} w = {sp.latex(self.factors)} = 0"
+        return rf"$\displaystyle w w^T = {sp.latex(self.information)},\quad {verdict};\quad {vanishes}$"
 
 
 @checked

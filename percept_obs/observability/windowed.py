@@ -2,39 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import sympy as sp
 
 from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
+from percept_obs.observability.windows import OverWindows, check_window
 from percept_obs.recording import Recording
-from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.signal import from_the_start
 
 
 @dataclass(frozen=True, eq=False)
-class Excitation:
-    """Smallest eigenvalue of the information gathered over a window.
+class Excitation(OverWindows):
+    """Information about the hidden coordinates that w gathers over windows.
 
     Parameters
     ----------
+    form : CanonicalForm
     time : array of shape (T,)
         Ends of the windows in seconds.
-    smallest : array of shape (T,)
-        Smallest eigenvalue of the integral of w w^T over the window that ends there.
+    matrices : array of shape (T, n2, n2)
+        Integral of w w^T over the window that ends there.
     window : float
-        Length of the window in seconds.
+        Length of the windows in seconds.
+    uncancelled : array of shape (T,)
+        How large its trace would be if no two terms of w cancelled each other.
     """
 
+    form: CanonicalForm
     time: Array
-    smallest: Array
+    matrices: Array
     window: float
+    uncancelled: Array
 
     @property
-    def least(self) -> float:
-        """The smallest of all windows: the beta of persistency of excitation."""
-        return float(self.smallest.min())
+    def names(self) -> tuple[str, ...]:
+        """Of the hidden coordinates."""
+        return self.form.hidden
+
+    @property
+    def reference(self) -> Array:
+        """With one hidden coordinate the largest eigenvalue is the smallest one, and would not tell it from zero."""
+        return np.maximum(self.uncancelled, 1e-300)
 
 
 @checked
@@ -61,31 +74,38 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
 
     time = recording.time
     check_window(recording, window)
-    gathered = cumulative_trapezoid(information_along(form, recording), time, axis=0, initial=0)
+    found = instants(form, recording)
+    rows = np.hstack([found.matrices.reshape(len(time), -1), found.uncancelled[:, None]])
+    gathered = cumulative_trapezoid(rows, time, axis=0, initial=0)
     ends = time[from_the_start(recording.elapsed, window)]
     begins = np.maximum(ends - window, time[0])
-    flat = gathered.reshape(len(time), -1)
-    at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in flat.T], axis=-1)
-    size = len(form.x2)
-    return Excitation(ends, np.linalg.eigvalsh(at.reshape(-1, size, size))[:, 0], window)
+    at = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in gathered.T], axis=-1)
+    matrices = at[:, :-1].reshape(-1, *found.matrices.shape[1:])
+    return Excitation(found.form, ends, matrices, window, at[:, -1])
 
 
-def check_window(recording: Recording, window: float) -> None:
-    """Refuse a window that does not fit into a recording.
+def instants(form: PartitionedSystem, recording: Recording) -> Excitation:
+    """The matrix w w^T at the samples: what windows of no length gather; see `windowed`."""
+    canonical = form.canonical_form()
+    terms = _along(canonical, recording, [_without_cancelling(entry) for entry in canonical.w])
+    matrices = information_along(form, recording)
+    return Excitation(canonical, recording.time, matrices, 0.0, (terms**2).sum(axis=1))
 
-    Raises
-    ------
-    ValueError
-        If it is not positive or longer than the recording.
-    """
-    length = recording.elapsed[-1]
-    if not 0 < window <= length + slack_of(recording.time):
-        raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
+
+def _without_cancelling(entry: sp.Expr) -> sp.Expr:
+    """A sum with the absolute value of each term."""
+    return sp.Add(*map(sp.Abs, sp.Add.make_args(entry)))
 
 
 def information_along(form: PartitionedSystem, recording: Recording) -> Array:
     """The matrix w w^T at the samples, shape (K, n2, n2); see `windowed`."""
     form = form.canonical_form()
+    w = _along(form, recording, list(form.w)).reshape(len(recording.time), *form.w.shape)
+    return w @ np.swapaxes(w, 1, 2)
+
+
+def _along(form: CanonicalForm, recording: Recording, expressions: Sequence[sp.Expr]) -> Array:
+    """Values of expressions in the measured outputs and parameters at the samples, one a column."""
     source = recording.outputs if recording.truth is None else recording.truth
     names = recording.names if source is recording.outputs else tuple(map(str, recording.view.coordinates))
     columns = [source[:, names.index(name)] for name in form.measured]
@@ -94,6 +114,5 @@ def information_along(form: PartitionedSystem, recording: Recording) -> Array:
     outputs = [np.interp(time, time[s], column[s]) for s, column in zip(seen, columns, strict=True)]
     known = recording.motion.known(time)
     surface = [recording.view.values[s] for s in recording.view.parameters]
-    entries = vectorised((*form.x1, *form.parameters), list(form.w))(*outputs, *known.T, *surface)
-    w = np.stack(entries, axis=-1).reshape(len(time), *form.w.shape)
-    return w @ np.swapaxes(w, 1, 2)
+    entries = vectorised((*form.x1, *form.parameters), expressions)(*outputs, *known.T, *surface)
+    return np.stack(entries, axis=-1)

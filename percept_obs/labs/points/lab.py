@@ -28,8 +28,8 @@ from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings, offering
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
-from percept_obs.observability.gramian import UNSEEN
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
+from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import (
     FirstSight,
     LyapunovMatrix,

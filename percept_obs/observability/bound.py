@@ -1,0 +1,301 @@
+"""The Cramer-Rao bound: the least covariance that the noise leaves to any unbiased observer, sample by sample."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.border import checked
+from percept_obs.compile import Array, Flags
+from percept_obs.compile.integrator import LONGEST_STEP
+from percept_obs.observability.linearised import Doubt, Linearised, System, fitting, linearised, places
+from percept_obs.observers import extended_kalman
+from percept_obs.recording import Recording
+from percept_obs.system.forms import PartitionedSystem
+
+Prior = Mapping[str, float] | ArrayLike | None
+
+HIDDEN_VARIANCE = next(gain.value for gain in extended_kalman.gains if gain.name == "hidden_variance")
+"""Variance of the start in the hidden coordinates unless another one is given: the extended Kalman filter's."""
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class Bound:
+    """The least covariance of any unbiased observer, at the samples of a recording.
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+        Which outputs are measured.
+    recording : Recording
+        Along whose truth it holds.
+    covariance : array of shape (K, n, n)
+        After each sample, in the order of the form's coordinates.
+    prediction : array of shape (K, n, n)
+        The same had there been no sample but those that the start needs.
+    information : array of shape (K, n, n)
+        Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
+    """
+
+    form: PartitionedSystem
+    recording: Recording
+    covariance: Array
+    prediction: Array
+    information: Array
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples in seconds, shape (K,)."""
+        return self.recording.time
+
+    @property
+    def elapsed(self) -> Array:
+        """Seconds since the first sample, shape (K,)."""
+        return self.recording.elapsed
+
+    @cached_property
+    def deviation(self) -> Array:
+        """Least standard deviations of the coordinates, shape (K, n)."""
+        return _deviations(self.covariance)
+
+    @cached_property
+    def predicted_deviation(self) -> Array:
+        """Standard deviations without samples, shape (K, n)."""
+        return _deviations(self.prediction)
+
+    def of(self, name: str) -> Array:
+        """Least standard deviation of one coordinate, such as "y3", shape (K,).
+
+        Raises
+        ------
+        ValueError
+            If there is no such coordinate.
+        """
+        known = [symbol.name for symbol in self.form.coordinates]
+        if name not in known:
+            raise ValueError(f"there is no coordinate {name!r}; there are {', '.join(known)}")
+        return np.asarray(self.deviation[:, known.index(name)])
+
+    @property
+    def relative(self) -> Array:
+        """Least relative standard deviation of the distance, to first order, shape (K,)."""
+        assert self.recording.truth is not None
+        return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
+
+    def kept(self, sample: int = -1) -> tuple[Array, Array]:
+        """Shares of their standard deviations at the start that hidden directions keep once a sample has come.
+
+        Parameters
+        ----------
+        sample : int
+            Its number.
+
+        Returns
+        -------
+        shares : array of shape (n2,)
+            Increasing; 1 where the samples tell nothing.
+        directions : array of shape (n2, n2)
+            Of the hidden coordinates at the start, one a column.
+        """
+        hidden = places(self.form, self.form.hidden)
+        root = np.linalg.cholesky(self.prediction[0])
+        size = np.eye(len(root))
+        left = root @ np.linalg.solve(size + root.T @ self.information[sample] @ root, root.T)
+        before = np.linalg.cholesky(self.prediction[0][np.ix_(hidden, hidden)])
+        inverse = np.linalg.inv(before)
+        values, vectors = np.linalg.eigh(inverse @ left[np.ix_(hidden, hidden)] @ inverse.T)
+        return np.sqrt(np.clip(values, 0.0, 1.0)), before @ vectors
+
+    def __repr__(self) -> str:
+        last = ", ".join(f"{s.name} {d:.3g}" for s, d in zip(self.form.coordinates, self.deviation[-1], strict=True))
+        return (
+            f"<Bound of {', '.join(self.form.measured)} on {self.recording.source or 'a recording'}: least standard "
+            f"deviations after {self.elapsed[-1]:.4g} s: {last}>"
+        )
+
+
+@checked
+def cramer_rao(
+    recording: Recording,
+    system: System,
+    prior: Prior = None,
+    noise_variance: ArrayLike | None = None,
+    doubt: Doubt = 0.0,
+    step: float = LONGEST_STEP,
+) -> Bound:
+    """The bound that no unbiased observer beats, along the truth of a recording.
+
+    For Gaussian noise and a start drawn from a normal distribution it is the covariance of a Kalman filter of the
+    system linearised along the true trajectory.  It belongs to this one trajectory; averaged over trajectories drawn
+    from the prior it would be the posterior bound.  Uniform noise has no bound of this kind: the one shown is that of
+    Gaussian noise of the same variance.
+
+    Parameters
+    ----------
+    recording : Recording
+        With a truth; its samples count where they were not lost.
+    system : PartitionedSystem, or PerspectiveSystem
+        Which outputs are measured, on any surface; a perspective system stands for all image coordinates.
+    prior : mapping of names to variances, or array of shape (n, n), optional
+        What is known before the first sample.  A mapping names all measured outputs or none: if none, they begin at
+        their first sample, with the noise's variance, and that sample tells nothing else.  Hidden coordinates that
+        it leaves out have the variance that the extended Kalman filter begins with.  An array is the covariance of
+        all coordinates, in the form's order.
+    noise_variance : float, or array of shape (m,), (m, m) or (K, m, m), optional
+        Variance of the noise in each measured output, or its covariance, which may change from sample to sample; the
+        recording's when left out.
+    doubt : float, or mapping of names to floats
+        Doubt in the motion: variance a second of white noise in the rate of every coordinate, or in that of the
+        coordinates, and in the parameters of the motion such as "b1", that a mapping names.
+    step : float
+        Longest step in seconds with which the linearised system is integrated.
+
+    Returns
+    -------
+    Bound
+
+    Raises
+    ------
+    ValueError
+        If system and recording do not fit, there is no truth, or a variance makes no sense.
+
+    Notes
+    -----
+    Van Trees, Detection, Estimation, and Modulation Theory, part I (1968), section 2.4; Taylor, The Cramer-Rao
+    estimation error lower bound computation for deterministic nonlinear systems, IEEE Trans. Automatic Control 24
+    (1979).
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, cramer_rao, pinhole, record, scenarios
+    >>> recording = record(scenarios.ma2005_eq35(), 20, Camera(0.05, Gaussian(0.01)))
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> both, one = (cramer_rao(recording, form) for form in (system, system.measure("y1")))
+    >>> print(f"{both.of('y3')[-1]:.1e} {one.of('y3')[-1]:.1e}")
+    3.3e-05 3.9e-05
+    """
+    form = fitting(system, recording)
+    if not (np.isfinite(step) and step > 0):
+        raise ValueError(f"the step is {step} s; it must be positive and finite")
+    noise = _noise(recording, form, noise_variance)
+    start, begun = _start(form, prior, noise[0])
+    with np.errstate(all="ignore"):  # what overflows is told below
+        along = linearised(form, recording, doubt, step)
+    if begun and not along.seen[0].all():
+        raise ValueError(
+            "the first sample was lost, so that the measured outputs need a prior; give one, or cut it off"
+        )
+    used = along.seen.copy()
+    used[0] &= not begun
+    with np.errstate(all="ignore"):
+        least, predicted = (covariances(along, start, noise, each) for each in (used, np.zeros_like(used)))
+        information = _information(along, noise, used)
+    if not all(np.isfinite(each).all() for each in (least, predicted, information)):
+        raise ValueError(
+            "the bound leaves every range of numbers on the way: the doubt, the noise_variance or the prior is too "
+            "large or too small, or the step too long"
+        )
+    return Bound(form, recording, least, predicted, information)
+
+
+def _information(along: Linearised, noise: Array, used: Flags) -> Array:
+    """Fisher information about the start, gathered up to each sample, shape (K, n, n)."""
+    n, (count, m) = along.transitions.shape[-1], used.shape
+    since = np.stack([*accumulate(along.transitions, lambda Phi, each: each @ Phi, initial=np.eye(n))])
+    # a lost sample has no weight: its row and its column are taken out before the covariance is inverted
+    both = used[:, :, None] & used[:, None]
+    weights = np.where(both, np.linalg.inv(np.where(both, noise, np.eye(m))), 0.0)
+    rows = since[:, along.measured]
+    return np.asarray(np.cumsum(np.swapaxes(rows, 1, 2) @ weights @ rows, axis=0)).reshape(count, n, n)
+
+
+def covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> Array:
+    """Covariance after each sample, shape (K, n, n): predicted by the linearised system, corrected by what is used.
+
+    Parameters
+    ----------
+    along : Linearised
+    start : array of shape (n, n)
+    noise : array of shape (K, m, m), or (1, m, m)
+    used : array of shape (K, m) of bool
+        The samples that correct.
+    """
+    P, found = start, np.empty((len(used), *start.shape))
+    measured, constant = along.measured, len(noise) == 1
+    counts = used.sum(axis=1)
+    for k in range(len(used)):
+        if k:
+            Phi = along.transitions[k - 1]
+            P = Phi @ P @ Phi.T + along.spreads[k - 1]
+        if counts[k]:
+            R, rows = noise[0 if constant else k], measured
+            if counts[k] < len(measured):
+                R, rows = R[np.ix_(used[k], used[k])], measured[used[k]]
+            shared = P[:, rows]
+            P = P - shared @ np.linalg.solve(shared[rows] + R, shared.T)
+        P = (P + P.T) / 2
+        found[k] = P
+    return found
+
+
+def _deviations(covariances: Array) -> Array:
+    return np.sqrt(np.maximum(np.diagonal(covariances, axis1=1, axis2=2), 0.0))
+
+
+def _noise(recording: Recording, form: PartitionedSystem, given: ArrayLike | None) -> Array:
+    """Covariance of the noise, shape (1, m, m) or (K, m, m)."""
+    m, count = len(form.measured), len(recording.time)
+    if given is None and not recording.noise_variance:
+        raise ValueError(
+            f"the recording's noise variance is {recording.noise_variance}, and without noise there is no bound; give "
+            "noise_variance, or record with noise: Camera(noise=Gaussian(0.01))"
+        )
+    values = np.asarray(recording.noise_variance if given is None else given, dtype=float)
+    if values.ndim < 2 and values.shape in ((), (m,)):
+        values = np.diag(np.broadcast_to(values, m))
+    if values.shape not in ((m, m), (count, m, m)):
+        raise ValueError(
+            f"the noise_variance has shape {values.shape}; expected a number, ({m},), ({m}, {m}) or ({count}, {m}, {m})"
+        )
+    values = values.reshape(-1, m, m)
+    _refuse_no_covariance("the noise_variance", values)
+    return values
+
+
+def _start(form: PartitionedSystem, prior: Prior, noise: Array) -> tuple[Array, bool]:
+    """Covariance at the first sample, and whether the measured outputs begin at it."""
+    n = len(form.coordinates)
+    if prior is not None and not isinstance(prior, Mapping):
+        start = np.array(prior, dtype=float)
+        if start.shape != (n, n):
+            raise ValueError(f"the prior has shape {start.shape}; expected ({n}, {n}), or variances by their names")
+        _refuse_no_covariance("the prior", start[None])
+        return start, False
+    variances = dict(prior or {})
+    unknown = set(variances) - {symbol.name for symbol in form.coordinates}
+    if unknown:
+        raise ValueError(
+            f"the prior names {', '.join(sorted(unknown))}; there are {', '.join(map(str, form.coordinates))}"
+        )
+    named = [name in variances for name in form.measured]
+    if any(named) and not all(named):
+        raise ValueError(f"the prior names some of {', '.join(form.measured)}; name all measured outputs or none")
+    start = np.diag([variances.get(symbol.name, HIDDEN_VARIANCE) for symbol in form.coordinates])
+    if not any(named):
+        measured = places(form, form.measured)
+        start[np.ix_(measured, measured)] = noise
+    _refuse_no_covariance("the prior", start[None])
+    return start, not any(named)
+
+
+def _refuse_no_covariance(what: str, matrices: Array) -> None:
+    if not np.isfinite(matrices).all() or not np.allclose(matrices, np.swapaxes(matrices, 1, 2)):
+        raise ValueError(f"{what} is not finite and symmetric, as variances are; correct it")
+    if not np.linalg.eigvalsh(matrices).min() > 0:
+        raise ValueError(f"{what} is not positive: what is known exactly has no bound; give positive variances")

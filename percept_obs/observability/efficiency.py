@@ -1,0 +1,110 @@
+"""How near observers come to the bound: the root mean square of their errors over the least standard deviation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from percept_obs.border import checked
+from percept_obs.compile import Array, Flags
+from percept_obs.observability.bound import Bound
+from percept_obs.tracking.run import Run
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Efficiency:
+    """Errors of several runs against the bound, for one coordinate.
+
+    Parameters
+    ----------
+    time : array of shape (K,)
+        Seconds since the first sample.
+    errors : array of shape (N, K)
+        Errors of N runs.
+    bound : array of shape (K,)
+        Least standard deviation.
+    """
+
+    time: Array
+    errors: Array
+    bound: Array
+
+    @property
+    def rms(self) -> Array:
+        """Root mean square of the errors over the runs, shape (K,)."""
+        return np.asarray(np.sqrt(np.mean(self.errors**2, axis=0)))
+
+    @property
+    def ratio(self) -> Array:
+        """That over the bound, shape (K,): 1 for an observer that uses all that the samples tell."""
+        return self.rms / self.bound
+
+    def mean(self, begin: float = -math.inf, end: float = math.inf) -> float:
+        """The ratio, averaged over the samples between two times."""
+        return float(self.ratio[self._part(begin, end)].mean())
+
+    def scatter(self, begin: float = -math.inf, end: float = math.inf) -> float:
+        """Standard deviation of that mean from one set of as many runs to another, by leaving out each run in turn."""
+        part = self._part(begin, end)
+        squares, count = (self.errors[:, part] / self.bound[part]) ** 2, len(self.errors)
+        without = np.sqrt((squares.sum(axis=0) - squares) / (count - 1)).mean(axis=1)
+        return float(math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2)))
+
+    def bias(self, begin: float = -math.inf, end: float = math.inf) -> float:
+        """Largest mean error over the runs, in bounds; an observer without bias stays at about 1 / sqrt(N)."""
+        part = self._part(begin, end)
+        return float(np.abs(self.errors[:, part].mean(axis=0) / self.bound[part]).max())
+
+    def _part(self, begin: float, end: float) -> Flags:
+        part = (self.time >= begin) & (self.time <= end)
+        if not part.any():
+            raise ValueError(f"no sample lies between {begin} and {end} s after the first one")
+        return np.asarray(part)
+
+    def __repr__(self) -> str:
+        return f"<Efficiency of {len(self.errors)} runs: {self.mean():.3g} +- {self.scatter():.1g} bounds>"
+
+
+@checked
+def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None) -> Efficiency:
+    """Root mean square error of runs over the bound: 1 at best, for observers without bias.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        Two or more on the same truth, each with noise and start of its own, drawn as the bound supposes.
+    bound : Bound
+        From `cramer_rao`, on a recording of the same truth and samples.
+    coordinate : str, optional
+        Such as "y1"; the last one, the inverse distance, when left out.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two runs, their truth is not the bound's, or there is no such coordinate.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, cramer_rao, efficiency, ekf, pinhole
+    >>> from percept_obs import record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = [record(scenarios.ma2005_eq35(), 10, Camera(0.05, Gaussian(0.01)), seed) for seed in range(20)]
+    >>> runs = [track(each, ekf(form, noise_variance=1e-4), {"y3": 0.4}) for each in seen]
+    >>> 0.8 < efficiency(runs, cramer_rao(seen[0], form)).mean(5, 10) < 1.3
+    True
+    """
+    name = coordinate or bound.form.coordinates[-1].name
+    least = bound.of(name)
+    if len(runs) < 2:
+        raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, with noise of their own")
+    for number, run in enumerate(runs, 1):
+        truths = [recording.truth for recording in (run.recording, bound.recording)]
+        one, other = (np.zeros(0) if truth is None else truth for truth in truths)
+        if one.shape != other.shape or not np.allclose(one, other):
+            raise ValueError(f"run {number} is on another truth than the bound; both must follow the same point")
+    column = [symbol.name for symbol in bound.form.coordinates].index(name)
+    return Efficiency(bound.elapsed, np.array([run.error[:, column] for run in runs]), least)

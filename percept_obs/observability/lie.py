@@ -1,0 +1,260 @@
+"""Rank of the Lie derivatives' differentials: what the outputs and their time derivatives tell at an instant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from percept_obs.border import MOST_TERMS, checked, limit
+from percept_obs.compile import Array, vectorised
+from percept_obs.observability.linearised import System, as_form, fitting, rate_of
+from percept_obs.points.directions import in_words
+from percept_obs.recording import Recording
+from percept_obs.system.forms import PartitionedSystem
+
+NEGLIGIBLE = 1e-8
+"""A singular value below this share of the largest one is 0, when every row has the length 1."""
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Codistribution:
+    """Differentials of the outputs h and of their Lie derivatives L_f h, L_f^2 h, ..., a block of rows for each order.
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+    blocks : tuple of matrices of shape (m, n)
+        Order by order, from 0 on; columns in the order of the form's coordinates.
+    derivatives : tuple of tuples of symbols
+        The first, second, ... time derivatives of the form's parameters, if the motion varies; none if not.
+    """
+
+    form: PartitionedSystem
+    blocks: tuple[sp.ImmutableMatrix, ...]
+    derivatives: tuple[tuple[sp.Symbol, ...], ...] = ()
+
+    @property
+    def matrix(self) -> sp.ImmutableMatrix:
+        """All rows."""
+        return sp.ImmutableMatrix.vstack(*self.blocks)
+
+    @cached_property
+    def rank(self) -> int:
+        """Rank at almost every state and motion."""
+        return int(self.ranks_at(self._anywhere)[-1])
+
+    @cached_property
+    def unobservable(self) -> Array:
+        """Directions that are lost at almost every state and motion, orthonormal, shape (n, n - rank).
+
+        They may turn with state and motion; these are those of one that is drawn.
+        """
+        return self.lost_at(self._anywhere)
+
+    def ranks_at(self, values: Mapping[sp.Symbol, float]) -> tuple[int, ...]:
+        """Rank with the orders up to 0, up to 1, and so on.
+
+        Parameters
+        ----------
+        values : mapping of symbols to floats
+            Of coordinates, parameters and their derivatives.
+        """
+        (rows,) = self._rows(values)
+        return tuple(int(rank) for rank in _ranks(rows[None], len(self.form.x1))[0])
+
+    def lost_at(self, values: Mapping[sp.Symbol, float]) -> Array:
+        """Directions that no order shows, orthonormal, shape (n, q)."""
+        (rows,) = self._rows(values)
+        return lost(rows)
+
+    def along(self, recording: Recording) -> LieRanks:
+        """The ranks along the truth of a recording."""
+        time = recording.time
+        columns: list[ArrayLike] = []
+        if self.form.parameters:
+            known = np.broadcast_to(recording.motion.known(time), (len(time), len(recording.motion.parameters)))
+            surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
+            columns = [*known.T, *surface]
+            for _ in self.derivatives:
+                known = np.gradient(known, time, axis=0)
+                columns += [*known.T, *(0.0 for _ in surface)]
+        assert recording.truth is not None
+        rows = self._evaluate(*recording.truth.T, *columns)
+        return LieRanks(self.form, time, _scaled(rows))
+
+    def _rows(self, values: Mapping[sp.Symbol, float]) -> Array:
+        missing = [str(symbol) for symbol in self._symbols if symbol not in values]
+        if missing:
+            raise ValueError(f"there are no values for {', '.join(missing)}; give them numbers")
+        given = [np.array([float(values[symbol])]) for symbol in self._symbols]
+        return _scaled(self._evaluate(*given))
+
+    def _evaluate(self, *columns: ArrayLike) -> Array:
+        found = vectorised(self._symbols, list(self.matrix))(*columns)
+        return np.stack(found, axis=-1).reshape(-1, *self.matrix.shape)
+
+    @property
+    def _symbols(self) -> tuple[sp.Symbol, ...]:
+        return (*self.form.coordinates, *self.form.parameters, *(s for each in self.derivatives for s in each))
+
+    @property
+    def _anywhere(self) -> dict[sp.Symbol, float]:
+        draw = np.random.default_rng(1).uniform(0.2, 0.9, len(self._symbols))
+        drawn = dict(zip(self._symbols, draw.tolist(), strict=True))
+        return drawn | self.form.values
+
+    def _repr_latex_(self) -> str:
+        said = rf"\text{{rank }} {self.rank} \text{{ of }} {len(self.form.coordinates)}"
+        return rf"$\displaystyle {sp.latex(self.matrix)},\quad {said}$"
+
+
+@dataclass(frozen=True, eq=False)
+class LieRanks:
+    """Ranks of the Lie derivatives' differentials along a trajectory.
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+    time : array of shape (K,)
+        Seconds.
+    rows : array of shape (K, q, n)
+        The differentials, each scaled to the length 1.
+    """
+
+    form: PartitionedSystem
+    time: Array
+    rows: Array
+
+    @cached_property
+    def ranks(self) -> Array:
+        """Rank with the orders up to 0, up to 1, and so on, shape (K, orders + 1)."""
+        return _ranks(self.rows, len(self.form.x1))
+
+    @cached_property
+    def smallest(self) -> Array:
+        """Smallest singular value of all orders together, shape (K,)."""
+        return np.asarray(np.linalg.svd(self.rows, compute_uv=False)[:, -1])
+
+    @property
+    def holds(self) -> bool:
+        """Whether the rank is full at every sample."""
+        return bool((self.ranks[:, -1] == len(self.form.coordinates)).all())
+
+    @property
+    def weakest(self) -> int:
+        """Number of the sample of the least rank, and among those of the smallest singular value."""
+        worst = self.ranks[:, -1] == self.ranks[:, -1].min()
+        return int(np.argmin(np.where(worst, self.smallest, np.inf)))
+
+    def lost(self) -> tuple[str, ...]:
+        """Directions that are lost at the weakest sample, in words."""
+        return in_words(lost(self.rows[self.weakest]), [symbol.name for symbol in self.form.coordinates])
+
+
+@checked
+def lie_derivatives(system: System, orders: int | None = None, varying: bool = False) -> Codistribution:
+    """Differentials of the outputs and of their Lie derivatives, in symbols.
+
+    A state can be told from all states near it if their rank is the number of coordinates (Hermann and Krener,
+    Nonlinear controllability and observability, IEEE Trans. Automatic Control 22 (1977)).  At single states more
+    orders may be needed than almost everywhere, as at the focus of expansion.
+
+    Parameters
+    ----------
+    system : PartitionedSystem, or PerspectiveSystem
+        With or without numbers; a perspective system stands for all image coordinates.
+    orders : int, optional
+        Largest number of derivatives; as many as there are coordinates, less one, when left out.
+    varying : bool
+        Whether the motion varies, so that its parameters have time derivatives as well.
+
+    Raises
+    ------
+    ValueError
+        If the number of orders is negative.
+    TooMuchWork
+        If the expressions become too long.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, lie_derivatives, pinhole
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> [lie_derivatives(system, orders).rank for orders in (0, 1)]
+    [2, 3]
+    >>> lie_derivatives(system.measure("y1")).rank
+    3
+    """
+    form = as_form(system)
+    x, p = form.coordinates, form.parameters
+    orders = len(x) - 1 if orders is None else orders
+    if orders < 0:
+        raise ValueError(f"the orders are {orders}; the outputs themselves are the order 0")
+    terms = len(form.x1) * len(x) * 4.0 ** min(orders, 99)
+    limit(terms, "terms of Lie derivatives", "ask for fewer orders", MOST_TERMS)
+    f = rate_of(form)
+    names = [tuple(sp.Symbol(f"{s.name}^({k})", real=True) for s in p) for k in range(1, orders)] if varying else []
+    chain = [p, *names]
+    h, blocks = sp.ImmutableMatrix(form.x1), []
+    for k in range(orders + 1):
+        gradient = h.jacobian(x)
+        blocks.append(gradient)
+        if k < orders:
+            moved = gradient * f
+            for now, after in pairwise(chain):
+                moved += h.jacobian(now) * sp.ImmutableMatrix(after) if now else sp.zeros(*h.shape)
+            h = sp.ImmutableMatrix(moved)
+    return Codistribution(form, tuple(blocks), tuple(names))
+
+
+@checked
+def lie_ranks(recording: Recording, system: System, orders: int | None = None) -> LieRanks:
+    """Ranks of the Lie derivatives along the truth of a recording, with the derivatives of a motion that varies.
+
+    Parameters
+    ----------
+    recording : Recording
+        With a truth.
+    system, orders
+        See `lie_derivatives`.
+
+    Raises
+    ------
+    ValueError
+        If system and recording do not fit, or there is no truth.
+    """
+    form = fitting(system, recording)
+    signal = recording.motion.signal
+    varying = signal is not None and not signal.constant
+    if not varying:  # with numbers, for what is 0 then drops out
+        numbers = recording.motion.values | dict(recording.view.values)
+        rate = sp.ImmutableMatrix(form.rate.xreplace({s: sp.Float(v) if v else sp.S.Zero for s, v in numbers.items()}))
+        form = PartitionedSystem(form.x1, form.x2, rate, (), form.coordinates, form.view)
+    return lie_derivatives(form, orders, varying).along(recording)
+
+
+def lost(rows: Array) -> Array:
+    """Directions that scaled rows of shape (q, n) do not show, orthonormal, shape (n, number of directions)."""
+    _, singular, right = np.linalg.svd(rows)
+    return np.asarray(right[int((singular > NEGLIGIBLE * max(singular[0], 1e-300)).sum()) :].T)
+
+
+def _scaled(rows: Array) -> Array:
+    """Rows of length 1, so that no order outweighs the others; rows of zeros stay."""
+    lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+    return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0)
+
+
+def _ranks(rows: Array, outputs: int) -> Array:
+    """Ranks of the first block of rows, of the first two, and so on, shape (K, number of blocks)."""
+    found = []
+    for count in range(outputs, rows.shape[1] + 1, outputs):
+        singular = np.linalg.svd(rows[:, :count], compute_uv=False)
+        found.append((singular > NEGLIGIBLE * np.maximum(singular[:, :1], 1e-300)).sum(axis=1))
+    return np.stack(found, axis=1)

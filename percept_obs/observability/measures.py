@@ -1,0 +1,271 @@
+"""Observability in all its meanings, side by side: one call, one table, and why the measures disagree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.border import checked
+from percept_obs.observability.bound import Bound, Prior, cramer_rao
+from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
+from percept_obs.observability.lie import LieRanks, lie_ranks
+from percept_obs.observability.linearised import System, fitting
+from percept_obs.observability.windowed import Excitation, instants, windowed
+from percept_obs.observers import extended_kalman
+from percept_obs.points.directions import in_words
+from percept_obs.recording import Recording
+from percept_obs.system.forms import PartitionedSystem
+from percept_obs.tracking.verdict import number
+
+USUAL_WINDOW = 10.0
+"""Seconds of a window, unless the recording is shorter than four of them."""
+
+LEARNT = 0.5
+"""A direction is learnt if the samples leave less than this share of its standard deviation at the start."""
+
+NOISE_VARIANCE = next(gain.value for gain in extended_kalman.gains if gain.name == "noise_variance")
+"""Variance of the noise for the bound where a recording has none: the one that the extended Kalman filter believes."""
+
+WHY = MappingProxyType(
+    {
+        "printed": "(20) as printed is the larger eigenvalue of w w^T. It asks whether an instant shows anything at "
+        "all of {hidden}; the smaller eigenvalue, which asks whether it shows everything, is {smaller}.",
+        "instant": "An instant lacks a direction, at {time} s for instance, but w changes along the trajectory, so "
+        "that the instants of a window show together what one of them does not.",
+        "window": "Persistency of excitation counts what w shows and leaves out how the hidden coordinates change. "
+        "What w does not show of {lost} is seen through g, which carries it into what is measured.",
+        "derivatives": "The rank asks whether a direction shows in some derivative, however little; over a window of "
+        "{window} s it shows too little to count.",
+        "stays": "The rank falls at single samples only, which a window bridges.",
+        "nonlinear": "The perturbed runs leave the linearised ones: the perturbation is not small there.",
+        "noise": "Every direction is seen, but against this noise {length} s are too short to learn {lost} well.",
+        "early": "Over the whole recording the bound falls in every direction, although single windows miss one.",
+        "none": "All measures agree: {all}.",
+    }
+)
+"""Why two measures say different things."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What one measure of observability says of a trajectory.
+
+    Parameters
+    ----------
+    name, asks : str
+        What it is called, and what it asks.
+    holds : bool
+        Whether it says that the state is observable.
+    value : float
+        Its least value.
+    time : float
+        When it has it, in seconds since the first sample.
+    lost : tuple of str
+        Directions that it does not see there, in words.
+    said : str
+        What the value is.
+    """
+
+    name: str
+    asks: str
+    holds: bool
+    value: float
+    time: float
+    lost: tuple[str, ...]
+    said: str
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Of its row in the table."""
+        lost = "; ".join(self.lost) or ("" if self.holds else "everything hidden")
+        return self.name, self.asks, "yes" if self.holds else "no", f"{self.said} at {self.time:.3g} s", lost
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class Observability:
+    """Measures of observability along a trajectory.
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+    recording : Recording
+    instant, excitation : Excitation or None
+        w w^T at the samples, and over windows; None if there is no canonical form, and so no w.
+    lie : LieRanks
+    error, empirical : ErrorGramian
+        Of the linearised error system, and by perturbed runs.
+    bound : Bound
+    """
+
+    form: PartitionedSystem
+    recording: Recording
+    instant: Excitation | None
+    excitation: Excitation | None
+    lie: LieRanks
+    error: ErrorGramian
+    empirical: ErrorGramian
+    bound: Bound
+
+    @property
+    def window(self) -> float:
+        """Length of the windows in seconds."""
+        return self.error.window
+
+    @cached_property
+    def measures(self) -> tuple[Measure, ...]:
+        """What each measure says, from an instant to the bound."""
+        return tuple(self._measures())
+
+    def __getitem__(self, name: str) -> Measure:
+        """One of the measures by its name."""
+        return {measure.name: measure for measure in self.measures}[name]
+
+    def _measures(self) -> Iterator[Measure]:
+        begun, end = self.recording.time[0], float(self.recording.elapsed[-1])
+        if self.instant is not None:
+            one, elapsed = self.instant, self.instant.time - begun
+            if len(self.form.x1) < len(self.form.x2):
+                largest = one.eigenvalues[:, -1]
+                k, there = int(np.argmin(largest)), bool((largest > 0).all())
+                said = f"|w|^2 = {number(largest[k])}"
+                asks = "does an instant show anything hidden?"
+                yield Measure("(20) as printed", asks, there, float(largest[k]), float(elapsed[k]), (), said)
+            yield self._of_windows("instant", "does an instant show everything hidden?", one, "w w^T")
+        if self.excitation is not None:
+            asks = f"do {self.window:g} s of w show everything hidden?"
+            yield self._of_windows("excitation", asks, self.excitation, "the integral of w w^T")
+        k, n = self.lie.weakest, len(self.form.coordinates)
+        said = f"rank {int(self.lie.ranks[k, -1])} of {n}"
+        asks = "do outputs and their derivatives tell states apart?"
+        at, least = float(self.recording.elapsed[k]), float(self.lie.smallest[k])
+        yield Measure("Lie rank", asks, self.lie.holds, least, at, self.lie.lost(), said)
+        asks = f"do {self.window:g} s of outputs change with every coordinate?"
+        yield self._of_windows("error Gramian", asks, self.error, "Phi^T H^T H Phi")
+        asks = "the same by perturbed runs, without derivatives"
+        yield self._of_windows("empirical Gramian", asks, self.empirical, "the Gramian")
+        shares, directions = self.bound.kept()
+        left = float(shares[-1])
+        said = f"{100 * left:.3g} % of a deviation is left"
+        lost = in_words(directions[:, shares >= LEARNT], self.form.hidden) if left >= LEARNT else ()
+        asks = "does what is hidden become known, against this noise?"
+        yield Measure("bound", asks, left < LEARNT, left, end, lost, said)
+
+    def _of_windows(self, name: str, asks: str, found: Excitation | ErrorGramian, what: str) -> Measure:
+        k = found.weakest
+        least = max(float(found.smallest[k]), 0.0)
+        said = f"smallest eigenvalue of {what} {number(least) if least > 1e-12 else '0'}"
+        at = float(found.time[k] - self.recording.time[0])
+        return Measure(name, asks, found.holds, least, at, found.lost(k), said)
+
+    @cached_property
+    def disagreements(self) -> tuple[str, ...]:
+        """Why measures say different things, one sentence or two for each reason."""
+        says = {measure.name: measure.holds for measure in self.measures}
+        words = {"hidden": ", ".join(self.form.hidden), "window": f"{self.window:g}", "smaller": "0 at every instant"}
+        words["length"] = f"{self.recording.elapsed[-1]:.4g}"
+        reasons = []
+        if says.get("(20) as printed") and not says["instant"]:
+            reasons.append(WHY["printed"])
+        if "instant" in says and not says["instant"] and says["excitation"]:
+            words["time"] = f"{self['instant'].time:.3g}"
+            reasons.append(WHY["instant"])
+        if "excitation" in says and not says["excitation"] and says["error Gramian"]:
+            words["lost"] = "; ".join(self["excitation"].lost)
+            reasons.append(WHY["window"])
+        if says["Lie rank"] and not says["error Gramian"]:
+            reasons.append(WHY["derivatives"])
+        if not says["Lie rank"] and says["error Gramian"]:
+            reasons.append(WHY["stays"])
+        if says["error Gramian"] != says["empirical Gramian"]:
+            reasons.append(WHY["nonlinear"])
+        if says["error Gramian"] and not says["bound"]:
+            words["lost"] = "; ".join(self["bound"].lost)
+            reasons.append(WHY["noise"])
+        if not says["error Gramian"] and says["bound"]:
+            reasons.append(WHY["early"])
+        if not reasons:
+            words["all"] = "the state is observable" if says["bound"] else "it is not observable"
+            reasons = [WHY["none"]]
+        return tuple(reason.format(**words) for reason in reasons)
+
+    def __str__(self) -> str:
+        rows = [HEADS, *(measure.cells for measure in self.measures)]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+        return "\n".join([*lines, *self.disagreements])
+
+    def __repr__(self) -> str:
+        return f"<Observability of {', '.join(self.form.measured)}\n{self}>"
+
+    def _repr_markdown_(self) -> str:
+        rows = [HEADS, ["---"] * len(HEADS), *(measure.cells for measure in self.measures)]
+        table = "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in rows)
+        return table + "\n\n" + "\n".join(f"- {reason}" for reason in self.disagreements)
+
+
+HEADS = ("measure", "asks", "says", "where it is weakest", "not seen")
+
+
+@checked
+def how_observable(
+    recording: Recording,
+    system: System,
+    window: float | None = None,
+    prior: Prior = None,
+    noise_variance: ArrayLike | None = None,
+) -> Observability:
+    """Ask every measure of observability at once, along the true trajectory of a recording.
+
+    They are: what an instant shows, by w w^T, for one output also as Ma 2005, (20), prints it; persistency of
+    excitation over a window; the rank of the Lie derivatives' differentials; the Gramian of the linearised error
+    system over a window, and the same by perturbed runs; and the Cramer-Rao bound at the end.
+
+    Parameters
+    ----------
+    recording : Recording
+        With a truth.
+    system : PartitionedSystem, or PerspectiveSystem
+        Which outputs are measured; a perspective system stands for all image coordinates.
+    window : float, optional
+        Seconds; 10, or a quarter of a recording that is shorter than 40 s, when left out.
+    prior, noise_variance
+        See `cramer_rao`; for a recording without noise the variance that the extended Kalman filter believes.
+
+    Returns
+    -------
+    Observability
+        Prints as a table and the reasons why measures disagree; ``figures.observability`` draws it.
+
+    Raises
+    ------
+    ValueError
+        If system and recording do not fit, there is no truth, or the window does not fit.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> found = how_observable(record(scenarios.ma2005_eq36(), camera=Camera(0.1)), form)
+    >>> [(measure.name, measure.holds) for measure in found.measures][2:5]
+    [('excitation', False), ('Lie rank', True), ('error Gramian', True)]
+    """
+    form = fitting(system, recording)
+    window = min(USUAL_WINDOW, float(recording.elapsed[-1]) / 4) if window is None else window
+    given = noise_variance if noise_variance is not None else recording.noise_variance or NOISE_VARIANCE
+    error, canonical = error_gramian(recording, form, window), not form.culprits
+    return Observability(
+        form,
+        recording,
+        instants(form, recording) if canonical else None,
+        windowed(form, recording, window) if canonical else None,
+        lie_ranks(recording, form),
+        error,
+        empirical_gramian(recording, form, window),
+        cramer_rao(recording, form, prior, given),
+    )

@@ -1,0 +1,153 @@
+"""A map of the image is the bound at each place, quickly, with the focus of expansion where the motion has it."""
+
+import json
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from examples import AFFINE
+from sample_sizes import sampled
+
+from percept_obs import (
+    Camera,
+    Gaussian,
+    PerspectiveSystem,
+    Scenario,
+    affine,
+    bound_map,
+    cramer_rao,
+    figures,
+    pinhole,
+    plane,
+    record,
+    rigid,
+    scenarios,
+    sphere,
+)
+from percept_obs.observability.maps import HIDDEN_VARIANCE, NOISE_VARIANCE, displacements, map_kernel
+
+EQ35 = scenarios.ma2005_eq35().motion
+SYSTEM = PerspectiveSystem(EQ35, pinhole())
+FORWARDS = PerspectiveSystem(affine(np.zeros((3, 3)), [0.1, 0, -0.5]), pinhole())
+TURNING = rigid(lambda t: (0, 0.3 * np.sin(t), 0.1), lambda t: (0.3, 0, 0.1 + 0.1 * t), lambda t: (0, 0, 0))
+
+
+@pytest.mark.parametrize("measured", [("y1", "y2"), ("y2",)], ids="+".join)
+@pytest.mark.parametrize(
+    ("motion", "symbols", "surface"),
+    [
+        pytest.param(EQ35, affine(), pinhole(), id="pinhole"),
+        pytest.param(EQ35, affine(), sphere(), id="sphere", marks=pytest.mark.slow),
+        pytest.param(TURNING, rigid(), pinhole(), id="a motion that varies", marks=pytest.mark.slow),
+    ],
+)
+def test_each_place_has_the_bound_of_a_point_that_begins_there(motion, symbols, surface, measured):
+    """The map adds information in space, the bound runs a filter in the image: neither uses the other's formulas."""
+    system = PerspectiveSystem(motion, surface)
+    found = bound_map(system, 1.0, 4.0, measured, (-0.5, 0.6), (-0.4, 0.3), 8)
+    for i, j in ((0, 0), (5, 2), (7, 7)):
+        start = surface.locate([found.y1[j], found.y2[i], 1 / 4])
+        recording = record(Scenario("place", motion, start, 1.0, surface), camera=Camera(0.05, Gaussian(0.01)))
+        form = PerspectiveSystem(symbols, surface).partition(*measured)
+        expected = cramer_rao(recording, form, noise_variance=1e-4 / 3).relative[-1]
+        assert found.relative[i, j] == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_200_by_200_places_take_less_than_a_second():
+    bound_map(SYSTEM, resolution=2)
+    begin = time.process_time()
+    assert np.isfinite(bound_map(SYSTEM).relative).all()
+    assert time.process_time() - begin < 1
+
+
+def test_least_is_known_at_the_focus_of_expansion():
+    found = bound_map(FORWARDS, resolution=sampled(41, 201), hidden_variance=1e3)
+    worst = np.unravel_index(np.nanargmax(found.relative), found.relative.shape)
+    np.testing.assert_allclose((found.y1[worst[1]], found.y2[worst[0]]), (-0.2, 0), atol=0.03)
+    assert found.at(-0.2, 0) > 50 * found.at(0.8, 0.8)
+    assert "at worst" in repr(found)
+
+
+def test_a_point_that_comes_behind_the_camera_has_no_value():
+    fast = PerspectiveSystem(affine([[0, 0, 0], [0, 0, 0], [-1, 0, 0]], [0.1, 0, -0.5]), pinhole())
+    found = bound_map(fast, 2.0, resolution=9)
+    assert np.isnan(found.relative[:, -1]).all()
+    assert np.isfinite(found.relative[:, 0]).all()
+    assert f"{np.isnan(found.relative).sum()} of 81 places are empty" in figures.bound_map(found).text
+
+
+def test_displacements_are_where_points_get():
+    times = np.linspace(0, 2, 5)
+    for motion in (EQ35, TURNING):
+        Phi, d = displacements(motion, times)
+        points = Scenario("point", motion, (0.5, -0.3, 6), 2, pinhole()).points(times)
+        np.testing.assert_allclose(Phi @ (0.5, -0.3, 6) + d, points, rtol=1e-8)
+
+
+def test_the_figure_names_its_best_and_worst_places():
+    found = bound_map(FORWARDS, resolution=11)
+    figure = figures.bound_map(found, threshold=0.05)
+    (ax, bar) = figure.figure.axes
+    np.testing.assert_allclose(ax.images[0].get_array(), 100 * found.relative)
+    assert ax.patches[0].get_radius() == pytest.approx(0.1)
+    assert ax.patches[0].center == pytest.approx((-0.2, 0))
+    assert "The focus of expansion is at (-0.2, 0)." in figure.text
+    assert f"{100 * np.nanmax(found.relative):.3g} % at worst" in figure.text
+    assert bar.get_ylabel() == "least error of the distance (%)"
+    one = figures.bound_map(bound_map(SYSTEM, measured=("y1",), resolution=5))
+    assert "Measuring y1 alone, w vanishes nowhere." in one.text
+    sideways = PerspectiveSystem(affine(np.zeros((3, 3)), [0.5, 0, 0]), pinhole())
+    assert "no focus of expansion" in figures.bound_map(bound_map(sideways, resolution=5)).text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"system": AFFINE}, "no values for a11"),
+        ({"seconds": 0.0}, "seconds is 0"),
+        ({"distance": -1.0}, "distance is -1"),
+        ({"noise_variance": float("nan")}, "noise_variance is nan"),
+        ({"y1": (1.0, -1.0)}, "the smaller one first"),
+        ({"measured": ("y3",)}, "name at least one of y1, y2"),
+        ({"period": 5e-324}, "lengthen the period"),
+        ({"distance": 1e308}, "no place of the image has a bound"),
+        ({"resolution": 1}, "two places or more"),
+        ({"resolution": 5000}, "lower the resolution"),
+        ({"system": PerspectiveSystem(EQ35, plane((0.0, 0.0, 1.0), outputs=3))}, "a map is of two"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        bound_map(**{"system": SYSTEM} | arguments)
+
+
+def test_the_figure_refuses_what_is_no_map():
+    with pytest.raises(ValueError, match="a BoundMap is needed"):
+        figures.bound_map(1)
+    with pytest.raises(ValueError, match="must be positive"):
+        figures.bound_map(bound_map(SYSTEM, resolution=3), threshold=0)
+
+
+@pytest.mark.node
+@pytest.mark.parametrize(
+    ("surface", "measured"), [(pinhole(), ("y1", "y2")), (sphere(), ("y1",)), (plane((0.1, -0.2, 0.9)), ("y1", "y2"))]
+)
+def test_the_page_computes_the_same(node, surface, measured):
+    """48 x 48 places; the printed functions and the page's loop over them, against numpy."""
+    found = bound_map(PerspectiveSystem(EQ35, surface), 1.0, 4.0, measured, (-0.5, 2.5), (-0.7, 2.3), 48)
+    Phi, moved = displacements(EQ35, 0.05 * np.arange(21.0))
+    grid = np.stack([each.ravel() for each in np.meshgrid(found.y1, found.y2)], axis=-1)
+    points = surface.locate(np.hstack([grid, np.full((len(grid), 1), 1 / 4)]))
+    kernel = map_kernel(surface, measured)
+    given = {"points": points, "Phi": Phi, "moved": moved, "shape": np.array([surface.values[s] for s in kernel.shape])}
+    given = {name: values.ravel().tolist() for name, values in given.items()}
+    given |= {"noiseVariance": NOISE_VARIANCE, "hiddenVariance": HIDDEN_VARIANCE}
+    task = json.dumps({"sources": kernel.sources(), "given": given})
+    script = Path(__file__).with_name("run_map.mjs")
+    answer = json.loads(subprocess.check_output([node, script], input=task, text=True))
+    there = np.array([np.nan if value is None else value for value in answer["found"]])
+    np.testing.assert_allclose(there, found.relative.ravel(), rtol=1e-9)
+    assert answer["seconds"] < 1
