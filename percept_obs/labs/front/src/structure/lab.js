@@ -10,16 +10,17 @@ import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { keyOf, StructureKernels } from "./model/kernels.js";
 import { PRESETS } from "./model/presets.js";
+import { SYMBOLS } from "./model/symbols.js";
 import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
-import { StructurePanel, WORDS } from "./page/panel.js";
+import { NAMES, StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
 export class StructureLab extends Live {
   constructor(widget, place, model) {
     const computing = { words: WORDS, Kernels: StructureKernels, Engine: StructureEngine };
-    const words = { reasons, readingAt, summaryOf, pythonOf };
+    const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { ...computing, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
@@ -35,9 +36,8 @@ export class StructureLab extends Live {
       systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
       numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),
     });
-    this.panel = new StructurePanel(this);
     this.choice = new ChoiceOfUnknowns(this.model, this);
-    this.head = this.choice.body;
+    this.panel = new StructurePanel(this, this.choice);
     this.open(place);
   }
 

@@ -1,6 +1,7 @@
 // What every lab does: settings in, pictures and words out, once a frame and for the latest settings only.
 
 import { Results } from "../model/results.js";
+import { changesInWords, same } from "../model/settings.js";
 import { verdict } from "../model/words.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
@@ -17,6 +18,7 @@ const BETWEEN_WORDS = 250;
  *   Kernels, Engine             functions of settings, and what makes results of them
  *   words                       what the page calls the settings
  *   presets, settingsOf         points worth seeing, and the settings of an act
+ *   names, symbols              what settings are called in a sentence, and what letters stand for
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
@@ -35,7 +37,10 @@ export class Live extends Showing {
   open(place) {
     const { labels, presets } = this.parts;
     this.time = new TimeCharts(labels);
+    // A lab with settings of its own is about these, and not about the first question.
+    if (same(this.settings, this.model.standard)) this.state.open(presets[0].name);
     this.follow(build(this, place, presets));
+    this.view.preset();
   }
 
   close() {
@@ -61,9 +66,25 @@ export class Live extends Showing {
     return this.rest();
   }
 
+  /** Take a step and say what it has changed. */
+  changeAndSay(title, changes) {
+    const before = this.settings;
+    this.change(changes, true);
+    this.view.notice(`${title}. ${changesInWords(before, this.settings, this.parts.names)}`);
+  }
+
+  /** Ask a question, over the settings that it is about. */
   ask(name) {
-    this.state.ask(name);
+    const { asks } = this.parts.presets.find((preset) => preset.name === name);
+    this.state.ask(name, this.parts.settingsOf({ changes: asks }, this.model.standard));
+    this.touched(true);
+  }
+
+  predict(found) {
+    this.state.predict(found);
     this.view.preset();
+    this.view.steps(this.state);
+    this.redraw();
   }
 
   act(act, number) {
@@ -166,6 +187,7 @@ export class Live extends Showing {
     this.view.problem("");
     this.panel.show();
     this.view.steps(this.state);
+    this.view.preset();
     this.speak();
   }
 

@@ -8,7 +8,7 @@ import { arrowMark, label } from "./marks.js";
 const USUAL = 0.16;
 const [HEAD, SHORTEST] = [6, 2];
 const NAMES = ["½", "", "2"];
-const MOVING = "arrows: velocity at ½, 1, 2 × distance";
+const MOVING = "arrows: at ½, 1, 2 × distance";
 const STILL = "still at every distance: no arrow";
 
 /** @param {{place: number[], velocities: number[][], colour: string}[]} arrows */
