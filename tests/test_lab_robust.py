@@ -150,7 +150,7 @@ def test_the_lab_fits_its_cell(fresh, width):
     assert (
         fresh.evaluate("""() => {
         const lab = document.querySelector('.percept-lab');
-        return [...lab.querySelectorAll('canvas, fieldset, .bar, .control')].filter(
+        return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
             (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
     }""")
         == 0

@@ -9,6 +9,7 @@ from lab_browser import (
     assert_python_has,
     centre,
     control,
+    open_unfolded,
     rested,
     usable,
     used_at_random,
@@ -57,9 +58,7 @@ def lab(chromium, folder, tmp_path_factory):
         page.set_default_timeout(15_000)
         other = "other = points_lab(state='independent', duration=4.0, window=2.0)\nother"
         write_notebook(folder, "two.ipynb", CELL.format(arguments=SHORT), other)
-        open_notebook(page, "two.ipynb")
-        run_all(page)
-        rested(page)
+        open_unfolded(page, "two.ipynb")
         yield page
 
 
@@ -214,8 +213,8 @@ def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
     rested(fresh)
     before = state(fresh)
     fresh.locator(control("preset riccati")).first.click()
-    assert "What else could" in fresh.locator(".question").first.inner_text()
-    assert state(fresh)["settings"] == before["settings"]
+    assert "follows a Riccati equation" in fresh.locator(".question").first.inner_text()
+    assert state(fresh)["settings"] == {**before["settings"], "seed": 0}
     fresh.locator(control("act riccati 0")).first.click()
     rested(fresh)
     shown = state(fresh)
@@ -273,7 +272,7 @@ def test_axe_finds_nothing_serious(fresh):
         assert len(found["passes"]) > 10
         outside = fresh.evaluate("""() => {
             const lab = document.querySelector('.percept-lab');
-            return [...lab.querySelectorAll('canvas, fieldset, .bar, .control')].filter(
+            return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
                 (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
         }""")
         assert outside == 0

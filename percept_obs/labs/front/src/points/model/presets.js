@@ -6,35 +6,7 @@ const TUMBLING = [[0.2, -0.1, 3], [0.5, -0.1, 3.1], [0.2, 0.2, 2.8]];
 const FIVE_MORE = [[-0.1, -0.3, 3.1], [0.4, 0.1, 3.2], [0, 0.1, 2.9], [0.3, -0.3, 3], [-0.1, 0, 3.2]];
 
 /** `beside` is what a run that is kept beside an act changes. */
-export const PRESETS = presetsOf([
-  {
-    name: "gain",
-    title: "The best gain",
-    question:
-      "One point, P = 1: the error shrinks by 0.18 per second. A third of that P corrects three times as much. " +
-      "How fast will the error shrink?",
-    answers: ["Three times as fast", "A little faster", "More slowly"],
-    right: 2,
-    sketch: true,
-    asks: { points: [[0, 1.2, 2.5]], hidden: [null], start: "error", duration: 60, pictures: ["error", "gramian"] },
-    changes: { points: [[0, 1.2, 2.5]], hidden: [null], start: "error", duration: 60, pictures: ["error", "gramian"] },
-    acts: [
-      {
-        button: "Show P = 1/3",
-        changes: { size: 0.3333 },
-        beside: {},
-        answer:
-          "More slowly, by 0.086 per second: half as fast. Too much correction holds the estimate on the ray, and the ray " +
-          "cannot turn the error of the depth into something that is seen. Move P and find the best.",
-      },
-      {
-        button: "Show P = 3",
-        changes: { size: 3 },
-        beside: {},
-        answer: "A third of the correction, and it is faster: 0.215 per second. Far beyond, at P = 10, it is slow again.",
-      },
-    ],
-  },
+const ASKED = [
   {
     name: "hide",
     title: "Hide a point",
@@ -51,6 +23,34 @@ export const PRESETS = presetsOf([
         button: "Now without a body",
         changes: { state: "independent" },
         answer: "It stays as it is. Points that have no unknown in common cannot help each other.",
+      },
+    ],
+  },
+  {
+    name: "gain",
+    title: "The best gain",
+    question:
+      "One point, P = 1: the error shrinks by 0.18 per second. A third of that P corrects three times as much. " +
+      "How fast will the error shrink?",
+    answers: ["Three times as fast", "A little faster", "More slowly"],
+    right: 2,
+    sketch: true,
+    asks: { hold: "exact", points: [[0, 1.2, 2.5]], hidden: [null], start: "error", duration: 60, pictures: ["error", "gramian"] },
+    changes: { points: [[0, 1.2, 2.5]], hidden: [null], start: "error", duration: 60, pictures: ["error", "gramian"] },
+    acts: [
+      {
+        button: "Show P = 1/3",
+        changes: { size: 0.3333 },
+        beside: {},
+        answer:
+          "More slowly, by 0.086 per second: half as fast. Too much correction holds the estimate on the ray, and the ray " +
+          "cannot turn the error of the depth into something that is seen. Move P and find the best.",
+      },
+      {
+        button: "Show P = 3",
+        changes: { size: 3 },
+        beside: {},
+        answer: "A third of the correction, and it is faster: 0.215 per second. Far beyond, at P = 10, it is slow again.",
       },
     ],
   },
@@ -139,6 +139,7 @@ export const PRESETS = presetsOf([
     question:
       "With P = 1 the error is still 0.17 m after 30 s, and no constant P is faster than the rays turn. How soon is every " +
       "point within 10 % of its distance if P follows a Riccati equation?",
+    asks: { hold: "exact" },
     answers: ["After about 1 s", "After about 10 s", "No sooner than with a constant P"],
     right: 0,
     sketch: true,
@@ -152,7 +153,10 @@ export const PRESETS = presetsOf([
       },
     ],
   },
-]);
+];
+
+/** The acts show what the equations do, with the exact signal: what sampling does besides, the lab shows when it opens. */
+export const PRESETS = presetsOf(ASKED.map((preset) => ({ ...preset, changes: { hold: "exact", ...preset.changes } })));
 
 /** The settings of an act, with those of the run that it keeps beside it. */
 export function settingsOf({ changes, beside }, standard) {
