@@ -11,6 +11,7 @@ import { Engine, focusOf, translationTowards } from "./model/engine.js";
 import { Kernels, keyOf } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
+import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
 import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
@@ -22,7 +23,7 @@ export class ObserverLab extends Live {
   constructor(widget, place, model) {
     super(widget, model, {
       ...{ words: WORDS, Kernels, Engine, presets: PRESETS, settingsOf },
-      ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
+      ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf, causesOf },
     });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {

@@ -8,6 +8,7 @@ import { Player } from "./player.js";
 import { beside, fill, put, show } from "./put.js";
 import { Sketch } from "./sketch.js";
 import { tabs } from "./tabs.js";
+import { WhatIf } from "./what_if.js";
 import { zoomable } from "./zooming.js";
 
 const WAITING = "Python has not answered yet: it is computing, or its kernel has ended. The lab works without it.";
@@ -28,6 +29,7 @@ export function build(lab, place, presets) {
   const legend = new Legend(lab);
   const player = new Player(lab);
   const sketch = new Sketch(lab);
+  const whatIf = lab.parts.causesOf && new WhatIf(lab);
   const card = new Card(lab, presets, sketch);
   const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
   const keep = button("Keep", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" });
@@ -55,7 +57,7 @@ export function build(lab, place, presets) {
     figure.classList.add(`chart-${name}`);
     chartBox.append(figure);
   }
-  const asked = element("div", { class: "asked" }, card.list, card.body);
+  const asked = element("div", { class: "asked" }, card.list, card.body, ...(whatIf ? [whatIf.body] : []));
   const more = element("div", { class: "more" }, topic("equations", "Equations, with the present numbers", formulas.body), symbols(lab.parts.symbols));
   const words = element("div", { class: "words" }, reading, verdicts, why, analysis);
   const parts = [
@@ -111,7 +113,10 @@ export function build(lab, place, presets) {
       keep.setAttribute("aria-pressed", String(Boolean(settings.kept)));
       code.hidden ||= code.textContent !== lab.copy();
     },
-    rested: () => put(live, spoken),
+    rested() {
+      put(live, spoken);
+      whatIf?.show();
+    },
     read: (text) => put(reading, text),
     time(cursor) {
       player.show(cursor);

@@ -20,6 +20,7 @@ const BETWEEN_WORDS = 250;
  *   presets, settingsOf         points worth seeing, and the settings of an act
  *   names, symbols              what settings are called in a sentence, and what letters stand for
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
+ *   causesOf                    settings without one cause each, in a lab that can tell some
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
@@ -27,7 +28,8 @@ export class Live extends Showing {
   constructor(widget, model, { Kernels, Engine, ...parts }) {
     super(widget, model, parts);
     this.kernels = new Kernels(this.model);
-    this.results = new Results(this.kernels, () => new Engine(this.model));
+    this.makeEngine = () => new Engine(this.model);
+    this.results = new Results(this.kernels, this.makeEngine);
     /** @type {any} */
     this.formulas = null;
     this.pictures = 0;
