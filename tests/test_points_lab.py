@@ -226,3 +226,10 @@ def test_the_lab_is_the_set_up_of_the_verified_figures(lab, settings, rate, leas
     run = run_of(lab.check({**settings, "hold": "exact"}))
     assert run.decay_rate(20, 60) == pytest.approx(rate, rel=0.02)
     assert gramian(run.recording, 8).least == pytest.approx(least, rel=0.01)
+
+
+def test_the_lab_opens_with_what_a_camera_does_so_that_noise_is_felt():
+    quiet = points_lab(duration=1.0, period=0.1, points=[[0.0, 1.2, 2.5]], window=0.5)
+    noisy = points_lab(**{**quiet.settings, "noise": {"kind": "uniform", "size": 0.05}})
+    assert quiet.settings["hold"] == "zero"
+    assert not np.allclose(quiet.run().state, noisy.run().state, atol=1e-3)

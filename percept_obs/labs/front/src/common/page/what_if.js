@@ -8,7 +8,7 @@ import { fill } from "./put.js";
 export class WhatIf {
   constructor(lab) {
     this.lab = lab;
-    this.list = element("ul", { class: "why causes" });
+    this.list = element("ul", { class: "causes" });
     const said = element("p", { class: "meaning" }, "The same run, with one thing changed at a time:");
     this.body = topic("causes", "What if? One cause at a time", said, this.list);
     /** @type {any} the settings that are told of */

@@ -26,7 +26,7 @@ export class ChoiceOfUnknowns {
     this.boxes = [];
     this.earlier = checkbox({
       name: "earlier",
-      label: "d_s comes from an earlier stage, so that θ holds d_s v",
+      label: "d_s was estimated before, so θ holds d_s v",
       get: () => lab.settings.earlier,
       set: (on) => lab.change({ earlier: on }, true),
     });
@@ -133,9 +133,9 @@ export class ChoiceOfUnknowns {
   }
 
   kindOf({ unknown, square, alone }) {
-    const few = square ? "" : `Three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: least squares.`;
+    const few = square ? "" : `There are three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: they are solved by least squares.`;
     const metres = alone.filter((name) => !isZero(this.lab.settings, name));
-    const carried = metres.length ? `The metres come from ${metres.join(", ")}.` : "";
+    const carried = metres.length ? `The known ${metres.join(", ")} tells the scale in metres.` : "";
     return [few, carried].filter(Boolean).join(" ");
   }
 
