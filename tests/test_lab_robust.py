@@ -18,6 +18,7 @@ from lab_browser import (
     used_at_random,
 )
 from lab_settings import ALL, assert_follows_python
+from test_lab_layout import WALK
 
 from percept_obs.labs.observer.lab import runs
 from percept_obs.system.surfaces import BehindCamera
@@ -156,6 +157,15 @@ def test_the_lab_fits_its_cell(fresh, width):
         == 0
     )
     fresh.evaluate(WIDTH, "")
+
+
+def test_in_jupyterlab_pictures_are_in_view_whichever_control_has_the_focus(fresh):
+    fresh.set_viewport_size({"width": 1280, "height": 800})
+    fresh.wait_for_timeout(300)
+    found = fresh.evaluate(WALK)
+    fresh.set_viewport_size({"width": 1280, "height": 900})
+    assert found["wrong"] == []
+    assert found["walked"] > 60
 
 
 def test_a_kernel_text_that_fails_to_load_is_told(fresh):
