@@ -110,7 +110,7 @@ def test_every_control_is_reached_and_moved_by_keyboard(fresh):
     for name in ("sliding_mode", "extended_kalman", "immersion_and_invariance"):
         fresh.check(control(f"observer {name}"))
     rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "preset foe"))
+    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "foe"))
     rested(fresh)
 
 

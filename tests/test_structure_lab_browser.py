@@ -209,7 +209,7 @@ def test_every_control_is_reached_and_moved_by_keyboard(fresh):
     fresh.check(control("swings"))
     fresh.check(control("observer layer"))
     rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "preset speedometer"))
+    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "ybar"))
     rested(fresh)
 
 

@@ -52,7 +52,7 @@ export function build(lab, place, presets) {
     button("Copy as code", copy, { "data-control": "copy" }),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
   );
-  const chartBox = element("div", { class: "charts" });
+  const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
   for (const [name, { figure }] of Object.entries(charts)) {
     figure.classList.add(`chart-${name}`);
     chartBox.append(figure);
