@@ -1,4 +1,4 @@
-"""A lab asks before it shows, takes a prediction, says what a press has changed and what a field takes, and undoes all."""
+"""A lab asks before it shows, takes a prediction, says what a press has changed, what a field takes, and undoes all."""
 
 import pytest
 from lab_alone import DRAWN, opened

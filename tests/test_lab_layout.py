@@ -23,7 +23,8 @@ WALK = """(kept) => {
     const lab = document.querySelector(".percept-lab");
     const box = (node) => node.getBoundingClientRect();
     const screen = { left: 0, top: 0, right: innerWidth, bottom: document.documentElement.clientHeight };
-    const inside = (a, b) => a.top >= b.top - 1 && a.bottom <= b.bottom + 1 && a.left >= b.left - 1 && a.right <= b.right + 1;
+    const inside = (a, b) =>
+        a.top >= b.top - 1 && a.bottom <= b.bottom + 1 && a.left >= b.left - 1 && a.right <= b.right + 1;
     const whole = (selector) => {
         const node = lab.querySelector(selector);
         const holder = node.closest(".charts");
@@ -54,7 +55,8 @@ CUT = """() => {
         const box = node.getBoundingClientRect();
         const name = node.dataset.control ?? `${node.tagName} ${node.className} ${node.textContent.slice(0, 30)}`;
         if (box.right > right + 1 || box.left < left - 1) cut.push(`${name} leaves the lab`);
-        if (["BUTTON", "LABEL", "SPAN", "P", "TD", "TH", "INPUT", "SUMMARY"].includes(node.tagName) && node.scrollWidth > node.clientWidth + 1 && node.clientWidth) {
+        const said = ["BUTTON", "LABEL", "SPAN", "P", "TD", "TH", "INPUT", "SUMMARY"].includes(node.tagName);
+        if (said && node.clientWidth && node.scrollWidth > node.clientWidth + 1) {
             cut.push(`${name} is cut: ${node.scrollWidth} of ${node.clientWidth}`);
         }
         if (node.tagName !== "SELECT") continue;
@@ -96,7 +98,8 @@ def test_pictures_are_in_view_whichever_control_has_the_focus(browser, name, siz
 def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(browser, name, width):
     page = page_of(browser, name)
     page.evaluate(UNFOLD)
-    wide = "() => [...document.querySelectorAll('.percept-lab [data-control]')].filter((c) => c.checkVisibility()).map((c) => c.dataset.control)"
+    wide = """() => [...document.querySelectorAll('.percept-lab [data-control]')]
+        .filter((c) => c.checkVisibility()).map((c) => c.dataset.control)"""
     wanted = set(page.evaluate(wide))
     page.set_viewport_size({"width": width, "height": 800})
     page.wait_for_timeout(100)

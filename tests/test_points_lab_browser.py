@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from conftest import missing
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from jupyter_harness import jupyterlab, lab_page, log_entries
 from lab_browser import (
     OPEN,
     assert_python_has,

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from jupyter_harness import jupyterlab, lab_page, log_entries
 from lab_browser import (
     OPEN,
     WIDTH,

@@ -138,7 +138,7 @@ _open: dict[str, tuple[str, list[weakref.ref[Lab]]]] = {}
 
 
 def _close_those_of_an_earlier_run(lab: Lab) -> None:
-    """Close the labs that the same cell made when it ran before, and that stand in no other cell; those of one run stay."""
+    """Close the labs that the same cell made in an earlier run, unless they stand in another cell as well."""
     cell, run = _running_cell()
     if not cell:
         return
