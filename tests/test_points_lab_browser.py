@@ -163,16 +163,16 @@ def test_a_point_is_hidden_for_a_while(fresh):
     before = state(fresh)
     fresh.locator(control("hide 2")).first.check()
     fresh.locator(control("hidden from 2")).first.fill("2")
-    fresh.locator(control("hidden to 2")).first.fill("5.5")
+    fresh.locator(control("hidden to 2")).first.fill("5.6")
     rested(fresh)
     shown = state(fresh)
-    assert shown["settings"]["hidden"] == [None, [2, 5.5], None]
-    assert "Point 2 was hidden from 2 to 5.5 s" in shown["words"]
+    assert shown["settings"]["hidden"] == [None, [2, 5.6], None]
+    assert "Point 2 was hidden from 2 to 5.6 s" in shown["words"]
     assert (before["drawn"]["error"]["bars"], shown["drawn"]["error"]["bars"]) == (0, 1)
     assert_equals_python(shown)
     fresh.locator(control("hidden to 2")).first.fill("1")
     assert fresh.locator(control("hidden to 2")).first.get_attribute("aria-invalid") == "true"
-    assert state(fresh)["settings"]["hidden"] == [None, [2, 5.5], None]
+    assert state(fresh)["settings"]["hidden"] == [None, [2, 5.6], None]
     fresh.locator(control("hide 2")).first.uncheck()
     rested(fresh)
     assert state(fresh)["drawn"] == before["drawn"]
@@ -214,7 +214,7 @@ def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
     before = state(fresh)
     fresh.locator(control("preset riccati")).first.click()
     assert "follows a Riccati equation" in fresh.locator(".question").first.inner_text()
-    assert state(fresh)["settings"] == {**before["settings"], "seed": 0}
+    assert state(fresh)["settings"] == {**points_lab().settings, "hold": "exact"}
     fresh.locator(control("act riccati 0")).first.click()
     rested(fresh)
     shown = state(fresh)
