@@ -52,6 +52,8 @@ FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
 EVENTS = sampled(500, 10_000)
 """Random events in each lab: several for each control."""
 
+UNFOLD = "document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))"
+
 USABLE = """() => [...[...window.perceptObsLabs][0].view.root.querySelectorAll("[data-control]")]
     .filter((control) => !control.disabled && control.checkVisibility()).map((control) => control.dataset.control)"""
 
@@ -84,11 +86,17 @@ def write_notebook(folder, name, *cells):
 
 
 def open_lab(page, folder, name="lab.ipynb", arguments="", lab="observer_lab"):
-    """Show a notebook with one lab, run it, and wait until page and Python have come to rest."""
+    """Show a notebook with one lab, run it, and wait until page and Python have come to rest; all topics open."""
     write_notebook(folder, name, OPEN.replace("observer_lab", lab).format(arguments=arguments))
+    open_unfolded(page, name)
+
+
+def open_unfolded(page, name):
+    """Show a notebook, run it, wait until all has come to rest, and open all topics of its labs."""
     open_notebook(page, name)
     run_all(page)
     rested(page)
+    page.evaluate(UNFOLD)
 
 
 def rested(page, patience=30):
@@ -178,7 +186,8 @@ def reached_by_keyboard(page, first):
     AssertionError
         If one that can be seen and is enabled is left out.
     """
-    open_groups_by_keyboard(page)
+    page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = false))")
+    open_topics_by_keyboard(page)
     wanted = set(
         page.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
             .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
@@ -209,8 +218,6 @@ def assert_moved_by_keyboard(page, names):
         kind = page.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
         if kind not in there_and_back:
             continue
-        # Dropping an observer and choosing it again among many closes its gains.
-        open_groups_by_keyboard(page)
         before = value_of(page, name)
         page.focus(control(name))
         there, back = there_and_back[kind]
@@ -225,11 +232,9 @@ def assert_moved_by_keyboard(page, names):
         assert moved, name
 
 
-def open_groups_by_keyboard(page):
-    """Open the gains of all chosen observers, as somebody without a mouse would."""
-    closed = (
-        "[...document.querySelectorAll('.gains-of:not([open]):not([hidden]) summary')].map((s) => s.dataset.control)"
-    )
+def open_topics_by_keyboard(page):
+    """Open all topics, as somebody without a mouse would."""
+    closed = "[...document.querySelectorAll('.percept-lab .topic:not([open]) > summary')].map((s) => s.dataset.control)"
     for name in page.evaluate(closed):
         page.focus(control(name))
         page.keyboard.press("Enter")
@@ -246,14 +251,17 @@ def serious_violations(page, widths=("", "400px")):
     axe = FRONT / "node_modules/axe-core/axe.min.js"
     if not axe.exists():
         missing(f"axe-core is missing: run npm ci in {FRONT}.")
-    page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
+    page.evaluate(UNFOLD)
     page.evaluate(axe.read_text())
     serious = []
     for width in widths:
         page.evaluate(WIDTH, width)
-        found = page.evaluate("axe.run('.percept-lab')")
-        assert len(found["passes"]) > 10
-        serious += [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
+        for tab in page.locator("[data-control^='tab ']:visible").all() or [None]:
+            if tab:
+                tab.click()
+            found = page.evaluate("axe.run('.percept-lab')")
+            assert len(found["passes"]) > 10
+            serious += [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
     page.evaluate(WIDTH, "")
     return [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious]
 

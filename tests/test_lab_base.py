@@ -78,6 +78,23 @@ def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(m
     assert again.comm is not None
 
 
+def test_a_cell_that_runs_again_leaves_its_lab_where_another_cell_shows_it(monkeypatch):
+    now = ["first cell", "run 1"]
+    monkeypatch.setattr(base, "_running_cell", lambda: tuple(now))
+    lab = observer_lab()
+    lab._repr_mimebundle_()
+    now[:] = ["second cell", "run 2"]
+    lab._repr_mimebundle_()
+    now[:] = ["first cell", "run 3"]
+    again = observer_lab()
+    again._repr_mimebundle_()
+    assert lab.comm is not None
+    now[:] = ["first cell", "run 4"]
+    observer_lab()
+    assert lab.comm is not None
+    assert again.comm is None
+
+
 def test_letters_carry_the_names_of_their_gains_and_longer_ones_come_first():
     alpha, alpha1 = sp.symbols("alpha alpha1", real=True)
     text = markup.markup(alpha * alpha1, {"weight": alpha, "growth": alpha1})

@@ -4,6 +4,7 @@ import pytest
 from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
 from lab_browser import (
     OPEN,
+    UNFOLD,
     assert_equals_python,
     assert_python_has,
     control,
@@ -12,6 +13,7 @@ from lab_browser import (
     drag_by_touch,
     end_kernel,
     open_lab,
+    open_unfolded,
     rested,
     state,
     write_notebook,
@@ -196,10 +198,10 @@ def test_the_lab_ends_on_the_last_of_many_events(fresh, folder):
 def test_a_preset_asks_shows_and_leads_back(fresh):
     fresh.fill(control("seed number"), "7")
     rested(fresh)
-    before = state(fresh)
+    before, opening = state(fresh), {**state(fresh)["settings"], "seed": 0}
     fresh.click(control("preset bias"))
     assert "Does it?" in fresh.inner_text(".question")
-    assert state(fresh)["settings"] == before["settings"]
+    assert state(fresh)["settings"] == opening  # a question stands over the settings that it is about
     fresh.click(control("act bias 0"))
     rested(fresh)
     assert "driven to the bound" in state(fresh)["verdicts"][0]
@@ -296,6 +298,7 @@ def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder
     run_all(page)
     page.wait_for_function("[...window.perceptObsLabs][0].shown?.settings.outputs[0] === 'y2'", timeout=120_000)
     assert_equals_python(state(page))
+    page.evaluate(UNFOLD)
     page.fill(control("seed number"), "3")
     page.wait_for_selector(".percept-obs-error:not([hidden])")
     assert "ZeroDivisionError" in page.inner_text(".percept-obs-error:not([hidden])")
@@ -307,9 +310,7 @@ def test_two_labs_live_side_by_side_and_a_cell_replaces_its_own(browser_page, fo
     page = browser_page
     second = "other = observer_lab(outputs=['y1'])\nother"
     write_notebook(folder, "two.ipynb", OPEN.format(arguments=""), second, "print('open:', other.comm is not None)")
-    open_notebook(page, "two.ipynb")
-    run_all(page)
-    rested(page)
+    open_unfolded(page, "two.ipynb")
     first, other = state(page, 0), state(page, 1)
     page.locator(control("seed number")).nth(1).fill("9")
     rested(page)
@@ -328,7 +329,7 @@ def test_the_lab_outlives_its_kernel_and_says_so(browser_page, folder, server):
     end_kernel(page, server, "dead.ipynb")
     page.fill(control("identifier_based gain number"), "4")
     page.wait_for_selector(".silence:not([hidden])")
-    assert "Python does not answer" in page.inner_text(".silence")
+    assert "Python has not answered yet" in page.inner_text(".silence")
     page.check(control("outputs y1"))
     page.check(control("observer spica"))
     page.wait_for_function(
@@ -362,6 +363,7 @@ def test_the_kernel_may_be_busy_while_the_lab_is_moved(browser_page, folder):
     page.click(".lm-MenuBar-item:has-text('Run')")
     page.click(".lm-Menu-item[data-command='runmenu:run-all']")
     page.wait_for_function("window.perceptObsLabs?.size && [...window.perceptObsLabs][0].shown")
+    page.evaluate(UNFOLD)
     for seed in range(1, 6):
         page.fill(control("seed number"), str(seed))
         page.wait_for_function(f"[...window.perceptObsLabs][0].shown.settings.seed === {seed}")

@@ -2,7 +2,7 @@
 
 import pytest
 from lab_alone import DRAWN, opened
-from lab_browser import centre, control
+from lab_browser import UNFOLD, centre, control
 
 from percept_obs.labs import observer_lab, structure_lab
 
@@ -26,6 +26,7 @@ def test_of_a_point_behind_the_camera_nothing_old_is_left_and_the_remedy_names_a
     page.wait_for_function(DRAWN)
     page.wait_for_function("() => document.querySelector('.why').textContent.includes('behind the camera')")
     assert named.split()[0] in page.inner_text(".why")
+    page.evaluate(UNFOLD)
     assert named in page.inner_text(".panel")
     assert page.locator("figure.chart:not([hidden])").count() == 0
     assert page.locator(".legend li").count() == 0

@@ -18,6 +18,7 @@ from lab_browser import (
     used_at_random,
 )
 from lab_settings import ALL, assert_follows_python
+from test_lab_layout import WALK
 
 from percept_obs.labs.observer.lab import runs
 from percept_obs.system.surfaces import BehindCamera
@@ -109,7 +110,7 @@ def test_every_control_is_reached_and_moved_by_keyboard(fresh):
     for name in ("sliding_mode", "extended_kalman", "immersion_and_invariance"):
         fresh.check(control(f"observer {name}"))
     rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "preset foe"))
+    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "foe"))
     rested(fresh)
 
 
@@ -150,12 +151,21 @@ def test_the_lab_fits_its_cell(fresh, width):
     assert (
         fresh.evaluate("""() => {
         const lab = document.querySelector('.percept-lab');
-        return [...lab.querySelectorAll('canvas, fieldset, .bar, .control')].filter(
+        return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
             (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
     }""")
         == 0
     )
     fresh.evaluate(WIDTH, "")
+
+
+def test_in_jupyterlab_pictures_are_in_view_whichever_control_has_the_focus(fresh):
+    fresh.set_viewport_size({"width": 1280, "height": 800})
+    fresh.wait_for_timeout(300)
+    found = fresh.evaluate(WALK)
+    fresh.set_viewport_size({"width": 1280, "height": 900})
+    assert found["wrong"] == []
+    assert found["walked"] > 60
 
 
 def test_a_kernel_text_that_fails_to_load_is_told(fresh):

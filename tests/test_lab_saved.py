@@ -74,7 +74,7 @@ def test_every_observer_with_every_output_on_every_surface(page):
         found = page.evaluate(FOUND)
         assert {*found["runs"], *found["refused"]} == set(ALL), key
         assert page.locator(".problem:not([hidden])").count() == 0
-    assert "Python does not answer" in page.inner_text(".silence")
+    assert "There is no Python here" in page.inner_text(".silence")
 
 
 def test_what_it_draws_is_what_python_computes(page):

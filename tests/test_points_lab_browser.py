@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from conftest import missing
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from jupyter_harness import jupyterlab, lab_page, log_entries
 from lab_browser import (
     OPEN,
     assert_python_has,
     centre,
     control,
+    open_unfolded,
     rested,
     usable,
     used_at_random,
@@ -57,9 +58,7 @@ def lab(chromium, folder, tmp_path_factory):
         page.set_default_timeout(15_000)
         other = "other = points_lab(state='independent', duration=4.0, window=2.0)\nother"
         write_notebook(folder, "two.ipynb", CELL.format(arguments=SHORT), other)
-        open_notebook(page, "two.ipynb")
-        run_all(page)
-        rested(page)
+        open_unfolded(page, "two.ipynb")
         yield page
 
 
@@ -164,16 +163,16 @@ def test_a_point_is_hidden_for_a_while(fresh):
     before = state(fresh)
     fresh.locator(control("hide 2")).first.check()
     fresh.locator(control("hidden from 2")).first.fill("2")
-    fresh.locator(control("hidden to 2")).first.fill("5.5")
+    fresh.locator(control("hidden to 2")).first.fill("5.6")
     rested(fresh)
     shown = state(fresh)
-    assert shown["settings"]["hidden"] == [None, [2, 5.5], None]
-    assert "Point 2 was hidden from 2 to 5.5 s" in shown["words"]
+    assert shown["settings"]["hidden"] == [None, [2, 5.6], None]
+    assert "Point 2 was hidden from 2 to 5.6 s" in shown["words"]
     assert (before["drawn"]["error"]["bars"], shown["drawn"]["error"]["bars"]) == (0, 1)
     assert_equals_python(shown)
     fresh.locator(control("hidden to 2")).first.fill("1")
     assert fresh.locator(control("hidden to 2")).first.get_attribute("aria-invalid") == "true"
-    assert state(fresh)["settings"]["hidden"] == [None, [2, 5.5], None]
+    assert state(fresh)["settings"]["hidden"] == [None, [2, 5.6], None]
     fresh.locator(control("hide 2")).first.uncheck()
     rested(fresh)
     assert state(fresh)["drawn"] == before["drawn"]
@@ -214,8 +213,8 @@ def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
     rested(fresh)
     before = state(fresh)
     fresh.locator(control("preset riccati")).first.click()
-    assert "What else could" in fresh.locator(".question").first.inner_text()
-    assert state(fresh)["settings"] == before["settings"]
+    assert "follows a Riccati equation" in fresh.locator(".question").first.inner_text()
+    assert state(fresh)["settings"] == {**points_lab().settings, "hold": "exact"}
     fresh.locator(control("act riccati 0")).first.click()
     rested(fresh)
     shown = state(fresh)
@@ -242,7 +241,7 @@ def test_every_control_is_reached_by_keyboard(fresh):
             .map((c) => c.dataset.control)""")
     )
     reached = set()
-    fresh.locator(control("preset gain")).first.focus()
+    fresh.locator(control("point 1")).first.focus()
     for _ in range(2 * len(wanted)):
         name = fresh.evaluate("""() => {
             const { activeElement } = document;
@@ -273,7 +272,7 @@ def test_axe_finds_nothing_serious(fresh):
         assert len(found["passes"]) > 10
         outside = fresh.evaluate("""() => {
             const lab = document.querySelector('.percept-lab');
-            return [...lab.querySelectorAll('canvas, fieldset, .bar, .control')].filter(
+            return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
                 (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
         }""")
         assert outside == 0

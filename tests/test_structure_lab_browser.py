@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from jupyter_harness import jupyterlab, lab_page, log_entries
 from lab_browser import (
     OPEN,
     WIDTH,
@@ -14,6 +14,7 @@ from lab_browser import (
     drag_by_touch,
     end_kernel,
     open_lab,
+    open_unfolded,
     reached_by_keyboard,
     rested,
     serious_violations,
@@ -208,7 +209,7 @@ def test_every_control_is_reached_and_moved_by_keyboard(fresh):
     fresh.check(control("swings"))
     fresh.check(control("observer layer"))
     rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "preset speedometer"))
+    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "ybar"))
     rested(fresh)
 
 
@@ -223,7 +224,7 @@ def test_the_lab_fits_its_cell(fresh, width):
     fresh.wait_for_timeout(200)
     outside = fresh.evaluate("""() => {
         const lab = document.querySelector('.percept-lab');
-        return [...lab.querySelectorAll('canvas, fieldset, .bar, .control, .unknowns > *')].filter(
+        return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
             (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((e) => e.className);
     }""")
     assert outside == []
@@ -254,9 +255,7 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder
 
 def test_two_labs_live_side_by_side_and_outlive_their_kernel(lab, folder, server):
     write_notebook(folder, "two.ipynb", OPEN.replace("observer_lab", "structure_lab").format(arguments=""), SECOND)
-    open_notebook(lab, "two.ipynb")
-    run_all(lab)
-    rested(lab)
+    open_unfolded(lab, "two.ipynb")
     first, other = state(lab, 0), state(lab, 1)
     lab.locator(control("seed number")).nth(1).fill("9")
     rested(lab)

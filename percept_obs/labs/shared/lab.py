@@ -99,6 +99,7 @@ class Lab(anywidget.AnyWidget):
     def __init__(
         self, kind: str, settings: Settings, opening: Settings, standard: Settings, texts: bytes = b"", **model: Any
     ) -> None:
+        self._shown_in: frozenset[str] = frozenset()
         self._opening = opening
         self._opening = self.check(settings)
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
@@ -165,6 +166,12 @@ class Lab(anywidget.AnyWidget):
         if self.error and "summary" in sync_data:
             self.error = ""
 
+    def _repr_mimebundle_(self, **options: Any) -> Any:
+        """What a cell shows; the lab remembers in which cells it stands."""
+        cell, _ = _running_cell()
+        self._shown_in |= {cell}
+        return super()._repr_mimebundle_(**options)
+
     @traitlets.observe("summary")
     def _deepen(self, change: Mapping[str, Any]) -> None:
         if change["new"]:
@@ -177,15 +184,18 @@ _open: dict[str, tuple[str, list[weakref.ref[Lab]]]] = {}
 
 
 def _close_those_of_an_earlier_run(lab: Lab) -> None:
-    """Close the labs that the same cell made when it ran before; several of one run stay."""
+    """Close the labs that the same cell made in an earlier run, unless they stand in another cell as well."""
     cell, run = _running_cell()
     if not cell:
         return
     last, labs = _open.get(cell, (run, []))
     if last != run:
-        for earlier in filter(None, (reference() for reference in labs)):
-            earlier.close()
-        labs = []
+        there = [lab for lab in (reference() for reference in labs) if lab is not None]
+        elsewhere = [lab for lab in there if lab._shown_in - {cell}]
+        for earlier in there:
+            if earlier not in elsewhere:
+                earlier.close()
+        labs = [weakref.ref(lab) for lab in elsewhere]
     _open[cell] = (run, [*labs, weakref.ref(lab)])
 
 

@@ -228,17 +228,25 @@ test("what leads back to where it began is no step, and a step forgets what was 
 
 test("a preset's acts are steps, and the way back leads to the settings before them", () => {
   const state = new State(OPENING);
-  state.ask("noise");
+  const at = () => [state.settings.seed, state.preset?.name, state.preset?.act, state.preset?.said ?? null];
+  const [asked, before] = [{ ...OPENING, seed: 5 }, OPENING.seed];
+  state.ask("noise", asked);
+  assert.deepEqual([state.settings, state.preset.before], [asked, OPENING]);
+  state.predict({ said: 1 });
   state.act(0, { ...OPENING, seed: 1 });
-  state.ask("bias");
+  assert.deepEqual([...at(), state.preset.of.seed], [1, "noise", 0, 1, 1]);
+  state.ask("bias", asked);
   state.act(1, { ...OPENING, seed: 2 });
-  assert.deepEqual([state.preset.name, state.preset.act, state.preset.before], ["bias", 1, OPENING]);
+  assert.deepEqual([...at(), state.preset.before], [2, "bias", 1, null, OPENING]);
   state.leave();
   assert.deepEqual([state.settings, state.preset], [OPENING, null]);
-  state.undo();
-  assert.deepEqual([state.settings.seed, state.preset.name, state.preset.act], [2, "bias", 1]);
-  state.undo();
-  assert.deepEqual([state.settings.seed, state.preset.name, state.preset.act], [1, "bias", -1]);
-  state.undo();
-  assert.deepEqual([state.settings, state.preset.name, state.preset.act], [OPENING, "noise", -1]);
+  const back = [[2, "bias", 1, null], [5, "bias", -1, null], [1, "noise", 0, 1], [5, "noise", -1, 1], [5, "noise", -1, null], [before, undefined, undefined, null]];
+  for (const step of back) {
+    state.undo();
+    assert.deepEqual(at(), step);
+  }
+  for (const step of back.toReversed().slice(1)) {
+    state.redo();
+    assert.deepEqual(at(), step);
+  }
 });

@@ -9,11 +9,13 @@ import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { pythonOf } from "./model/code.js";
-import { Engine, translationTowards } from "./model/engine.js";
+import { Engine, focusOf, translationTowards } from "./model/engine.js";
 import { Kernels, keyOf } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
+import { SYMBOLS } from "./model/symbols.js";
+import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
-import { Panel, WORDS } from "./page/panel.js";
+import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
@@ -25,7 +27,7 @@ export class ObserverLab extends Live {
   constructor(widget, place, model) {
     super(widget, model, {
       ...{ words: WORDS, presets: PRESETS, settingsOf },
-      ...{ labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf },
+      ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf, causesOf },
     });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
@@ -45,6 +47,12 @@ export class ObserverLab extends Live {
     });
     this.panel = new Panel(this);
     this.open(place);
+  }
+
+  /** The focus of expansion of the present settings; null where there is none in the image. */
+  focus() {
+    const functions = this.kernels.of(this.settings);
+    return functions ? focusOf(this.settings, functions, this.model) : null;
   }
 
   moveFoe(place) {

@@ -7,9 +7,10 @@ import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
 import { PRESETS, settingsOf } from "./model/presets.js";
+import { SYMBOLS } from "./model/symbols.js";
 import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
 import { ImagePlane } from "./page/image_plane.js";
-import { Panel, WORDS } from "./page/panel.js";
+import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
@@ -36,7 +37,7 @@ export class PointsLab extends Live {
   static computing = { Kernels: PointsKernels, Engine: PointsEngine };
 
   constructor(widget, place, model) {
-    const shown = { labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
+    const shown = { names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
     super(widget, model, { words: WORDS, presets: PRESETS, settingsOf, ...shown });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
@@ -113,7 +114,7 @@ export class PointsLab extends Live {
     const [first] = this.settings.points;
     const length = Math.hypot(...first) || 1;
     const velocity = first.map((value) => Number(((0.2 * value) / length).toPrecision(9)));
-    this.change({ turning: 0, input: 0, velocity }, true);
+    this.changeAndSay("Along the ray of point 1", { turning: 0, input: 0, velocity });
   }
 
   // What is shown.

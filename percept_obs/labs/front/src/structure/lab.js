@@ -11,9 +11,10 @@ import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { keyOf, StructureKernels } from "./model/kernels.js";
 import { PRESETS } from "./model/presets.js";
+import { SYMBOLS } from "./model/symbols.js";
 import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
-import { StructurePanel, WORDS } from "./page/panel.js";
+import { NAMES, StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
@@ -21,8 +22,8 @@ export class StructureLab extends Live {
   static computing = { Kernels: StructureKernels, Engine: StructureEngine };
 
   constructor(widget, place, model) {
-    const words = { words: WORDS, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
+    const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
+    super(widget, model, { words: WORDS, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,
@@ -37,9 +38,8 @@ export class StructureLab extends Live {
       systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
       numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),
     });
-    this.panel = new StructurePanel(this);
     this.choice = new ChoiceOfUnknowns(this.model, this);
-    this.head = this.choice.body;
+    this.panel = new StructurePanel(this, this.choice);
     this.open(place);
   }
 

@@ -33,7 +33,7 @@ export function presetsOf(presets) {
     ...{ button: "Show", ...act, changes: { ...shared, ...changes } },
     beside: beside && { ...shared, ...beside },
   });
-  return presets.map(({ changes, acts, ...preset }) => ({ ...preset, acts: acts.map((act) => whole(changes, act)) }));
+  return presets.map(({ changes, acts, asks = {}, ...preset }) => ({ ...preset, asks, acts: acts.map((act) => whole(changes, act)) }));
 }
 
 /** The settings of a preset's act: the standard ones, whatever the lab was opened with, and the act's changes. */
@@ -43,4 +43,13 @@ export function settingsAfter(act, standard) {
   changed.gains = structuredClone(standard.gains);
   for (const [name, gains] of Object.entries(act.changes.gains ?? {})) Object.assign(changed.gains[name], gains);
   return changed;
+}
+
+/** What has changed from some settings to others, in a lab's names of them. */
+export function changesInWords(before, after, names) {
+  const changed = Object.keys(after).filter((key) => key !== "kept" && !same(before[key], after[key]));
+  if (!changed.length) return "Nothing has changed.";
+  const told = [...new Set(changed.map((key) => names[key] ?? `the ${key}`))];
+  const last = told.pop();
+  return `Changed: ${told.length ? `${told.join(", ")} and ${last}` : last}. All else is as it was.`;
 }

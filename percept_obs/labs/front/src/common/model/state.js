@@ -4,7 +4,13 @@ import { same } from "./settings.js";
 
 /**
  * @typedef {import("../../types.js").Settings} Settings
- * @typedef {{name: string, act: number, before: Settings | null}} Preset  an act is shown from 0 on
+ * @typedef {object} Preset         a question that is open
+ * @property {string} name
+ * @property {number} act          the act that is shown, from 0 on; -1 while it is only asked
+ * @property {Settings | null} before  the settings to go back to
+ * @property {Settings | null} of   those that the question or the act is about
+ * @property {number | null} said   which answer was predicted
+ * @property {(number | null)[]} [sketch]  the error curve that was predicted: decades at equal steps of time
  * @typedef {{settings: Settings, preset: Preset | null}} Moment
  */
 
@@ -80,21 +86,30 @@ export class State {
     return true;
   }
 
-  /** Open a preset's question, which changes no setting yet. */
-  ask(name) {
-    this.now = { ...this.now, preset: { name, act: -1, before: this.preset?.before ?? null } };
+  /** Open with a question about the settings that are shown. */
+  open(name) {
+    this.now = { ...this.now, preset: { name, act: -1, before: null, of: this.settings, said: null } };
+  }
+
+  /** Ask a preset's question, over the settings that it is about. */
+  ask(name, settings) {
+    const before = this.preset?.before ?? this.settings;
+    this.step({ settings, preset: { name, act: -1, before, of: settings, said: null } });
+  }
+
+  /** Say what one expects. */
+  predict(found) {
+    if (this.preset) this.step({ preset: { ...this.preset, ...found } });
   }
 
   act(act, settings) {
     const before = this.preset?.before ?? this.settings;
-    this.step({ settings, preset: { name: this.preset?.name, act, before } });
+    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before, of: settings } });
   }
 
-  /** Close the preset, and go back to the settings before its acts. */
+  /** Close the preset, and go back to the settings before it. */
   leave() {
-    const before = this.preset?.before;
-    if (before) this.step({ settings: before, preset: null });
-    else this.now = { ...this.now, preset: null };
+    this.step({ settings: this.preset?.before ?? this.settings, preset: null });
   }
 
   reset(settings) {

@@ -87,7 +87,7 @@ export function sceneInWords(shown, distancesOf) {
 /** When the point was lost, if it was. */
 export function leavingInWords({ leavesAt }) {
   if (leavesAt === null) return [];
-  return [`The point leaves the half-space in front of the camera at ${readable(leavesAt)} s; shown until then.`];
+  return [`The point passes behind the camera at ${readable(leavesAt)} s; the charts end there.`];
 }
 
 /** Numbers that Python is told: verdicts, final estimates, resets, and estimates at some times. */

@@ -68,7 +68,7 @@ export class TimeChart extends Picture {
     pen.textBaseline = "alphabetic";
     pen.textAlign = "left";
     pen.fillStyle = theme.ink;
-    pen.fillText(title, place.left, 12);
+    pen.fillText(title, 4, 10);
     if (!last) return;
     pen.fillStyle = theme.muted;
     pen.textBaseline = "top";

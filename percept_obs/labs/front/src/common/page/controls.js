@@ -14,6 +14,30 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** A unit as it is printed beside a name; a number without one says nothing. */
+export function unitOf(unit) {
+  return unit && unit !== "1" ? ` (${unit.replaceAll("^2", "²")})` : "";
+}
+
+/** What a field takes, in words. */
+function expected({ least, most, above, whole, nonzero, condition, reason }) {
+  const kind = whole ? "a whole number" : "a number";
+  const low = above === undefined ? least : above;
+  const range = low === undefined || Math.abs(low) >= 1e300 ? "" : ` ${above === undefined ? "from" : "above"} ${low}${most === undefined ? "" : ` to ${most}`}`;
+  const more = [condition && `with ${condition}`, reason].filter(Boolean).join("; ");
+  return `${kind}${range}${nonzero ? ", not 0" : ""}${more && `, ${more}`}`;
+}
+
+/** A line below a field that says what it takes, while something else stands there and after it was taken back. */
+export function warning(limits) {
+  const node = element("p", { class: "range", role: "status", hidden: true });
+  const tell = (good) => {
+    node.hidden = good;
+    if (!good) node.textContent = `Not taken. It must be ${expected(limits)}.`;
+  };
+  return { node, tell };
+}
+
 /** The digits of a value that a field shows. */
 function shown(value) {
   if (value && Math.abs(value) < 1e-3) return value.toExponential(2).replace(/\.?0+e/, "e");
@@ -33,7 +57,8 @@ function fits(value, { least = -Infinity, most = Infinity, above = -Infinity, wh
   return !(whole && !Number.isInteger(value)) && !(nonzero && value === 0) && (!allowed || allowed(value));
 }
 
-export function slider({ name, label, hint, letter, low, high, step, log, unit, get, set, rest, ...limits }) {
+/** `meaning` says in small letters what the name stands for. */
+export function slider({ name, label, meaning = "", letter = "", low, high, step, log = false, unit = "", get, set, rest, ...limits }) {
   const id = `percept-${++count}`;
   const inside = log ? Math.log10 : (v) => v;
   const outside = log ? (v) => Number((10 ** v).toPrecision(3)) : (v) => v;
@@ -43,11 +68,14 @@ export function slider({ name, label, hint, letter, low, high, step, log, unit, 
   field.dataset.control = `${name} number`;
   const symbol = letter ? [element("span", { class: "letter", "aria-hidden": "true" })] : [];
   if (letter) symbol[0].innerHTML = `<math>${letter}</math>`;
-  const text = element("label", { for: id }, ...symbol, element("span", {}, unit ? `${label} (${unit})` : label));
-  const row = element("div", { class: "control", title: hint }, text, range, field);
+  const text = element("label", { for: id }, ...symbol, element("span", {}, `${label}${unitOf(unit)}`));
+  const refused = warning(limits);
+  const said = meaning ? [element("p", { class: "meaning" }, meaning)] : [];
+  const row = element("div", { class: "control" }, text, range, field, ...said, refused.node);
   const take = (value) => {
     const good = fits(value, limits);
     field.setAttribute("aria-invalid", String(!good));
+    refused.tell(good);
     if (!good) return;
     set(value);
     show();
@@ -56,7 +84,9 @@ export function slider({ name, label, hint, letter, low, high, step, log, unit, 
   range.addEventListener("change", () => rest?.());
   field.addEventListener("input", () => field.value !== "" && take(Number(field.value)));
   field.addEventListener("change", () => {
+    const good = field.getAttribute("aria-invalid") !== "true";
     show();
+    refused.tell(good);
     rest?.();
   });
   let last = null;
@@ -67,10 +97,11 @@ export function slider({ name, label, hint, letter, low, high, step, log, unit, 
     last = value;
     row.hidden = value === undefined;
     if (row.hidden) return;
+    refused.tell(true);
     const at = inside(Math.max(value, log ? low : -Infinity));
     if (document.activeElement !== range || outside(Number(range.value)) !== value) range.value = String(at);
     if (document.activeElement !== field || !same(Number(field.value), value)) field.value = shown(value);
-    range.setAttribute("aria-valuetext", `${Number(value.toPrecision(4))}${unit ? ` ${unit}` : ""}`);
+    range.setAttribute("aria-valuetext", `${Number(value.toPrecision(4))}${unit && unit !== "1" ? ` ${unit}` : ""}`);
     if (fits(Number(field.value), limits)) field.setAttribute("aria-invalid", "false");
   };
   return { row, show, parts: [range, field], name };
@@ -127,6 +158,7 @@ export function checkbox({ name, label, swatch = /** @type {Node | string} */ ("
 }
 
 export function grid({ name, label, rows, columns, step, names, get, set, rest, ...limits }) {
+  const refused = warning(limits);
   const fields = names.map((entry, k) => {
     const field = element("input", { type: "number", step, "aria-label": `${label}: ${entry}` });
     field.dataset.control = `${name} ${entry}`;
@@ -135,6 +167,7 @@ export function grid({ name, label, rows, columns, step, names, get, set, rest, 
       const value = Number(field.value);
       const good = field.value !== "" && fits(value, limits);
       field.setAttribute("aria-invalid", String(!good));
+      refused.tell(good);
       if (good) set(k, value);
     });
     field.addEventListener("change", () => {
@@ -144,7 +177,7 @@ export function grid({ name, label, rows, columns, step, names, get, set, rest, 
     return field;
   });
   const block = element("div", { class: "grid", style: `--columns: ${columns}`, "data-rows": rows }, ...fields);
-  const row = element("div", { class: "control block", role: "group", "aria-label": label }, element("span", {}, label), block);
+  const row = element("div", { class: "control block", role: "group", "aria-label": label }, element("span", {}, label), block, refused.node);
   const show = () => {
     const values = get();
     row.hidden = !values;

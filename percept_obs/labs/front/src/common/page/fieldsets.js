@@ -40,8 +40,14 @@ export class Fieldsets {
     return row;
   }
 
-  fieldset(legend, attributes, ...rows) {
-    return element("fieldset", attributes, element("legend", {}, legend), ...rows);
+  /** Controls under a name of their own. */
+  fieldset(legend, ...rows) {
+    return element("fieldset", {}, element("legend", {}, legend), ...rows);
+  }
+
+  /** What is asked for first, all in sight. */
+  first(...rows) {
+    return element("div", { class: "first" }, ...rows);
   }
 
   /** What schema and settings say of the value at a place: its name, and how to read and change it. */
@@ -135,6 +141,11 @@ export class Fieldsets {
     const letters = schemaAt(this.schema, place).entries.map((_, k) => `${letter}${k + 1}`);
     return letters.map((each, k) => this.lit(this.number(`${place}.${k}`, moreOf(each)), each, owner));
   }
+}
+
+/** A part of the page that is closed until its title is pressed. */
+export function topic(name, title, ...inside) {
+  return element("details", { class: `topic ${name}` }, element("summary", { "data-control": `topic ${name}` }, title), ...inside);
 }
 
 /** Light up a control's letter in the formulas while the hand or the focus is on it. */

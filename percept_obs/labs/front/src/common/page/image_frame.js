@@ -4,7 +4,8 @@ import { LINE } from "./lines.js";
 import { endMark, startMark } from "./marks.js";
 import { linearScale, tickLabel } from "../model/scales.js";
 
-const EDGE = 34;
+/** Room for what is written around the square. */
+const ROOM = { left: 38, right: 12, top: 20, bottom: 34 };
 
 /** A square around ranges of both coordinates. */
 export function squareAround(bounds) {
@@ -23,9 +24,10 @@ export function showsToo({ centre, half }, wanted) {
 /** Where a square lies on a picture's canvas, which is made to fit its place. */
 export function placed(target, { centre, half }, font) {
   const { width, height } = target.fit(font);
-  const side = Math.min(width, height) - 2 * EDGE;
-  const box = { left: width / 2 - side / 2, top: height / 2 - side / 2, side };
-  return frameOf(box, side / (2 * half), centre, [width / 2, height / 2], 4 * Math.max(width, height));
+  const [across, down] = [width - ROOM.left - ROOM.right, height - ROOM.top - ROOM.bottom];
+  const side = Math.min(across, down);
+  const box = { left: ROOM.left + (across - side) / 2, top: ROOM.top + (down - side) / 2, side };
+  return frameOf(box, side / (2 * half), centre, [box.left + side / 2, box.top + side / 2], 4 * Math.max(width, height));
 }
 
 /** A frame that puts `centre` at a place on the canvas, so many pixels a unit, and nothing further off than `far`. */

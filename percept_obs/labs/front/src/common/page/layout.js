@@ -1,14 +1,21 @@
-// Where everything stands: presets, pictures, words, controls, formulas. Words are put in only when they change.
+// Where everything stands: pictures, and beside them questions, controls and formulas; words below.
 
+import { Card } from "./card.js";
 import { button, element } from "./controls.js";
+import { topic } from "./fieldsets.js";
 import { Legend } from "./legend.js";
-import { swatch } from "./lines.js";
 import { Player } from "./player.js";
+import { beside, fill, put, show } from "./put.js";
+import { Sketch } from "./sketch.js";
+import { tabs } from "./tabs.js";
+import { WhatIf } from "./what_if.js";
 import { zoomable } from "./zooming.js";
+
+const WAITING = "Python has not answered yet: it is computing, or its kernel has ended. The lab works without it.";
+const GONE = "There is no Python here. The lab works without it; run its cell to have Python's sentences as well.";
 
 /** What makes something else of the space bar. */
 const OWN_SPACE = "input, select, button, summary, a, .player";
-const CHIP = { class: "chip", "aria-expanded": "false" };
 
 export function build(lab, place, presets) {
   const { planes, charts, panel, formulas } = lab;
@@ -20,43 +27,12 @@ export function build(lab, place, presets) {
   const analysis = element("ul", { class: "analysis" });
   const reading = element("p", { class: "reading" });
   const legend = new Legend(lab);
-  const card = element("div", { class: "card", hidden: true });
-  const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
-  const keep = button("Keep this run", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false" });
-  const back = button("Back", () => lab.goBack(), { "data-control": "back", hidden: true });
   const player = new Player(lab);
-
-  /** Show the preset that is open, with its answer once it was asked for. */
-  function preset() {
-    const { name, act, before } = lab.state.preset ?? { act: -1, before: null };
-    const open = presets.find((p) => p.name === name);
-    const inside = card.contains(document.activeElement);
-    back.hidden = !before;
-    for (const chip of chips) chip.setAttribute("aria-expanded", String(chip.dataset.preset === name));
-    if (card.dataset.preset !== (name ?? "")) {
-      card.dataset.preset = name ?? "";
-      card.hidden = !open;
-      card.replaceChildren(...(open ? question(open) : []));
-      // The button that had the focus is gone; without this the keyboard would start from the top of the page.
-      if (inside && !open) chips[0].focus();
-    }
-    if (!open) return;
-    put(card.querySelector(".answer"), open.acts[act]?.answer ?? "");
-    card.querySelectorAll(".act").forEach((node, k) => (node.hidden = k > act + 1));
-  }
-
-  function question({ name, question: text, acts }) {
-    const buttons = acts.map((act, number) =>
-      button(act.button, () => lab.act(act, number), { class: "act", "data-control": `act ${name} ${number}` }),
-    );
-    const close = button("Back to my settings", () => lab.goBack(), { "data-control": "way back" });
-    const answer = element("p", { class: "answer", role: "status" });
-    return [element("p", { class: "question" }, text), answer, element("div", {}, ...buttons, close)];
-  }
-
-  const chips = presets.map(({ name, title }) =>
-    button(title, () => lab.ask(name), { ...CHIP, "data-preset": name, "data-control": `preset ${name}` }),
-  );
+  const sketch = new Sketch(lab);
+  const whatIf = lab.parts.causesOf && new WhatIf(lab);
+  const card = new Card(lab, presets, sketch);
+  const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
+  const keep = button("Keep", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" });
 
   async function copy() {
     code.textContent = lab.copy();
@@ -72,29 +48,39 @@ export function build(lab, place, presets) {
   const actions = element(
     "div",
     { class: "actions" },
-    ...[history.undo, history.redo, back, keep],
+    ...[history.undo, history.redo, keep],
     button("Copy as code", copy, { "data-control": "copy" }),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
-    said,
   );
-  const chartBox = element("div", { class: "charts" }, ...Object.values(charts).map((chart) => chart.figure));
-  const unfolding = (name, title, open, inside) =>
-    element("details", { class: name, open }, element("summary", { "data-control": name }, title), inside);
+  const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
+  for (const [name, { figure }] of Object.entries(charts)) {
+    figure.classList.add(`chart-${name}`);
+    chartBox.append(figure);
+  }
+  const asked = element("div", { class: "asked" }, card.list, card.body, ...(whatIf ? [whatIf.body] : []));
+  const more = element("div", { class: "more" }, topic("equations", "Equations, with the present numbers", formulas.body), symbols(lab.parts.symbols));
+  const words = element("div", { class: "words" }, reading, verdicts, why, analysis);
+  const parts = [
+    { name: "question", title: "Question", nodes: [asked] },
+    { name: "controls", title: "Controls", nodes: [panel.body] },
+    { name: "words", title: "In words", nodes: [words] },
+    { name: "equations", title: "Equations", nodes: [more] },
+  ];
+  const views = planes.map(({ figure, label }) => ({ name: figure.className, title: label.split(",")[0], nodes: [figure] }));
+  const eyes = element("div", { class: "eyes" }, tabs("Picture", views), ...planes.map((plane) => plane.figure));
   const root = element(
     "div",
     { class: "percept-lab", "data-lm-suppress-shortcuts": "true" },
-    element("div", { class: "bar" }, element("div", { class: "chips", role: "group", "aria-label": "Questions" }, ...chips), actions),
-    ...[card, code, problem, pythonError, notice, lab.head ?? ""],
+    ...[problem, pythonError, notice],
     element(
       "div",
       { class: "stage" },
-      element("div", { class: "left" }, ...planes.map((plane) => plane.figure)),
-      element("div", { class: "right" }, legend.body, chartBox, player.body, reading),
-      element("div", { class: "words" }, verdicts, why),
+      eyes,
+      element("div", { class: "graphs" }, legend.body, chartBox, player.body),
+      element("div", { class: "side" }, actions, said, tabs("Beside the pictures", parts), element("div", { class: "scroll" }, asked, panel.body, more)),
+      words,
     ),
-    ...[silence, live, panel.body],
-    unfolding("deeper", "What Python adds", true, analysis),
-    unfolding("equations", "Equations, with the present numbers", false, formulas.body),
+    ...[silence, live, code],
   );
   place.append(root);
 
@@ -107,12 +93,14 @@ export function build(lab, place, presets) {
   for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
     root.addEventListener(type, () => lab.hold(type === "pointerdown"), true);
   }
+  // Under a pointer nothing moves by itself; who comes by keys sees what the keys will change.
+  root.addEventListener("focusin", () => lab.down || eyes.scrollIntoView({ block: "nearest" }));
   for (const chart of Object.values(charts)) zoomable(lab, chart, player);
 
   let spoken = "";
   const view = {
     root,
-    preset,
+    preset: () => card.show(),
     steps: history.show,
     words(found) {
       const verdictOf = ({ which, title, text }) => [which, title, text];
@@ -121,13 +109,19 @@ export function build(lab, place, presets) {
       fill(why, found.reasons);
       spoken = found.problem ?? found.verdicts.map(({ title, text }) => `${title}: ${text}`).join(". ");
       const { settings } = lab;
-      put(keep, settings.kept ? "Forget the kept run" : "Keep this run");
+      put(keep, settings.kept ? "Forget" : "Keep");
       keep.setAttribute("aria-pressed", String(Boolean(settings.kept)));
       code.hidden ||= code.textContent !== lab.copy();
     },
-    rested: () => put(live, spoken),
+    rested() {
+      put(live, spoken);
+      whatIf?.show();
+    },
     read: (text) => put(reading, text),
-    time: (cursor) => player.show(cursor),
+    time(cursor) {
+      player.show(cursor);
+      sketch.show();
+    },
     playing: () => player.playing,
     close: () => player.close(),
     ...functions,
@@ -135,6 +129,16 @@ export function build(lab, place, presets) {
     answered: (answer) => analysis.classList.toggle("of-others", !answer),
   };
   return view;
+}
+
+/** What the letters and words of a lab stand for. */
+function symbols(entries) {
+  const rows = entries.map(([symbol, meaning]) => {
+    const term = element("th", { scope: "row" });
+    term.innerHTML = symbol;
+    return element("tr", {}, term, element("td", {}, meaning));
+  });
+  return topic("symbols", "Symbols and words", element("table", { class: "symbols" }, ...rows));
 }
 
 /** The keys of undo and redo; JupyterLab would take arrows, letters and Enter for commands of its own. */
@@ -173,7 +177,7 @@ export function sayings() {
     problem: (text) => show(problem, text),
     pythonError: (text) => show(pythonError, text && `Python says: ${text}`),
     silence: (error) =>
-      show(silence, error === undefined ? "" : "Python does not answer: it is busy or gone. The lab goes on without it."),
+      show(silence, error === undefined ? "" : error ? GONE : WAITING),
     say(text) {
       put(said, text);
       clearTimeout(said.timer);
@@ -181,30 +185,4 @@ export function sayings() {
     },
   };
   return { problem, pythonError, silence, notice, said, functions };
-}
-
-export function put(node, text) {
-  if (node.textContent !== text) node.textContent = text;
-}
-
-/** Put in a text that is there only if it says something. */
-export function show(node, text) {
-  put(node, text);
-  node.hidden = !text;
-}
-
-/** Put in entries, each beside a piece of its line. */
-function beside(list, found, entryOf) {
-  const key = JSON.stringify(found);
-  if (list.dataset.key === key) return;
-  list.dataset.key = key;
-  list.replaceChildren(...found.map(([which, ...words]) => element("li", {}, swatch(which), ...entryOf(...words))));
-}
-
-function fill(list, texts) {
-  texts.forEach((text, k) => {
-    if (!list.children[k]) list.append(element("li"));
-    put(list.children[k], text);
-  });
-  while (list.children.length > texts.length) list.lastChild.remove();
 }

@@ -2,6 +2,7 @@
 
 import { Latest } from "../model/latest.js";
 import { Results } from "../model/results.js";
+import { changesInWords, same } from "../model/settings.js";
 import { readOf } from "../model/typed.js";
 import { verdict } from "../model/words.js";
 import { openBeside } from "./beside.js";
@@ -20,7 +21,9 @@ const BETWEEN_WORDS = 250;
  * them, and what is its own in these parts:
  *   words                       what the page calls the settings
  *   presets, settingsOf         points worth seeing, and the settings of an act
+ *   names, symbols              what settings are called in a sentence, and what letters stand for
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
+ *   causesOf                    settings without one cause each, in a lab that can tell some
  *   reasons, readingAt          why it happened, and values at a time, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
@@ -32,7 +35,8 @@ export class Live extends Showing {
     super(widget, model, parts);
     const { Kernels, Engine } = new.target.computing;
     this.kernels = new Kernels(this.model);
-    this.results = new Results(this.kernels, () => new Engine(this.model));
+    this.makeEngine = () => new Engine(this.model);
+    this.results = new Results(this.kernels, this.makeEngine);
     this.latest = new Latest(this.results, (error) => (error ? this.fail(new Error(error)) : this.schedule()));
     /** @type {Worker | null} */
     this.worker = null;
@@ -45,7 +49,10 @@ export class Live extends Showing {
   open(place) {
     const { labels, presets } = this.parts;
     this.time = new TimeCharts(labels);
+    // A lab with settings of its own is about these, and not about the first question.
+    if (same(this.settings, this.model.standard)) this.state.open(presets[0].name);
     this.follow(build(this, place, presets));
+    this.view.preset();
   }
 
   close() {
@@ -76,9 +83,25 @@ export class Live extends Showing {
     return this.rest();
   }
 
+  /** Take a step and say what it has changed. */
+  changeAndSay(title, changes) {
+    const before = this.settings;
+    this.change(changes, true);
+    this.view.notice(`${title}. ${changesInWords(before, this.settings, this.parts.names)}`);
+  }
+
+  /** Ask a question, over the settings that it is about. */
   ask(name) {
-    this.state.ask(name);
+    const { asks } = this.parts.presets.find((preset) => preset.name === name);
+    this.state.ask(name, this.parts.settingsOf({ changes: asks }, this.model.standard));
+    this.touched(true);
+  }
+
+  predict(found) {
+    this.state.predict(found);
     this.view.preset();
+    this.view.steps(this.state);
+    this.redraw();
   }
 
   act(act, number) {
@@ -213,6 +236,7 @@ export class Live extends Showing {
     this.view.problem("");
     this.panel.show();
     this.view.steps(this.state);
+    this.view.preset();
     this.speak();
   }
 

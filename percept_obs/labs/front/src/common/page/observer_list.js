@@ -5,16 +5,17 @@ import { button, checkbox, element, select, slider } from "./controls.js";
 import { linkToFormula } from "./fieldsets.js";
 import { swatch } from "./lines.js";
 
-const OPEN_AT_ONCE = 3;
-
-/** Rows and groups for a panel, which shows them with its other controls. */
+/** Rows for a panel: the observers, the first gain of each that is chosen, and in groups all others. */
 export class ObserverList {
   constructor(panel) {
     this.panel = panel;
     this.lab = panel.lab;
     this.observers = Object.entries(panel.model.observers);
-    this.rows = this.observers.map(([name, observer], order) => this.row(name, observer, order));
-    this.groups = this.observers.map(([name, observer], order) => this.group(name, observer, order));
+    const rows = this.observers.map(([name, observer], order) => this.row(name, observer, order));
+    this.choices = element("div", { class: "observers", role: "group", "aria-label": "Observers" }, ...rows);
+    const sliders = this.observers.map(([name, observer]) => observer.gains.map((gain, k) => this.gain(name, observer, gain, k === 0)));
+    this.mains = sliders.map(([main]) => main);
+    this.groups = this.observers.map(([name, observer], order) => this.group(name, observer, order, sliders[order].slice(1)));
     panel.controls.push(this);
   }
 
@@ -32,8 +33,8 @@ export class ObserverList {
       known.hidden = !known.hidden;
       more.setAttribute("aria-expanded", String(!known.hidden));
     };
-    const said = { "aria-expanded": "false", "aria-label": `about the ${title} observer` };
-    const more = button("about", unfold, { class: "about", "data-control": `about ${name}`, ...said });
+    const said = { "aria-expanded": "false", "aria-label": `about the ${title} observer`, title: "What is known of it" };
+    const more = button("?", unfold, { class: "about", "data-control": `about ${name}`, ...said });
     const showChoice = choice.show;
     choice.show = () => {
       showChoice();
@@ -46,24 +47,28 @@ export class ObserverList {
     return element("div", { class: "observer" }, panel.add(choice), more, refusal, known);
   }
 
-  group(name, { title, gains, ways }, order) {
+  /** The slider of a gain; the first one stands among others' and says whose it is. */
+  gain(name, { title, ways }, gain, main) {
     const { lab, panel } = this;
-    const sliders = gains.map((gain) => {
-      const control = slider({
-        ...gain,
-        name: `${name} ${gain.name}`,
-        label: gain.name.replaceAll("_", " "),
-        hint: gain.condition ? `${gain.meaning}; needs ${gain.condition}` : gain.meaning,
-        log: gain.low > 0 && gain.high / gain.low >= 50,
-        step: (gain.high - gain.low) / 1000,
-        allowed: (value) => lab.kernels.allows(name, gain.name, value),
-        get: () => (ways[switchOf(lab.settings, name)].includes(gain.name) ? lab.settings.gains[name][gain.name] : undefined),
-        set: (value) => lab.change(changeAt(lab.settings, `gains.${name}.${gain.name}`, value)),
-        rest: () => lab.rest(),
-      });
-      linkToFormula(control, () => lab.formulas, name, gain.name);
-      return panel.add(control);
+    const called = gain.name.replaceAll("_", " ");
+    const there = ({ observers, gains }, way) => (observers.includes(name) && ways[way].includes(gain.name) ? gains[name][gain.name] : undefined);
+    const control = slider({
+      ...gain,
+      name: `${name} ${gain.name}`,
+      label: main ? `${called}, ${title}` : called,
+      log: gain.low > 0 && gain.high / gain.low >= 50,
+      step: (gain.high - gain.low) / 1000,
+      allowed: (value) => lab.kernels.allows(name, gain.name, value),
+      get: () => there(lab.settings, switchOf(lab.settings, name)),
+      set: (value) => lab.change(changeAt(lab.settings, `gains.${name}.${gain.name}`, value)),
+      rest: () => lab.rest(),
     });
+    linkToFormula(control, () => lab.formulas, name, gain.name);
+    return panel.add(control);
+  }
+
+  group(name, { title, ways }, order, sliders) {
+    const { lab, panel } = this;
     const way = select({
       name: `${name} switch`,
       label: "switches by",
@@ -71,18 +76,14 @@ export class ObserverList {
       get: () => lab.settings.switches[name],
       set: (value) => lab.change(changeAt(lab.settings, `switches.${name}`, value), true),
     });
-    const head = element("summary", { "data-control": `gains of ${name}` }, swatch(order), title);
-    return element("details", { class: "gains-of", hidden: true }, head, ...(switchOf(lab.settings, name) ? [panel.add(way)] : []), ...sliders);
+    const rows = [...(switchOf(lab.settings, name) ? [panel.add(way)] : []), ...sliders];
+    return element("div", { class: "gains-of", role: "group", "aria-label": `Gains of ${title}`, hidden: true }, element("h4", {}, swatch(order), title), ...rows);
   }
 
-  /** Show the gains of the chosen observers only; where they are many, closed until asked for. */
+  /** Show the gains of the chosen observers only. */
   show() {
     const { observers } = this.lab.settings;
-    this.groups.forEach((group, k) => {
-      const chosen = observers.includes(this.observers[k][0]);
-      if (chosen && group.hidden) group.open = observers.length <= OPEN_AT_ONCE;
-      group.hidden = !chosen;
-    });
+    this.groups.forEach((group, k) => (group.hidden = group.children.length < 2 || !observers.includes(this.observers[k][0])));
   }
 }
 

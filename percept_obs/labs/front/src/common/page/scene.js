@@ -12,7 +12,7 @@ import { stroke } from "./image_frame.js";
 import { fading, KEPT, SOLID } from "./lines.js";
 import { ghostMark, label, pointMark, rimMark } from "./marks.js";
 
-const CAPTION = "Scene: y1 to the right, y2 upwards, as in the image";
+const CAPTION = "Scene in metres; y1, y2 as in the image";
 const EDGE = 14;
 const KEY_TURN = 0.1;
 const PIXEL_TURN = 0.01;

@@ -7,9 +7,12 @@ import { arrowMark, label } from "./marks.js";
 /** Length of an arrow at the mean speed of the image, as a part of the picture's side. */
 const USUAL = 0.16;
 const [HEAD, SHORTEST] = [6, 2];
+/** Part of an arrow by which others may differ from it and look the same. */
+const ALIKE = 0.05;
 const NAMES = ["½", "", "2"];
-const MOVING = "arrows: velocity at ½, 1, 2 × distance";
+const MOVING = "arrows: at ½, 1, 2 × distance";
 const STILL = "still at every distance: no arrow";
+const SAME = "the same arrow at every distance";
 
 /** @param {{place: number[], velocities: number[][], colour: string}[]} arrows */
 export function drawVelocities(pen, frame, arrows, speed, theme) {
@@ -25,10 +28,11 @@ export function drawVelocities(pen, frame, arrows, speed, theme) {
   pen.textAlign = "left";
   pen.textBaseline = "alphabetic";
   const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
+  const same = arrows.every(({ velocities: [near, , far] }) => Math.hypot(near[0] - far[0], near[1] - far[1]) < ALIKE * Math.hypot(...near));
   // Away from the point and its handle, and a line below what is said of a copy that swings.
   const { left, top, side } = frame.box;
   const above = arrows.some(({ place }) => frame.y(place[1]) > top + 0.7 * side);
-  label(pen, still ? STILL : MOVING, left + 4, above ? top + 28 : top + side - 6, theme.muted, theme);
+  label(pen, still ? STILL : same ? SAME : MOVING, left + 4, above ? top + 28 : top + side - 6, theme.muted, theme);
 }
 
 function arrow(pen, from, to, strength, colour, name, theme) {

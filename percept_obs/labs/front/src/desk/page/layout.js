@@ -1,7 +1,8 @@
 // Where everything stands at the desk: choices, what is given, the steps, the lines of one, the picture.
 
 import { button, element } from "../../common/page/controls.js";
-import { keys, put, sayings, ways } from "../../common/page/layout.js";
+import { keys, sayings, ways } from "../../common/page/layout.js";
+import { put } from "../../common/page/put.js";
 
 export function build(lab, place) {
   const { panel, sheet, picture } = lab;

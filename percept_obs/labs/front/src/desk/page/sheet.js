@@ -1,7 +1,7 @@
 // The lines of a step: what is typed, the same as mathematics, and what is found of it.
 
 import { button, element } from "../../common/page/controls.js";
-import { put } from "../../common/page/layout.js";
+import { put } from "../../common/page/put.js";
 
 const MARKS = { right: "✓", wrong: "✗", carried: "↳", unknown: "?" };
 const SAID = { right: "right", wrong: "not right", carried: "right from there on", unknown: "cannot be told" };

@@ -6,7 +6,7 @@ import { FramedImage } from "../../common/page/image_plane.js";
 import { element } from "../../common/page/controls.js";
 import { DASHES, SOLID, swatch } from "../../common/page/lines.js";
 import { arrowMark, pointMark } from "../../common/page/marks.js";
-import { put } from "../../common/page/layout.js";
+import { put } from "../../common/page/put.js";
 
 const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
 /** How long the longer arrow is drawn, in units of the image. */

@@ -107,13 +107,23 @@ export class Engine extends Runner {
   geometry(settings, functions, form) {
     const nowhere = { foe: null, foeTowards: null, circle: null };
     if (varies(settings, this.model)) return nowhere;
-    const parameters = [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
-    const foe = Array.from(functions.foe(parameters, [0, 0]));
-    if (!foe.every((v) => Math.abs(v) < INFINITY)) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
+    const foe = focusOf(settings, functions, this.model);
+    if (!foe) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
     const found = { foe, foeTowards: null, circle: null };
     if (!form.circle) return found;
-    return { ...found, circle: Array.from(functions.circle([...parameters, settings.threshold], [0, 0, 0])) };
+    return { ...found, circle: Array.from(functions.circle([...parametersOf(settings), settings.threshold], [0, 0, 0])) };
   }
+}
+
+function parametersOf(settings) {
+  return [...settings.A.flat(), ...settings.b, ...shapeOf(settings)];
+}
+
+/** The focus of expansion in the image; null where it is at infinity, or the motion varies. */
+export function focusOf(settings, functions, model) {
+  if (varies(settings, model)) return null;
+  const foe = Array.from(functions.foe(parametersOf(settings), [0, 0]));
+  return foe.every((v) => Math.abs(v) < INFINITY) ? foe : null;
 }
 
 /** The direction in the image in which a focus of expansion lies that is at infinity; null where nothing translates. */

@@ -1,4 +1,4 @@
-// Points worth seeing: each asks first, then shows, and may have a second act. A way back is the lab's business.
+// Questions worth asking: answers to choose from, then what happens, and perhaps a second act. `right` counts from 0.
 
 import { presetsOf, settingsAfter } from "../../common/model/settings.js";
 
@@ -10,19 +10,23 @@ export const PRESETS = presetsOf([
     title: "Cross the FOE",
     question:
       "The image of the point runs through the focus of expansion, where the camera's motion does not move it. " +
-      "Does the observer lose the distance there, for a moment or for good?",
+      "Does the observer lose the distance there?",
+    answers: ["No, it does not matter", "For a moment only", "For good, it has to start again"],
+    right: 1,
     changes: { b: [0, 0, 0.8], duration: 12, window: 2 },
     acts: [
       {
         changes: { A: [[0, 0, 0.1], [0, 0, 0], [-0.1, 0, 0]], X0: [-2, 0, 2] },
         answer:
-          "For a moment only: while the image crosses the circle an instant tells nothing, but the window around it " +
-          "still does, and the estimate carries on by the dynamics.",
+          "For a moment only. While the image crosses the red circle, an instant tells almost nothing of the distance. " +
+          "The seconds before and after do, and in between the observer goes on by its equations.",
       },
       {
         button: "Now stay there",
         changes: { A: [[0, 0, 0], [0, 0, 0], [0, 0, 0]], X0: [0, 0, 2] },
-        answer: "Who stays on the focus of expansion never sees the distance: the image stands still, whatever it is.",
+        answer:
+          "A point that stays on the focus of expansion stands still in the image, at any distance. So its distance is " +
+          "never found. Look at the arrows: the near copy and the far copy do not move either.",
       },
     ],
   },
@@ -30,23 +34,29 @@ export const PRESETS = presetsOf([
     name: "drop",
     title: "Drop y2",
     question: "Without y2 each sample is one number, and two coordinates are hidden. Can one number at a time tell both?",
+    answers: ["No, never", "Yes, but it takes longer", "Yes, and as fast as before"],
+    right: 1,
+    sketch: true,
     acts: [
       {
         changes: { outputs: ["y1"] },
         answer:
-          "Over time it can: w wᵀ has rank 1 at every instant, yet its integral over ten seconds has rank 2. " +
-          "It takes 12 s instead of 1.9 s.",
+          "Yes, over time. At one instant w wᵀ has rank 1: it tells one direction only. The direction turns, so ten seconds " +
+          "tell both. The error is below 10 % after 12 s instead of 1.9 s.",
       },
     ],
   },
   {
     name: "gain",
     title: "Too much gain",
-    question: "With gain 10 the error is below 10 % after 1.9 s. The outputs carry noise now. Would a gain of 60 be better?",
+    question: "With gain 10 the error is below 10 % after 1.9 s. Now the outputs carry noise. Would a gain of 60 be better?",
+    answers: ["Faster, but less exact", "Yes, faster and as exact", "Neither faster nor more exact"],
+    right: 0,
+    sketch: true,
     acts: [
       {
         changes: { noise: NOISE, gains: { identifier_based: { gain: 60 } }, pictures: ["inverse", "distance", "error"] },
-        answer: "It is faster, and follows the noise: the error settles about ten times higher. Move G and find the best.",
+        answer: "It is faster, and it follows the noise: the error settles about ten times higher. Move the gain and find the best.",
       },
     ],
   },
@@ -54,37 +64,41 @@ export const PRESETS = presetsOf([
     name: "bias",
     title: "Noise bias",
     question:
-      "Only y1, small noise, the printed gains, a start at zero. Noise averages out, so the estimate should end up " +
-      "right on average. Does it?",
+      "Only y1 is measured, with small noise, and the estimate starts at zero. Noise averages out, so the estimate should " +
+      "be right on average in the end. Does it?",
+    answers: ["No, it is pushed away from the truth", "Yes, it scatters about the truth"],
+    right: 0,
     changes: {
       outputs: ["y1"], noise: NOISE, start: { mode: "zero", values: [0, 0, 0] }, seed: 1, pictures: ["inverse", "error", "excitation"],
     },
     acts: [
       {
         answer:
-          "No: the same noise is in w and in the error, and their product has a mean. It pushes the estimate to the " +
-          "bound, where it is reset again and again.",
+          "No. The same noise is in w and in the innovation, and the mean of their product is not 0. It pushes the estimate " +
+          "to the bound, where it is reset again and again.",
       },
       {
         button: "Show the cure",
         changes: { gains: { identifier_based: { noise_variance: 1e-4 / 3 } } },
         answer:
-          "The mean is known once the variance of the noise is: taken out, the estimate stays about the truth, as near " +
-          "as one noisy output tells it.",
+          "Who knows the variance of the noise knows this mean, and can take it out. The estimate then stays about the " +
+          "truth, as near as one noisy output tells it.",
       },
     ],
   },
   {
     name: "belief",
     title: "Wrong motion",
-    question: "The observer believes that the point moves half as fast again as it does: b is 1.5 b. Will it notice?",
+    question: "The observer believes in 1.5 times the true translation b. Will it notice that it is wrong?",
+    answers: ["Yes, the outputs will not fit", "No, and the distance is right all the same", "No, and every distance comes out wrong"],
+    right: 2,
     acts: [
       {
         changes: { pictures: ["outputs", "distance", "error"] },
         believe: 1.5,
         answer:
-          "No: a point half as far again that moves half as fast again looks exactly the same. The outputs fit, and every " +
-          "distance comes out 1.5 times too large: scale is only known through b.",
+          "No. A point that is 1.5 times as far and moves 1.5 times as fast looks exactly the same. The outputs fit, and every " +
+          "distance comes out 1.5 times too large: only b tells the observer how long a metre is.",
       },
     ],
   },

@@ -15,13 +15,14 @@ export function reasons(shown, model) {
     const over = `any ${readable(shown.excitation.window)} s`;
     found.push(
       least.value < UNEXCITED
-        ? `Not excited: over the window that ends at ${readable(least.time)} s the outputs tell next to nothing about ` +
-            `one direction of ${hiddenNames.join(", ")} (${readable(least.value, 2)}).`
-        : `Excited: over ${over} the outputs tell ${hiddenNames.join(" and ")}, at least ${readable(least.value, 2)}.`,
+        ? `Not excited: in the window that ends at ${readable(least.time)} s the image hardly moves with one direction of ` +
+            `${hiddenNames.join(", ")} (smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}).`
+        : `Excited: in ${over} the image moves enough to tell ${hiddenNames.join(" and ")} (smallest eigenvalue of ∫ w wᵀ: ` +
+            `${readable(least.value, 2)} or more).`,
     );
   }
   if (measured.length < hiddenNames.length) {
-    found.push(`Only ${names[measured[0]]} is measured: an instant never tells both hidden coordinates, a window may.`);
+    found.push(`Only ${names[measured[0]]} is measured: one instant never tells both hidden coordinates, a window of time may.`);
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
@@ -36,14 +37,17 @@ export function reasons(shown, model) {
   const nearest = nearestToFoe(shown);
   if (nearest && shown.circle && nearest.distance < Math.abs(shown.circle[2])) {
     found.push(
-      `At ${readable(nearest.time)} s the path is only ${readable(nearest.distance, 2)} from the focus of expansion, ` +
-        "where an instant does not tell the distance.",
+      `At ${readable(nearest.time)} s the image of the point is within the circle about the focus of expansion, ` +
+        "where an instant tells almost nothing of the distance.",
     );
   }
   if (settings.believed) found.push("The observers believe another motion than the true one.");
+  if (settings.noise.size > 0) {
+    found.push("Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.");
+  }
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
   if (settings.noise.size > 0 && measured.length === 1 && biased) {
-    found.push("Noise enters w and the error together, so it does not only blur the estimate: it pushes it.");
+    found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the estimate, it pushes it.");
   }
   return found;
 }

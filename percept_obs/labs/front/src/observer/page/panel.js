@@ -1,8 +1,8 @@
 // The controls of the observer lab: each reads from the settings and changes them.
 
 import { HOLD, NOISE } from "../../common/model/schema.js";
-import { checkbox, element } from "../../common/page/controls.js";
-import { Fieldsets } from "../../common/page/fieldsets.js";
+import { checkbox, element, slider } from "../../common/page/controls.js";
+import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
@@ -25,25 +25,36 @@ export const WORDS = {
   },
 };
 
+/** What the lab calls a setting when it says which have changed. */
+export const NAMES = {
+  motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A", b: "the translation b", X0: "where the point starts", surface: "the imaging surface",
+  normal: "the normal", outputs: "what is measured", observers: "the observers", gains: "gains", switches: "how an observer switches",
+  believed: "the motion that is believed", noise: "noise", dropout: "lost samples", hold: "what is held between samples",
+  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts",
+};
+
 export class Panel extends Fieldsets {
   constructor(lab) {
     super(lab);
     this.list = new ObserverList(this);
-    this.body = element(
-      "div",
-      { class: "panel" },
-      element("div", { class: "observe" }, this.measuring(), this.fieldset("Observe with", {}, ...this.list.rows)),
-      this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
-      this.point(),
-      this.fieldset(
-        "Camera",
-        { class: "camera" },
-        this.simulated(this.choice("noise.kind"), ...this.numbers("noise.size", "seed", "period", "dropout")),
+    const { choices, mains, groups } = this.list;
+    const body = [
+      this.first(
+        this.fieldset("Measured", this.outputs()),
+        this.fieldset("Observers", choices),
+        this.fieldset("Move these", ...this.focus(), ...mains, this.simulated(this.number("noise.size", { label: "noise, bound or σ" }))),
+      ),
+      topic("gains", "All gains", ...groups),
+      topic("point", "The point and its motion", ...this.point()),
+      topic(
+        ...["camera", "Camera"],
+        this.simulated(this.choice("noise.kind"), ...this.numbers("seed", "period", "dropout")),
         this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
       ),
-      this.belief(),
-      this.fieldset("Pictures", { class: "pictures" }, this.pictures(), ...this.numbers("window", "threshold")),
-    );
+      topic("start", "Start and belief", ...this.belief()),
+      topic("pictures", "Charts", this.pictures(), ...this.numbers("window", "threshold")),
+    ];
+    this.body = element("div", { class: "panel" }, ...body);
   }
 
   track() {
@@ -55,25 +66,37 @@ export class Panel extends Fieldsets {
     return this.onlyIf(() => !this.track(), element("div", {}, ...rows));
   }
 
-  measuring() {
+  outputs() {
     const { lab } = this;
     const seen = (name) => this.track()?.names.includes(name) ?? true;
     const offered = (value) => this.model.surfaces[lab.settings.surface].outputs.some((names) => names.join("+") === value);
-    const outputs = this.inSight("outputs", {
+    return this.inSight("outputs", {
       get: () => lab.settings.outputs.join("+"),
       set: (value) => lab.change({ outputs: value.split("+") }, true),
       possible: (value) => offered(value) && value.split("+").every(seen),
     });
-    return this.fieldset("Measure", {}, outputs);
+  }
+
+  /** The focus of expansion in numbers, for those who do not drag it. */
+  focus() {
+    const { lab } = this;
+    return [0, 1].map((c) =>
+      this.add(
+        slider({
+          ...{ name: `foe y${c + 1}`, label: `FOE, y${c + 1}`, low: -3, high: 3, step: 0.01, least: -1000, most: 1000 },
+          get: () => lab.focus()?.[c],
+          set: (value) => lab.moveFoe(lab.focus().with(c, value)),
+          rest: () => lab.rest(),
+        }),
+      ),
+    );
   }
 
   point() {
     const { lab, model } = this;
     const titles = Object.entries(model.scenarios).map(([name, { title }]) => [name, title]);
     const named = (names) => Object.keys(names).map((name) => [name, name]);
-    return this.fieldset(
-      "The point and its motion",
-      { class: "point" },
+    return [
       this.choice("scenario", {
         choices: Object.fromEntries([...titles, ...named(model.recordings)]),
         set: (name) => lab.chooseScenario(name),
@@ -86,7 +109,7 @@ export class Panel extends Fieldsets {
         this.onlyIf(({ scenario }) => !model.scenarios[scenario]?.track, element("div", {}, ...this.litList("b"), this.matrix("A"), this.typed())),
         ...this.each("X0"),
       ),
-    );
+    ];
   }
 
   /** The motion in expressions of time, which changes some of the numbers. */
@@ -99,16 +122,14 @@ export class Panel extends Fieldsets {
     const { lab } = this;
     const wrong = checkbox({
       name: "believed",
-      label: "believe another motion than the true one",
+      label: "the observers believe another motion than the true one",
       get: () => lab.settings.believed !== null,
       set: (on) => lab.change({ believed: on ? { A: lab.settings.A, b: lab.settings.b } : null }, true),
     });
-    return this.fieldset(
-      "Start and belief",
-      { class: "start" },
+    return [
       this.choice("start.mode"),
       ...[0, 1, 2].map((k) => this.numberIf(`start.values.${k}`, ({ start }) => start.mode === "chosen")),
       this.simulated(this.add(wrong), ...this.each("believed.b"), this.matrix("believed.A")),
-    );
+    ];
   }
 }

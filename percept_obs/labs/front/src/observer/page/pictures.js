@@ -38,7 +38,7 @@ const BUILD = {
     const lines = linesOf(shown, ghost, theme, shown.names[c], ({ width }, rows) => columnOf(rows, width, c));
     const claiming = shown.runs.find((run) => run.deviation);
     const band = claiming && bandOf(shown, claiming, c, theme);
-    const title = `Inverse distance ${shown.names[c]} in 1/m${band ? ", with ±2σ that the filter claims" : ""}`;
+    const title = `Inverse distance ${shown.names[c]} in 1/m${band ? "; the filter claims ±2σ" : ""}`;
     return { title, lines, band, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
   distance(shown, ghost, theme) {
@@ -49,7 +49,7 @@ const BUILD = {
   error(shown, ghost, theme) {
     const [own, kept] = [shown, ghost].map((result) => (result?.truth ? result : null));
     const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
-    const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
+    const title = `Relative error of ${shown.judged}; tolerance ${percent(shown.tolerance, 6)}`;
     return { title, lines, scale: decades(lines, 1e-6, 1e2, shown.tolerance), ...toleranceOf(shown, theme), marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {

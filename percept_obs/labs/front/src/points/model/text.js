@@ -52,10 +52,10 @@ export function reasons(shown, model) {
   const { settings } = shown;
   const found = [`${gramianInWords(shown, model)}.`, ...absencesInWords(shown)];
   if (settings.noise.size > 0 && settings.hold === "exact") {
-    found.push("Between samples the exact signal is held, which has no noise: hold the last sample to feel it.");
+    found.push('Between samples the observer takes the exact signal, which has no noise. Choose "the last sample" for Hold to see what noise does.');
   }
   if (settings.input === 0 && settings.velocity.every((v) => v === 0)) {
-    found.push("There is no input, v = 0: the state moves as x(t) = Φ x(0), and images never tell its scale.");
+    found.push("There is no input, v = 0. Then twice all places move to twice all places, and the images stay the same: they never tell the scale.");
   }
   return found;
 }

@@ -2,7 +2,7 @@
 
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { button, element } from "../../common/page/controls.js";
-import { Fieldsets } from "../../common/page/fieldsets.js";
+import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
 import { OWN } from "../model/kernels.js";
 import { PointList } from "./point_list.js";
@@ -29,6 +29,16 @@ export const WORDS = {
   pictures: { choices: { error: "error", depth: "depths", points: "error of each point", gramian: "Gramian" } },
 };
 
+/** What the lab calls a setting when it says which have changed. */
+export const NAMES = {
+  state: "what the state holds", points: "the points", hidden: "when points are hidden", turning: "how the camera turns",
+  spin: "how the body turns", input: "the input", velocity: "the velocity that is added", motion: "the motion that is typed",
+  weight: "the kind of P", size: "P", P: "the P that is typed",
+  final: "P at the end", decrease: "the decrease q", forgetting: "the forgetting λ", start: "where the estimate starts",
+  depth: "the depth at which it starts", error: "the error at which it starts", noise: "noise", dropout: "lost samples",
+  view: "how far the camera sees", hold: "what is held between samples", step: "the longest step", window: "the window", pictures: "the charts",
+};
+
 /** The states that can be chosen. */
 function statesOf({ states }) {
   return Object.fromEntries(Object.keys(states).map((name) => [name, WORDS.state.choices[name] ?? "a form of your own"]));
@@ -38,29 +48,29 @@ export class Panel extends Fieldsets {
   constructor(lab) {
     super(lab);
     this.list = new PointList(this, this.model.mostPoints);
-    this.body = element(
-      "div",
-      { class: "columns" },
-      this.fieldset("Points", {}, this.list.body),
-      this.fieldset("The state holds", { class: "state" }, this.inSight("state", { choices: statesOf(this.model) })),
-      this.weight(),
-      this.motion(),
-      this.fieldset(
-        "The estimate",
-        {},
+    const { kind, size, rest } = this.weight();
+    const ours = (holds) => (settings) => settings.state !== OWN && holds(settings);
+    const share = (place, holds) => this.lit(this.numberIf(place, ours(holds), { letter: this.model.letters[place] }), place, "");
+    const always = () => true;
+    const motion = topic("motion", "More of the motion, A(t) and v(t)", share("spin", ({ state }) => state !== "independent"), ...this.motion());
+    const body = [
+      this.first(
+        this.fieldset("The state holds", this.inSight("state", { choices: statesOf(this.model) })),
+        this.fieldset("Move these", kind, size, share("turning", always), share("input", always), this.number("noise.size", { label: "noise, bound or σ" })),
+      ),
+      topic("points-topic", "Points: depth, hide, add", this.list.body),
+      topic("weight", "More of the observer's P", ...rest),
+      this.onlyIf(({ state }) => state !== OWN, motion),
+      topic(
+        ...["estimate", "Where the estimate starts"],
         this.choice("start"),
         this.numberIf("depth", ({ start }) => start === "rays"),
         this.numberIf("error", ({ start }) => start === "error"),
       ),
-      this.fieldset(
-        "Camera",
-        {},
-        this.choice("noise.kind"),
-        ...this.numbers("noise.size", "seed", "period", "dropout", "view"),
-        this.choice("hold"),
-      ),
-      this.fieldset("Pictures", {}, this.pictures(), ...this.numbers("duration", "window")),
-    );
+      topic("camera", "Camera", this.choice("noise.kind"), ...this.numbers("seed", "period", "dropout", "view"), this.choice("hold")),
+      topic("pictures", "Charts", this.pictures(), ...this.numbers("duration", "window")),
+    ];
+    this.body = element("div", { class: "panel" }, ...body);
     this.controls.push(this.list);
   }
 
@@ -70,35 +80,22 @@ export class Panel extends Fieldsets {
     const words = size.querySelector("label span");
     const name = () => (words.textContent = this.lab.settings.weight === "constant" ? "P, times the identity" : "P at the beginning");
     this.controls.push({ row: size, show: name });
-    return this.fieldset(
-      "The observer's P",
-      {},
-      kind,
-      size,
+    const rest = [
       this.onlyIf(({ weight }) => weight === "typed", this.typed("P", "P = 1 + exp(-t)", "P = ")),
       this.numberIf("final", ({ weight }) => weight === "scheduled"),
       this.numberIf("decrease", ({ weight }) => weight === "lyapunov"),
       this.numberIf("forgetting", ({ weight }) => weight === "riccati"),
       this.number("step"),
-    );
+    ];
+    return { kind, size, rest };
   }
 
   motion() {
     const { letters } = this.model;
-    const share = (place, holds = (_settings) => true) => this.lit(this.numberIf(place, holds, { letter: letters[place] }), place, "");
     const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
-    const still = button("v = 0", () => this.lab.change({ input: 0, velocity: [0, 0, 0] }, true), { "data-control": "no input" });
-    const moved = this.fieldset(
-      "The motion, A(t) and v(t)",
-      {},
-      share("turning"),
-      share("spin", ({ state }) => state !== "independent"),
-      share("input"),
-      ...this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), ""),
-      this.typed("motion", "w3 = 0.5 cos(t)"),
-      element("div", { class: "buttons" }, still, aim),
-    );
-    return this.onlyIf(({ state }) => state !== OWN, moved);
+    const still = button("v = 0", () => this.lab.changeAndSay("v = 0", { input: 0, velocity: [0, 0, 0] }), { "data-control": "no input" });
+    const added = this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), "");
+    return [...added, this.typed("motion", "w3 = 0.5 cos(t)"), element("div", { class: "buttons" }, still, aim)];
   }
 
   typed(place, hint, prefix) {

@@ -32,7 +32,7 @@ const BUILD = {
     if (bound !== null) {
       lines.push(line("guaranteed decay", [0, end], [size[0], size[0] * Math.exp(-bound * end)], theme.lines[2], BOUND));
     }
-    return { title: "Error |ρ|, all of the state", lines, scale: decades(lines, 1e-8, 1e6) };
+    return { title: "Error |ρ| of the whole state, in m", lines, scale: decades(lines, 1e-8, 1e6) };
   },
   depth(shown, ghost, theme) {
     const each = (called, { time, points }, rows, lookOf) =>
@@ -50,7 +50,7 @@ const BUILD = {
     });
     const settled = settling > 0 && settling < Infinity;
     const events = settled ? [{ time: time[0] + settling, text: `all in: ${readable(settling)} s`, colour: theme.ink }] : [];
-    const title = `Error of each point over its distance, with the tolerance ${percent(tolerance, 6)}`;
+    const title = `Relative error of each point; tolerance ${percent(tolerance, 6)}`;
     return { title, lines, scale: decades(lines, 1e-8, 1e6, tolerance), level: tolerance, events };
   },
   gramian(shown, ghost, theme, { unseen }) {
@@ -60,7 +60,7 @@ const BUILD = {
     const lines = withKept("smallest eigenvalue", shown, ghost, theme, floored);
     const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
     const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
-    const title = `Gramian (14) over ${readable(window)} s: smallest eigenvalue${low ? "; dotted: too little" : ""}`;
+    const title = `Gramian (14) over ${readable(window)} s${low ? "; dotted: too little is seen" : ", smallest eigenvalue"}`;
     return { title, lines: [...lines, limit], scale };
   },
 };

@@ -1,6 +1,6 @@
 // The points to drag: depth, when they are hidden, adding and removing.
 
-import { button, element, slider } from "../../common/page/controls.js";
+import { button, element, slider, warning } from "../../common/page/controls.js";
 import { swatch } from "../../common/page/lines.js";
 
 export class PointList {
@@ -27,7 +27,9 @@ export class PointList {
     const hide = element("input", { type: "checkbox", "data-control": `hide ${k + 1}` });
     hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
     const times = ["from", "to"].map((word, end) => this.time(k, word, end));
-    const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s");
+    const refused = warning({ least: 0, most: panel.schema.hidden.most, reason: "and the end after the beginning" });
+    const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s", refused.node);
+    for (const { field } of times) for (const type of ["input", "change"]) field.addEventListener(type, () => refused.tell(!span.querySelector("[aria-invalid=true]")));
     const said = { "data-control": `remove ${k + 1}`, "aria-label": `remove point ${k + 1}` };
     const remove = button("×", () => lab.removePoint(k), { class: "remove", ...said });
     const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide"));
@@ -64,7 +66,7 @@ export class PointList {
       if (Number(field.value) !== value || field.value === "") field.value = String(value);
       field.setAttribute("aria-invalid", "false");
     };
-    return { node: element("label", {}, `${word} `, field), show };
+    return { node: element("label", {}, `${word} `, field), field, show };
   }
 
   show() {

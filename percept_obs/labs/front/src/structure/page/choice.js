@@ -7,8 +7,8 @@ import { isZero, keyOf } from "../model/kernels.js";
 
 const GROUPS = [
   { title: "Scale", names: ["d_s"] },
-  { title: "Velocity of the camera", names: ["v_c1", "v_c2", "v_c3"] },
-  { title: "Velocity of the object", names: ["v_p1", "v_p2", "v_p3"] },
+  { title: "Camera's velocity", names: ["v_c1", "v_c2", "v_c3"] },
+  { title: "Object's velocity", names: ["v_p1", "v_p2", "v_p3"] },
 ];
 const KINDS = { dynamic: "Camera partly unknown", general: "Range known" };
 const OBJECTS = { semigeneral: "Object still, then moving", general: "Object moving" };
@@ -26,7 +26,7 @@ export class ChoiceOfUnknowns {
     this.boxes = [];
     this.earlier = checkbox({
       name: "earlier",
-      label: "d_s comes from an earlier stage, so that θ holds d_s v",
+      label: "d_s was estimated before, so θ holds d_s v",
       get: () => lab.settings.earlier,
       set: (on) => lab.change({ earlier: on }, true),
     });
@@ -34,9 +34,8 @@ export class ChoiceOfUnknowns {
     this.body = element(
       "section",
       { class: "unknowns", role: "group", "aria-label": "What is known" },
-      element("div", { class: "ticks" }, element("h4", {}, "Tick what you know"), ...this.groups(), this.earlier.row),
-      this.table(),
-      this.told,
+      element("h4", {}, "Tick what you know"),
+      ...[...this.groups(), this.earlier.row, this.told],
     );
   }
 
@@ -72,7 +71,7 @@ export class ChoiceOfUnknowns {
       const inside = corollaries.filter((c) => c.camera === camera && c.object === object);
       const presses = inside.map(({ number, words, settings }) => {
         const said = { "data-control": `corollary ${number}`, "aria-label": `Corollary ${number}`, title: words };
-        const choose = () => this.lab.change(structuredClone(settings), true);
+        const choose = () => this.lab.changeAndSay(`Corollary ${number}`, structuredClone(settings));
         const press = button(String(number), choose, { class: "case", ...said });
         this.cases.push([number, press]);
         return press;
@@ -134,9 +133,9 @@ export class ChoiceOfUnknowns {
   }
 
   kindOf({ unknown, square, alone }) {
-    const few = square ? "" : `Three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: least squares.`;
+    const few = square ? "" : `There are three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: they are solved by least squares.`;
     const metres = alone.filter((name) => !isZero(this.lab.settings, name, this.model));
-    const carried = metres.length ? `The metres come from ${metres.join(", ")}.` : "";
+    const carried = metres.length ? `The known ${metres.join(", ")} tells the scale in metres.` : "";
     return [few, carried].filter(Boolean).join(" ");
   }
 

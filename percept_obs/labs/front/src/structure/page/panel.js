@@ -3,7 +3,7 @@
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
 import { checkbox, element } from "../../common/page/controls.js";
-import { Fieldsets } from "../../common/page/fieldsets.js";
+import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
@@ -26,31 +26,36 @@ export const WORDS = {
   },
 };
 
+/** What the lab calls a setting when it says which have changed. */
+export const NAMES = {
+  motion: "the motion that is typed", unknown: "what is unknown", earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
+  scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity", v_c_swing: "how the camera's velocity swings",
+  v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3", drift: "the drift of ȳ3",
+  hold: "what is held between samples", step: "the longest step", start: "where the estimate starts", pictures: "the charts",
+};
+
 export class StructurePanel extends Fieldsets {
-  constructor(lab) {
+  constructor(lab, choice) {
     super(lab);
     this.list = new ObserverList(this);
-    this.body = element(
-      "div",
-      { class: "panel" },
-      element("div", { class: "observe" }, this.fieldset("Observe with", {}, ...this.list.rows)),
-      this.fieldset("Gains", { class: "gains" }, ...this.list.groups),
-      this.motion(),
-      this.fieldset(
-        "What is measured",
-        { class: "camera" },
-        this.choice("noise.kind"),
-        ...this.numbers("noise.size", "noise.depth", "bias", "drift", "seed"),
-        this.timing("period"),
-        this.timing("duration"),
+    const { choices, mains, groups } = this.list;
+    const body = [
+      this.first(
+        choice.body,
+        this.fieldset("Observers", choices),
+        this.fieldset("Move these", this.lit(this.number("v_c.0"), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
       ),
-      this.fieldset(
-        "How the observers run",
-        { class: "start" },
-        ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")],
+      topic("cases", "The paper's cases", choice.table()),
+      topic("gains", "All gains", ...groups),
+      topic("true", "What is true: velocities, scale, start", ...this.motion()),
+      topic(
+        ...["camera", "What is measured, and how well"],
+        ...[this.choice("noise.kind"), ...this.numbers("noise.depth", "bias", "drift", "seed"), this.timing("period"), this.timing("duration")],
       ),
-      this.fieldset("Pictures", { class: "pictures" }, this.pictures()),
-    );
+      topic("run", "How the observers run", ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")]),
+      topic("pictures", "Charts", this.pictures()),
+    ];
+    this.body = element("div", { class: "panel" }, ...body);
   }
 
   motion() {
@@ -64,27 +69,27 @@ export class StructurePanel extends Fieldsets {
         lab.change({ v_c_swing: [size, size, -size], v_p_swing: [0, 0, 0] }, true);
       },
     });
-    return this.fieldset(
-      "What is true",
-      { class: "point" },
+    const rest = [1, 2].map((k) => this.lit(this.number(`v_c.${k}`), `v_c${k + 1}`));
+    return [
       this.number("scale"),
-      ...this.litList("v_c"),
+      ...rest,
       ...this.litList("v_p"),
       this.add(varying),
       this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
       this.add(typedField(lab, { ...this.bound("motion", true), ...this.schema.motion, hint: "v_c1 = 0.2 cos(t)" })),
       ...this.each("ybar"),
       ...this.litList("w"),
-    );
+    ];
   }
 
   /** A time that must not ask the page for more steps than it can take. */
   timing(place) {
+    const { mostSteps } = this.model;
     const allowed = (value) => {
       const { duration, period, step } = { ...this.lab.settings, ...changeAt(this.lab.settings, place, value) };
-      return duration / Math.min(period, step) <= this.model.mostSteps;
+      return duration / Math.min(period, step) <= mostSteps;
     };
-    return this.number(place, { allowed });
+    return this.number(place, { allowed, reason: `and the duration is at most ${mostSteps} periods, and so many longest steps` });
   }
 }
 

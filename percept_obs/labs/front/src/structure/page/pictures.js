@@ -58,7 +58,7 @@ function UNKNOWN(shown, ghost, theme, which) {
 
 const BUILD = {
   error(shown, ghost, theme) {
-    const title = `Relative error of ${shown.judged}, with the tolerance ${percent(shown.tolerance, 6)}`;
+    const title = `Relative error of all unknowns; tolerance ${percent(shown.tolerance, 6)}`;
     const lines = runLines(shown, ghost, theme, "error", (_, run) => run.error);
     return { title, lines, scale: decades(lines, 1e-8, 1e3, shown.tolerance), ...toleranceOf(shown, theme) };
   },
@@ -83,7 +83,7 @@ const BUILD = {
       const least = shown.guard.sizes.map((value) => value / largest);
       lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, DASHES[1]));
     }
-    const title = `|det ${shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)"}|${guarded ? ", and dotted the least for an estimate" : ""}`;
+    const title = `|det ${shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)"}|${guarded ? "; dotted: least for an estimate" : ""}`;
     return { title, lines, scale: decades(lines, 1e-16, 1e6) };
   },
   range(shown, ghost, theme) {

@@ -1,0 +1,39 @@
+// What may keep an observer from the truth, as far as the lab can switch it off: one cause at a time.
+
+/** @type {[string, (settings: Record<string, any>) => any][]} words, and what changes without the cause, if it is there */
+const CAUSES = [
+  ["with y1 and y2 measured", ({ outputs }) => outputs.length < 2 && { outputs: ["y1", "y2"] }],
+  ["without noise", ({ noise }) => noise.size > 0 && { noise: { ...noise, size: 0 } }],
+  ["with the bias of noise taken out", ({ gains, noise, observers }) => {
+    const variance = noise.kind === "uniform" ? noise.size ** 2 / 3 : noise.size ** 2;
+    const biased = observers.filter((name) => gains[name].noise_variance === 0);
+    const cured = biased.map((name) => [name, { ...gains[name], noise_variance: variance }]);
+    return variance > 0 && cured.length > 0 && { gains: { ...gains, ...Object.fromEntries(cured) } };
+  }],
+  ["with a bound of 100/m instead", ({ gains, observers }) => {
+    const bounded = observers.filter((name) => gains[name].bound < 100);
+    return bounded.length > 0 && { gains: { ...gains, ...Object.fromEntries(bounded.map((name) => [name, { ...gains[name], bound: 100 }])) } };
+  }],
+  ["with half the gain", scaled(0.5)],
+  ["with twice the gain", scaled(2)],
+  ["started at the first sample", ({ start }) => start.mode !== "own" && { start: { ...start, mode: "own" } }],
+  ["with the exact signal between samples", ({ hold }) => hold !== "exact" && { hold: "exact" }],
+  ["with no sample lost", ({ dropout }) => dropout > 0 && { dropout: 0 }],
+  ["with the true motion believed", ({ believed }) => believed && { believed: null }],
+];
+
+function scaled(factor) {
+  return /** @param {Record<string, any>} settings */ ({ gains, observers }) => {
+    const chosen = observers.filter((name) => gains[name].gain !== undefined);
+    return chosen.length > 0 && { gains: { ...gains, ...Object.fromEntries(chosen.map((name) => [name, { ...gains[name], gain: factor * gains[name].gain }])) } };
+  };
+}
+
+/** Settings that differ by one cause each from those that are shown, with words for it. */
+export function causesOf(settings, model) {
+  if (settings.scenario in model.recordings) return [];
+  return CAUSES.flatMap(([words, without]) => {
+    const change = without(settings);
+    return change ? [{ words, settings: { ...settings, ...change, kept: null } }] : [];
+  });
+}
