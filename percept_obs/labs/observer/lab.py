@@ -44,6 +44,7 @@ class ObserverLab(Lab):
     """
 
     schema = SCHEMA
+    title = "One point, a camera, and observers"
 
     def __init__(
         self,

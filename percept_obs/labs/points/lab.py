@@ -68,6 +68,7 @@ class PointsLab(Lab):
     """
 
     schema = SCHEMA
+    title = "Many points of one state"
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(

@@ -58,6 +58,7 @@ class StructureLab(Lab):
     """
 
     schema = SCHEMA
+    title = "Structure and motion"
 
     def __init__(self, **settings: Any) -> None:
         standard = {name: own | STANDARD_GAINS.get(name, {}) for name, own in standard_gains("structure_lab").items()}
