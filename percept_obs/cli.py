@@ -1,4 +1,4 @@
-"""The command line: `lab` opens the notebooks, `site` writes them as pages, `check` judges the equations, `compare` runs all observers."""
+"""The command line: open the notebooks, write them as pages, judge the papers' equations, compare all observers."""
 
 import argparse
 import json
@@ -68,7 +68,7 @@ def lab(options: argparse.Namespace) -> int:
 
 
 def site(options: argparse.Namespace) -> int:
-    """Write the course as pages that need neither Python nor a network: notebooks with live labs, equations, reference."""
+    """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
     from percept_obs.site import SiteFault, build, missing
 
     if lacking := missing():

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
+from types import ModuleType
 
 from percept_obs.papers import Entry, Ledger, Verdict, judge
 from percept_obs.papers.mathml import shown
@@ -23,6 +24,7 @@ MODULES = (
     "percept_obs.structure",
     "percept_obs.observability",
     "percept_obs.recording",
+    "percept_obs.recording.scenarios",
     "percept_obs.papers",
 )
 """Modules whose public names have pages."""
@@ -64,7 +66,7 @@ def slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
 
 
-def _addresses(ledger: Ledger) -> dict[str, str]:
+def ledger_addresses(ledger: Ledger) -> dict[str, str]:
     """The name of each entry's page by its place; places that differ in signs only are numbered."""
     counted: Counter[str] = Counter()
     names = {}
@@ -76,7 +78,7 @@ def _addresses(ledger: Ledger) -> dict[str, str]:
 
 
 def _ledger(name: str, ledger: Ledger) -> Pages:
-    names = _addresses(ledger)
+    names = ledger_addresses(ledger)
     rows = "".join(
         f'<tr><td><a href="{names[e.place]}.html">{shown(e.place)}</a><td>{e.page}<td>{shown(e.says)}'
         f"<td>{MARK[e.expected]} {e.expected}<td>{e.known}"
@@ -102,20 +104,30 @@ def reference() -> Pages:
     """The public names: a page a module."""
     intro = "All public names, by module. Every example is run by the package's tests."
     yield "reference/index.md", contents("Reference", intro, [slug(name) for name in MODULES])
-    documented: set[object] = set()
+    documented: set[int] = set()
     for name in MODULES:
         module = import_module(name)
         lines = [name, "=" * len(name), "", inspect.getdoc(module) or "", "", f".. currentmodule:: {name}", ""]
-        for public in getattr(module, "__all__", ()):
-            value = getattr(module, public)
-            if inspect.ismodule(value) or id(value) in documented:
-                continue
-            documented.add(id(value))
-            lines += _described(public, value)
+        for names, value in _named(module):
+            if id(value) not in documented:
+                documented.add(id(value))
+                lines += _described(names, value)
         yield f"reference/{slug(name)}.rst", "\n".join(lines)
 
 
-def _described(name: str, value: object) -> list[str]:
+def _named(module: ModuleType) -> list[tuple[list[str], object]]:
+    """Public values of a module, each with its names, the longest first."""
+    names: dict[int, list[str]] = {}
+    for name in getattr(module, "__all__", [name for name in vars(module) if not name.startswith("_")]):
+        value = getattr(module, name)
+        if getattr(value, "__module__", "").startswith("percept_obs"):
+            names.setdefault(id(value), []).append(name)
+    ordered = [sorted(same, key=len, reverse=True) for same in names.values()]
+    return [(same, getattr(module, same[0])) for same in ordered]
+
+
+def _described(names: list[str], value: object) -> list[str]:
+    name, *short = names
+    title = f"{name} ({', '.join(short)})" if short else name
     kind = "autoclass" if inspect.isclass(value) else "autofunction" if callable(value) else "autodata"
-    head = [name, "-" * len(name), "", f".. {kind}:: {name}"]
-    return [*head, "   :members:", ""] if kind == "autoclass" else [*head, ""]
+    return [title, "-" * len(title), "", f".. {kind}:: {name}", *["   :members:"] * inspect.isclass(value), ""]
