@@ -61,7 +61,7 @@ def pages(tmp_path_factory):
 @pytest.mark.slow
 def test_every_link_leads_somewhere(pages):
     found = {path: Links(path) for path in pages.rglob("*.html")}
-    assert len(found) > 30
+    assert len(found) > 25
     for path, links in found.items():
         for target in links.targets:
             address, place = urldefrag(target)
@@ -90,7 +90,7 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
             page.wait_for_function(DRAWN)
             labs += page.locator("[data-percept-obs] .percept-lab").count()
         page.evaluate(axe)
-        found = page.evaluate("axe.run()")["violations"]
+        found = page.evaluate("axe.run({ preload: false })")["violations"]
         serious = [f"{path}: {one['id']}" for one in found if one["impact"] in ("serious", "critical")]
         assert complaints + serious == [], path
     assert labs

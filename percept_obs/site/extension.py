@@ -9,6 +9,7 @@ def setup(app: Any) -> dict[str, bool]:
     """Add what this module does to Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
     app.connect("autodoc-process-docstring", _keep_bars)
+    app.connect("html-page-context", _let_keys_scroll)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -46,3 +47,9 @@ def _write(self: Any, text: str) -> None:
 def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
     """Let |x| stand for an absolute value, as everywhere else; for Sphinx it is a name to be replaced."""
     lines[:] = [line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines]
+
+
+def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Let code that is wider than the page be scrolled by keys as well."""
+    if "body" in context:
+        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
