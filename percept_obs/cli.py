@@ -1,4 +1,4 @@
-"""The command line: `lab` opens the notebooks, `check` judges the equations, `compare` runs all observers."""
+"""The command line: open the notebooks, write them as pages, judge the papers' equations, compare all observers."""
 
 import argparse
 import json
@@ -65,6 +65,23 @@ def lab(options: argparse.Namespace) -> int:
                 return server.wait()
             except KeyboardInterrupt:  # reaches JupyterLab too, which asks before it stops
                 continue
+
+
+def site(options: argparse.Namespace) -> int:
+    """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
+    from percept_obs.site import SiteFault, build, missing
+
+    if lacking := missing():
+        return _complain(f"get {', '.join(lacking)} first: {sys.executable} -m pip install {' '.join(lacking)}", 1)
+    if options.directory.exists() and not options.directory.is_dir():
+        return _complain(f"{options.directory} is a file; name a folder, or a new one", 2)
+    found = sorted((entry for entry in notebooks().iterdir() if entry.name.endswith(".ipynb")), key=lambda e: e.name)
+    copies = {entry.name: COPIES[options.readers](json.loads(entry.read_bytes())) for entry in found}
+    try:
+        build(options.directory, copies)
+    except (SiteFault, OSError) as error:
+        return _complain(str(error), 1)
+    return 0
 
 
 def check(options: argparse.Namespace) -> int:
@@ -140,16 +157,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         metavar="DIR",
         help="where your copies live (default: ./%(default)s); nothing there is overwritten",
     )
-    lab_parser.add_argument(
-        "--for",
-        dest="readers",
-        choices=tuple(COPIES),
-        default="students",
-        help="students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
-    )
+    _ask_for_readers(lab_parser)
     lab_parser.add_argument("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     lab_parser.add_argument("--no-browser", action="store_true", help="start JupyterLab without a browser")
     lab_parser.set_defaults(run=lab)
+
+    site_parser = commands.add_parser("site", help="write the course as pages", description=site.__doc__)
+    site_parser.add_argument("directory", type=Path, metavar="DIR", help="where the pages are to stand")
+    _ask_for_readers(site_parser)
+    site_parser.set_defaults(run=site)
 
     check_parser = commands.add_parser("check", help="judge the papers' equations", description=check.__doc__)
     check_parser.add_argument(
@@ -169,6 +185,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     options = parser.parse_args(arguments)
     return options.run(options)
+
+
+def _ask_for_readers(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--for",
+        dest="readers",
+        choices=tuple(COPIES),
+        default="students",
+        help="students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
+    )
 
 
 def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:

@@ -16,6 +16,7 @@ PACKAGE = Path(percept_obs.__file__).parent
 # The top first.  A folder may import those of lower floors; inside a folder nothing goes round in a circle.
 FLOORS = (
     ("cli",),
+    ("site",),
     ("labs",),
     ("figures", "papers", "exercises"),
     ("checking",),

@@ -1,4 +1,4 @@
-"""A lab that nbconvert saved in a page is whole: every observer and every output work where there is no Python."""
+"""A saved lab is whole without Python: in a page that nbconvert wrote, and in one of its own that opens from a disk."""
 
 import json
 import re
@@ -7,8 +7,11 @@ import sys
 
 import pytest
 from jupyter_harness import NOTEBOOKS
+from lab_alone import DRAWN as SHOWN
 from lab_browser import assert_equals_python, control, state
 from lab_settings import ALL, KEYS
+
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -83,3 +86,50 @@ def test_what_it_draws_is_what_python_computes(page):
     page.select_option(control("surface"), "chained")
     page.wait_for_function(DRAWN)
     assert_equals_python(state(page))
+
+
+@pytest.fixture
+def from_disk(browser, tmp_path):
+    """Opens a lab's own page from the disk, without a network; the second value lists what left the page."""
+
+    def opened(lab):
+        lab.save(tmp_path / "lab.html")
+        asked = []
+        page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
+        page.on("request", lambda request: asked.append(request.url))
+        page.on("pageerror", lambda error: asked.append(str(error)))
+        page.goto((tmp_path / "lab.html").as_uri())
+        page.wait_for_function(SHOWN)
+        return page, [url for url in asked[1:] if not url.startswith("blob:")]
+
+    return opened
+
+
+@pytest.mark.parametrize("make", [observer_lab, points_lab, structure_lab])
+def test_a_page_of_its_own_is_small_and_asks_for_nothing(make, from_disk, tmp_path):
+    page, asked = from_disk(make())
+    assert asked == []
+    assert (tmp_path / "lab.html").stat().st_size < 400_000
+    assert page.locator(".silence").is_hidden()
+    assert page.locator(".deeper").is_hidden()
+    page.close()
+
+
+def test_its_curves_are_those_of_python(from_disk):
+    page, _ = from_disk(
+        observer_lab(outputs=["y1"], observers=["identifier_based", "de_luca"], noise={"kind": "uniform", "size": 0.01})
+    )
+    assert_equals_python(state(page))
+    page.close()
+
+
+@pytest.mark.parametrize("place", ["folder", "none/lab.html"])
+def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(ValueError, match=r"name a file in a folder that exists"):
+        points_lab().save(tmp_path / place)
+
+
+def test_the_desk_says_why_it_cannot_be_saved(tmp_path):
+    with pytest.raises(ValueError, match="reads formulas in Python"):
+        derivation_desk().save(tmp_path / "desk.html")

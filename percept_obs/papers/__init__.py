@@ -28,9 +28,10 @@ __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", 
 
 _MODULES = [import_module(f"{__name__}.{module.name}") for module in iter_modules(__path__)]
 _PAPERS = {module.__name__.split(".")[-1]: module for module in _MODULES if hasattr(module, "PAPER")}
-_NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name, paper in _PAPERS.items()}
+NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name, paper in _PAPERS.items()}
+"""Each ledger by the name under which it is imported."""
 
-LEDGERS = tuple(ledger for _, ledger in sorted(_NAMED.items(), key=lambda named: named[0][-4:]))
+LEDGERS = tuple(ledger for _, ledger in sorted(NAMED.items(), key=lambda named: named[0][-4:]))
 """One ledger a paper, the oldest first."""
 
 GROUPS = [part for paper in _PAPERS.values() for part in paper.PARTS]
@@ -39,9 +40,9 @@ FEW = 20
 
 def __getattr__(name: str) -> Ledger:
     """The ledger of a paper, such as ``MA2005``."""
-    if name in _NAMED:
-        return _NAMED[name]
-    raise AttributeError(f"there is no {name!r} among the papers; there are {', '.join(_NAMED)}")
+    if name in NAMED:
+        return NAMED[name]
+    raise AttributeError(f"there is no {name!r} among the papers; there are {', '.join(NAMED)}")
 
 
 def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...]:

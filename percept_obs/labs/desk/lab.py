@@ -36,6 +36,8 @@ class DerivationDesk(Lab):
     """
 
     schema = SCHEMA
+    title = "The derivation desk"
+    works_alone = False
 
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
         if system is not None and not isinstance(system, PerspectiveSystem):

@@ -88,6 +88,7 @@ class ObserverLab(Lab):
     """
 
     schema = SCHEMA
+    title = "One point, a camera, and observers"
     frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
 
     def __init__(

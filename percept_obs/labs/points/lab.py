@@ -91,6 +91,7 @@ class PointsLab(Lab):
     """
 
     schema = SCHEMA
+    title = "Many points of one state"
 
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form

@@ -10,13 +10,17 @@ import warnings
 import weakref
 from collections.abc import Mapping
 from inspect import cleandoc
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import anywidget
 import traitlets
 from IPython.utils.capture import capture_output
 
+from percept_obs.border import write_whole
 from percept_obs.labs.shared.printed import FRONT, file_of
+from percept_obs.labs.shared.saved import page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import MOST as MOST_TYPED
 from percept_obs.labs.shared.typed_motion import Typed
@@ -84,6 +88,9 @@ class Lab(anywidget.AnyWidget):
 
     _esm = BUNDLE
     schema: Schema
+    title = "A lab"
+    works_alone = True
+    """Whether the page can do without Python."""
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
@@ -154,6 +161,41 @@ class Lab(anywidget.AnyWidget):
     def analyse(self) -> Settings:
         """Look deeper at the settings that the page has come to rest on."""
         return {}
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write the lab into a page of its own, which opens without Python, without a server and without a network.
+
+        The page opens with the present settings.  It holds the printed equations of every choice, so that all controls
+        work; what Python adds when the hand rests is left out.
+
+        Parameters
+        ----------
+        file : path
+            Where the page is to stand, such as ``"lab.html"``; a file there is replaced.
+
+        Raises
+        ------
+        ValueError
+            If the file is a folder, its folder does not exist, or the lab needs Python for all that it shows.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from percept_obs.labs import observer_lab
+        >>> page = Path(tempfile.mkdtemp()) / "lab.html"
+        >>> observer_lab(outputs=["y1"]).save(page)
+        >>> page.stat().st_size < 400_000
+        True
+        """
+        target = Path(file)
+        if target.is_dir() or not target.absolute().parent.is_dir():
+            raise ValueError(f"cannot write {target}: name a file in a folder that exists, such as lab.html")
+        if not self.works_alone:
+            raise ValueError(
+                "the desk reads formulas in Python, so a page without Python cannot hold it; save a lab of runs"
+            )
+        write_whole(target, page_of(self.get_state(), self.title).encode())
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Take the page's state; what goes wrong is shown in the lab and raised for the log."""

@@ -74,6 +74,7 @@ class StructureLab(Lab):
     """
 
     schema = SCHEMA
+    title = "Structure and motion"
 
     def __init__(self, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
         ours = {name: make for name, (_, make) in OBSERVERS.items()}

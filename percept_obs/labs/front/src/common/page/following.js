@@ -58,6 +58,7 @@ export class Following {
       onSize: (node, size) => this.resized(node, size),
       onTheme: () => this.retheme(),
     });
+    this.view.root.classList.toggle("alone", !this.widget.save_changes);
     this.panel.show();
     this.schedule();
     this.rest();

@@ -22,6 +22,7 @@ export class Link {
     this.widget.set("settings", settings);
     this.widget.set("summary", summary);
     this.sent = { settings, serial: summary.serial };
+    if (!this.widget.save_changes) return;
     try {
       this.widget.save_changes();
     } catch (error) {

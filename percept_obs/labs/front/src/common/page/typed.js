@@ -52,8 +52,9 @@ export function typedField(lab, { name, label, hint, most, prefix = "", get, set
       return set("");
     }
     if (model.written[text]) return settle(text);
-    waiting = text;
     clearTimeout(timer);
+    if (!widget.save_changes) return tell("Python reads what is typed, and this page has none: open the lab in a notebook.", true);
+    waiting = text;
     timer = setTimeout(() => tell("Python reads what is typed, and it does not answer: it is busy or gone. The numbers still move the point.", false), PATIENCE);
     widget.set("asked", text);
     widget.save_changes();

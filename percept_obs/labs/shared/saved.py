@@ -1,0 +1,76 @@
+"""Labs in pages without Python and without a network: what a lab is made of stands in the page itself, compressed."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+from base64 import b64encode
+from collections.abc import Iterable, Mapping
+from html import escape
+from typing import Any
+
+from percept_obs.labs.shared.printed import FRONT
+
+STARTER = FRONT / "alone.js"
+"""What turns the places of a page into labs."""
+
+SHOWN = ("kind", "model", "settings", "written", "frames")
+"""What of a lab's state its page is made from, besides its texts."""
+
+POLICY = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'"
+"""With it a browser refuses every request that a page might make."""
+
+PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>body {{ margin: 0 auto; max-width: 1280px; padding: 8px; color-scheme: light dark; }}</style>
+</head>
+<body>
+<main>
+<h1 style="font: 600 1.2em sans-serif">{title}</h1>
+{place}
+</main>
+<script>{library}</script>
+<script>{starter}</script>
+</body>
+</html>
+"""
+
+
+def page_of(state: Mapping[str, Any], title: str) -> str:
+    """A page with one lab, from the lab's state."""
+    return PAGE.format(
+        policy=POLICY,
+        title=escape(title),
+        place=place_of(state),
+        library=library_of([state]),
+        starter=STARTER.read_text(encoding="utf-8"),
+    )
+
+
+def place_of(state: Mapping[str, Any]) -> str:
+    """The place of a lab in a page, with what the page needs to know of it."""
+    told = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
+    # The end of a script would end it within a text, too.
+    inside = json.dumps(told, allow_nan=False, default=_in_letters).replace("<", "\\u003c")
+    return f'<div data-percept-obs><script type="application/json">{inside}</script></div>'
+
+
+def library_of(states: Iterable[Mapping[str, Any]]) -> str:
+    """The script that a page with these labs needs once: the bundle, and what was printed for them."""
+    texts = {_name_of(state["texts"]): b64encode(state["texts"]).decode() for state in states}
+    bundle = gzip.compress((FRONT / "lab.js").read_bytes(), mtime=0)
+    return f"window.perceptObs = {json.dumps({'bundle': b64encode(bundle).decode(), 'texts': texts})};"
+
+
+def _in_letters(data: bytes) -> dict[str, str]:
+    return {"base64": b64encode(data).decode()}
+
+
+def _name_of(texts: bytes) -> str:
+    return hashlib.sha256(texts).hexdigest()[:16]

@@ -1,0 +1,135 @@
+"""The course as a static site: notebooks with live labs, the papers' equations, the reference, the teacher's guide.
+
+Sphinx builds it, with MyST-NB.  It needs no network, neither to be built nor to be read, and opens from a disk.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from importlib import resources
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from percept_obs.labs.shared.saved import STARTER, library_of
+from percept_obs.papers import NAMED, Ledger
+from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
+from percept_obs.site.pages import Pages, contents, ledger_pages, reference
+
+NEEDS = {
+    "sphinx": "sphinx",
+    "myst_nb": "myst-nb",
+    "furo": "furo",
+    "latex2mathml": "latex2mathml",
+    "nbclient": "nbclient",
+}
+"""Packages of the extra "site", by the modules that are imported."""
+
+TEXTS = resources.files("percept_obs.site") / "texts"
+SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in ("labs.js", "alone.js"))
+
+SETTINGS = {
+    "project": "percept_obs",
+    "language": "en",
+    "extensions": ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "percept_obs.site.extension"],
+    "html_title": "percept_obs",
+    "html_theme": "furo",
+    "html_math_renderer": "mathml",
+    "html_static_path": ["_static"],
+    "html_css_files": ["look.css"],
+    "html_copy_source": False,
+    "html_show_sphinx": False,
+    "html_show_copyright": False,
+    "nb_execution_mode": "off",
+    "nb_merge_streams": True,
+    "nb_render_markdown_format": "myst",
+    "myst_enable_extensions": ["dollarmath", "amsmath"],
+    "napoleon_google_docstring": False,
+    "autodoc_typehints": "none",
+    "add_module_names": False,
+}
+
+
+def missing() -> list[str]:
+    """Packages of the extra "site" that are not installed."""
+    return [package for module, package in NEEDS.items() if find_spec(module) is None]
+
+
+def build(
+    target: Path,
+    notebooks: Mapping[str, Mapping[str, Any]],
+    ledgers: Mapping[str, Ledger] = NAMED,
+    beside: int = 2,
+    tell: Callable[[str], object] = print,
+) -> None:
+    """Build the site.
+
+    Parameters
+    ----------
+    target : path
+        Folder of the site; pages of an earlier one are replaced.
+    notebooks : mapping of str to notebook
+        Files as they are read, by their names.
+    ledgers : mapping of str to Ledger, optional
+        The papers; all, when left out.
+    beside : int
+        How many notebooks are run at once.
+    tell : function of str, optional
+        Is told what is done; it is printed, when left out.
+
+    Raises
+    ------
+    SiteFault
+        If a notebook does not run, or a page has a fault such as a link that leads nowhere.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder)
+        _notebooks(source, notebooks, beside, tell)
+        tell("judging the papers' equations")
+        for path, text in [*ledger_pages(ledgers), *reference(), *_texts()]:
+            _write(source / path, text)
+        tell("writing the pages")
+        _generate(source, target)
+    tell(f"wrote {target / 'index.html'}")
+
+
+def _notebooks(
+    source: Path, notebooks: Mapping[str, Mapping[str, Any]], beside: int, tell: Callable[[str], object]
+) -> None:
+    """Run the notebooks, and write them with what their labs need."""
+    import nbformat
+
+    states: dict[bytes, Mapping[str, Any]] = {}
+    for name, notebook in run_all(notebooks, beside):
+        tell(f"ran {name}")
+        states |= {state["texts"]: state for state in labs_of(notebook).values()}
+        _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
+    stems = [name.removesuffix(".ipynb") for name in notebooks]
+    _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
+    _write(source / "_static" / "labs.js", library_of(states.values()))
+    shutil.copy(STARTER, source / "_static")
+
+
+def _texts() -> Pages:
+    """Texts that are written by hand."""
+    for text in TEXTS.iterdir():
+        folder = "_static/" if text.name.endswith(".css") else ""
+        yield folder + text.name, text.read_text("utf-8")
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def _generate(source: Path, target: Path) -> None:
+    from sphinx.application import Sphinx
+
+    said = io.StringIO()
+    app = Sphinx(source, None, target, source / ".doctrees", "html", SETTINGS, status=None, warning=said, freshenv=True)
+    app.build(force_all=True)
+    if said.getvalue():
+        raise SiteFault(f"the site has faults:\n{said.getvalue()}")

@@ -1,0 +1,55 @@
+"""An extension of Sphinx: formulas as MathML, which a browser shows without any script, and docstrings as they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Add what this module does to Sphinx."""
+    app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
+    app.connect("autodoc-process-docstring", _keep_bars)
+    app.connect("html-page-context", _let_keys_scroll)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def mathml(latex: str, display: str) -> str:
+    r"""MathML of a formula.
+
+    Examples
+    --------
+    >>> mathml(r"\dot y", "inline")[:5]
+    '<math'
+    """
+    from latex2mathml.converter import convert
+
+    plain = latex.replace(r"\displaystyle", "").strip().strip("$")
+    return str(convert(plain, display=display))
+
+
+def _inline(self: Any, node: Any) -> None:
+    _write(self, mathml(node.astext(), "inline"))
+
+
+def _display(self: Any, node: Any) -> None:
+    _write(
+        self, f'<div class="math" tabindex="0" role="group" aria-label="formula">{mathml(node.astext(), "block")}</div>'
+    )
+
+
+def _write(self: Any, text: str) -> None:
+    from docutils.nodes import SkipNode
+
+    self.body.append(text)
+    raise SkipNode
+
+
+def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    """Let |x| stand for an absolute value, as everywhere else; for Sphinx it is a name to be replaced."""
+    lines[:] = [line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines]
+
+
+def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Let code that is wider than the page be scrolled by keys as well."""
+    if "body" in context:
+        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')

@@ -1,0 +1,166 @@
+"""Notebooks as pages: run, their figures drawn for light and dark, their labs alive without Python."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from base64 import b64decode
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from copy import deepcopy
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from percept_obs.figures.base import Figure
+from percept_obs.labs.shared.saved import SHOWN, place_of
+from percept_obs.site.extension import mathml
+
+if TYPE_CHECKING:
+    import nbformat
+
+VIEW = "application/vnd.jupyter.widget-view+json"
+COLOURS = {
+    "#000000": "currentColor",
+    "#ffffff": "var(--color-background-primary, white)",
+    "#e6e6e6": "var(--color-background-border, #e6e6e6)",
+    "#ededed": "var(--color-background-secondary, #ededed)",
+}
+"""Colours of a figure that follow the page, light or dark."""
+
+
+class SiteFault(RuntimeError):
+    """A page that cannot be built, or that would be built with a fault."""
+
+
+NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
+PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
+
+
+def draw_for_pages() -> None:
+    """Let the figures of the running kernel show themselves as drawings in the page's colours."""
+    from IPython import get_ipython
+
+    get_ipython().display_formatter.formatters["text/html"].for_type(Figure, drawing)
+
+
+def drawing(figure: Figure) -> str:
+    """A figure as SVG within a page, with its text equivalent.
+
+    Examples
+    --------
+    >>> import matplotlib.figure
+    >>> whole = matplotlib.figure.Figure()
+    >>> drawing(Figure(whole, (whole.subplots(),), "no curves")).startswith('<svg role="img" aria-label="no curves"')
+    True
+    """
+    import matplotlib
+
+    written = io.StringIO()
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": figure.text}):
+        figure.figure.savefig(written, format="svg", transparent=True, metadata={"Date": None})
+    text = written.getvalue()
+    text = text[text.index("<svg") :]
+    # Within a page its rules would hold for everything.
+    text = re.sub(r"<style[^>]*>.*?</style>|<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    for colour, of_the_page in COLOURS.items():
+        text = text.replace(colour, of_the_page)
+    said = (
+        f'<svg role="img" aria-label="{escape(figure.text)}" style="max-width: 100%; height: auto; fill: currentColor"'
+    )
+    return text.replace("<svg", said, 1)
+
+
+def run_all(notebooks: Mapping[str, Mapping[str, Any]], beside: int) -> Iterator[tuple[str, nbformat.NotebookNode]]:
+    """Run notebooks, some at once, and give each by its name as soon as it is there, in their order.
+
+    Raises
+    ------
+    SiteFault
+        If a cell fails; it says which notebook, and how.
+    """
+    with ThreadPoolExecutor(beside) as several:
+        yield from zip(notebooks, several.map(_run, notebooks, notebooks.values()), strict=True)
+
+
+def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
+    import nbformat
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError
+
+    whole = nbformat.reads(json.dumps(notebook), as_version=4)
+    whole.cells.insert(0, nbformat.v4.new_code_cell(PREPARE))
+    try:
+        NotebookClient(whole, timeout=600, kernel_name="python3").execute()
+    except CellExecutionError as error:
+        raise SiteFault(f"{name} does not run: {error.ename}: {error.evalue}") from None
+    del whole.cells[0]
+    return whole
+
+
+def labs_of(notebook: nbformat.NotebookNode) -> dict[str, dict[str, Any]]:
+    """States of the labs of a notebook that was run, by the names of their models."""
+    return {name: _whole(model) for name, model in _models(notebook).items() if "_esm" in model["state"]}
+
+
+def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.NotebookNode:
+    """Put labs that need no Python in the place of widgets, and of other widgets what they last showed.
+
+    Parameters
+    ----------
+    notebook : NotebookNode
+        One that was run; it is changed.
+    script : str
+        HTML that loads what labs need, put before the first one.
+    """
+    from nbformat.v4 import new_output
+
+    models, labs = _models(notebook), labs_of(notebook)
+    for cell in notebook.cells:
+        for k, output in enumerate(cell.get("outputs", ())):
+            if VIEW not in output.get("data", {}):
+                continue
+            name = output["data"][VIEW]["model_id"]
+            if name in labs and labs[name]["kind"] != "desk_lab":
+                html, script = script + place_of(labs[name]), ""
+            else:
+                html = f"<p><em>{NEEDS_PYTHON}</em></p>" + "".join(_last_shown(models, name))
+            cell["outputs"][k] = new_output("display_data", {"text/html": html})
+    notebook.metadata.pop("widgets", None)
+    return notebook
+
+
+def _models(notebook: nbformat.NotebookNode) -> Mapping[str, Any]:
+    widgets: Mapping[str, Any] = notebook.metadata.get("widgets", {})
+    return {name: model for kept in widgets.values() for name, model in kept["state"].items()}
+
+
+def _whole(model: Mapping[str, Any]) -> dict[str, Any]:
+    """State of a lab, with its bytes, which a notebook keeps beside it, put back into their places."""
+    whole: dict[str, Any] = {name: deepcopy(model["state"][name]) for name in SHOWN if name in model["state"]}
+    for buffer in model["buffers"]:
+        place: Any = whole
+        *way, last = buffer["path"]
+        for part in way:
+            place = place[part]
+        place[last] = b64decode(buffer["data"])
+    return whole
+
+
+def _last_shown(models: Mapping[str, Any], name: str) -> Iterator[str]:
+    """What a widget's outputs show, and those of the widgets in it."""
+    state = models[name]["state"]
+    for output in state.get("outputs", ()):
+        data = output.get("data", {})
+        if "text/html" in data:
+            yield _joined(data["text/html"])
+        elif "text/latex" in data:
+            yield f"<p>{mathml(_joined(data['text/latex']), 'block')}</p>"
+        else:
+            yield f"<pre>{escape(_joined(data.get('text/plain', output.get('text', ''))))}</pre>"
+    for child in state.get("children", ()):
+        yield from _last_shown(models, child.removeprefix("IPY_MODEL_"))
+
+
+def _joined(text: str | Sequence[str]) -> str:
+    return text if isinstance(text, str) else "".join(text)

@@ -1,0 +1,139 @@
+"""The course as a site: every page opens from a disk without a request, labs draw, links lead somewhere."""
+
+import json
+import re
+import warnings
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urldefrag
+
+import matplotlib.figure
+import pytest
+from jupyter_harness import NOTEBOOKS
+from lab_alone import DRAWN
+from lab_settings import FRONT
+from sample_sizes import sampled
+
+import percept_obs
+from percept_obs import cli, site
+from percept_obs.exercises import COPIES
+from percept_obs.figures.base import Figure
+from percept_obs.labs.shared.saved import place_of
+from percept_obs.papers import NAMED
+from percept_obs.site.extension import mathml
+from percept_obs.site.notebooks import drawing
+from percept_obs.site.pages import ledger_addresses, reference
+
+NOTEBOOK = "00_start.ipynb"
+PAPER = "DE_LUCA2008"
+
+
+class Links(HTMLParser):
+    """Where a page leads to, what it loads, and its places."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.targets, self.places = [], set()
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attrs):
+        told = dict(attrs)
+        self.places |= {told["id"]} if "id" in told else set()
+        self.targets += [told[name] for name in ("href", "src") if told.get(name)]
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """A site with one notebook and one paper; with ALL_SAMPLES, the whole one."""
+    target = tmp_path_factory.mktemp("site")
+    names = sampled([NOTEBOOK], sorted(path.name for path in NOTEBOOKS.glob("*.ipynb")))
+    copies = {name: COPIES["teachers"](json.loads((NOTEBOOKS / name).read_bytes())) for name in names}
+    if names == [NOTEBOOK]:  # its links to the others lead nowhere
+        copies = {
+            name: json.loads(re.sub(r"\]\((?!00)[^)]*\.ipynb\)", "]", json.dumps(c))) for name, c in copies.items()
+        }
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the generator's own
+        site.build(target, copies, sampled({PAPER: NAMED[PAPER]}, NAMED), tell=lambda text: None)
+    return target
+
+
+@pytest.mark.slow
+def test_every_link_leads_somewhere(pages):
+    found = {path: Links(path) for path in pages.rglob("*.html")}
+    assert len(found) > 25
+    for path, links in found.items():
+        for target in links.targets:
+            address, place = urldefrag(target)
+            if re.match(r"[a-z]+:", target):
+                assert not re.search(r"\.(js|css|png|svg|woff2?)$", address), f"{path} loads {target}"
+                continue
+            to = (path.parent / unquote(address).split("?")[0]).resolve() if address else path
+            assert to.exists(), f"{path} leads to {target}"
+            if place and to in found:
+                assert unquote(place) in found[to].places, f"{path} leads to {target}"
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_every_page_opens_without_an_error_or_a_request(pages, browser):
+    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text()
+    page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
+    complaints = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda said: complaints.append(said.text) if said.type in ("error", "warning") else None)
+    page.on("request", lambda asked: complaints.append(asked.url) if asked.url.startswith("http") else None)
+    labs = 0
+    for path in sorted(pages.rglob("*.html")):
+        page.goto(path.as_uri())
+        if page.locator("[data-percept-obs]").count():
+            page.wait_for_function(DRAWN)
+            labs += page.locator("[data-percept-obs] .percept-lab").count()
+        page.evaluate(axe)
+        found = page.evaluate("axe.run({ preload: false })")["violations"]
+        serious = [f"{path}: {one['id']}" for one in found if one["impact"] in ("serious", "critical")]
+        assert complaints + serious == [], path
+    assert labs
+    page.close()
+
+
+def test_an_address_of_its_own_for_every_equation():
+    for ledger in NAMED.values():
+        names = ledger_addresses(ledger)
+        assert len(set(names.values())) == len(ledger.entries)
+
+
+def test_every_public_name_has_a_place_in_the_reference():
+    text = "".join(text for _, text in reference())
+    titles = {name for title in re.findall(r"\n(.*)\n---", text) for name in re.findall(r"\w+", title)}
+    assert set(percept_obs.__all__) - titles == {"scenarios"}, "which is a module, and has a page"
+
+
+def test_a_drawing_brings_no_rules_into_the_page():
+    whole = matplotlib.figure.Figure()
+    text = drawing(Figure(whole, (whole.subplots(),), 'a "curve" <falls>'))
+    assert "<style" not in text
+    assert "#000000" not in text
+    assert 'aria-label="a &quot;curve&quot; &lt;falls&gt;"' in text
+
+
+def test_a_text_in_the_settings_cannot_end_the_script():
+    state = {"kind": "desk_lab", "model": {}, "settings": {"student": "</script><script>alert(1)"}, "texts": b""}
+    assert "</script><script>" not in place_of(state)
+
+
+def test_a_formula_is_written_for_the_browser():
+    assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
+
+
+def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, capsys, tmp_path):
+    monkeypatch.setattr(site, "find_spec", lambda module: None if module == "furo" else object())
+    assert cli.main(["site", str(tmp_path / "new")]) == 1
+    assert "pip install furo" in capsys.readouterr().err
+    assert not Path(tmp_path / "new").exists()
+
+
+def test_a_file_in_the_place_of_the_folder_is_refused(capsys, tmp_path):
+    (tmp_path / "site").write_text("")
+    assert cli.main(["site", str(tmp_path / "site")]) == 2
+    assert "name a folder" in capsys.readouterr().err
