@@ -19,6 +19,8 @@ from percept_obs.papers import NAMED, Ledger
 from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
+__all__ = ["SiteFault", "build", "missing"]
+
 NEEDS = {
     "sphinx": "sphinx",
     "myst_nb": "myst-nb",
