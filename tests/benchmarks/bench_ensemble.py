@@ -4,8 +4,8 @@
 
 Every round runs each of them once on the same work, so that a busy machine slows all alike; the table has medians of
 CPU seconds on one thread and their ratios to the ensemble.  What is not installed is left out and named.  Exits with
-1 if a bar is not kept.  The C code is sympy's print of the same flow, by gcc -O3 -march=native -ffast-math -fopenmp-simd, with the
-point's motion in the state, as for scipy; the ensemble besides it makes samples and counts its statistics.
+1 if a bar is not kept.  The C code is sympy's print of the same flow, by gcc -O3 -march=native -ffast-math
+-fopenmp-simd, with the point's motion in the state, as for scipy; the ensemble also makes samples and counts.
 """
 
 from __future__ import annotations
