@@ -1,4 +1,4 @@
-"""The command line: open the notebooks, write them as pages, judge the papers' equations, compare all observers."""
+"""The command line: open the notebooks, write them as pages, judge equations, compare observers, run ensembles."""
 
 import argparse
 import json
@@ -143,6 +143,30 @@ def compare(options: argparse.Namespace) -> int:
     return 0
 
 
+def sweep(options: argparse.Namespace) -> int:
+    """Run the ensemble that a TOML file describes, here or on a Dask cluster; it goes on where it was stopped."""
+    from contextlib import nullcontext
+
+    from percept_obs.border import needed
+    from percept_obs.studies.sweep import sweep
+
+    try:
+        needed("cluster", "xarray", "zarr", *(("distributed",) if options.scheduler else ()))
+        if options.scheduler:
+            from distributed import Client
+
+            connected = Client(options.scheduler)
+        else:
+            connected = nullcontext()
+        with connected as client:
+            print(sweep(options.file, client))
+    except OSError as error:
+        return _complain(f"cannot read the file or reach the cluster: {error}", 2)
+    except (ValueError, ModuleNotFoundError) as error:
+        return _complain(str(error), 2)
+    return 0
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code: 0 well, 1 failed, 2 asked for wrongly."""
     parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
@@ -182,6 +206,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     compare_parser.add_argument("--noise", type=_positive(float), default=0.01, help="bound of the noise")
     compare_parser.add_argument("--duration", type=_positive(float), default=80.0, help="seconds")
     compare_parser.set_defaults(run=compare)
+
+    sweep_parser = commands.add_parser("sweep", help="run an ensemble", description=sweep.__doc__)
+    sweep_parser.add_argument("file", type=Path, metavar="FILE", help="a TOML file that says what is run")
+    sweep_parser.add_argument("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
+    sweep_parser.set_defaults(run=sweep)
 
     options = parser.parse_args(arguments)
     return options.run(options)

@@ -148,4 +148,9 @@ MISTAKES = {
         "half": ["a", "b", "d"],
         "wait": [2, 5, 7, 10],
     },
+    "13_maps_and_basins": {
+        "scale-formula": ["x - s y3", "s x + y3", "x - y3"],
+        "too-slow": ["a", "c", "d"],
+        "quiet": [6, 10, 30],
+    },
 }

@@ -5,6 +5,7 @@ from percept_obs.border.expressions import derived, expression, expressions, mat
 from percept_obs.border.files import write_whole
 from percept_obs.border.kinds import Coefficients, Entries, Kind, are_numbers
 from percept_obs.border.limits import MOST_TERMS, TooMuchWork, limit
+from percept_obs.border.modules import needed
 from percept_obs.border.warning import warn
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "expressions",
     "limit",
     "matrix",
+    "needed",
     "numbers",
     "refuse_kind",
     "warn",

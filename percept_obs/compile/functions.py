@@ -109,9 +109,9 @@ def python_text(expression: sp.Expr) -> str:
     return Text("python").print(expression)
 
 
-def executed(text: str) -> Callable[..., Any]:
-    """The Python function that a text defines last."""
-    namespace: dict[str, Any] = {"math": math}
+def executed(text: str, **names: Any) -> Callable[..., Any]:
+    """The Python function that a text defines last; it may use `math`, and whatever is named."""
+    namespace: dict[str, Any] = {"math": math} | names
     exec(compile(text, "<printed>", "exec"), namespace)
     *_, function = (value for value in namespace.values() if isinstance(value, FunctionType))
     return function

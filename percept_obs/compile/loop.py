@@ -6,7 +6,7 @@ Whatever a user may want to move (motion, gains, noise, start) is an argument; o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from math import lcm
@@ -44,25 +44,11 @@ def source(equations: Equations, language: Printed = "python") -> str:
     """
     n, m = len(equations.state), len(equations.measured)
     text = Text(language)
-    groups = {"x": equations.state, "y": equations.measured, "p": equations.parameters, "g": equations.gains}
-    names = {s: sp.Symbol(f"{letter}{k}", real=True) for letter, group in groups.items() for k, s in enumerate(group)}
-    fixed: dict[sp.Expr, sp.Symbol] = {}
-    known_gains = {names[symbol] for symbol in equations.gains}
-    variables = tuple(names[symbol] for symbol in (*equations.state, *equations.measured))
-
-    def prepared(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """The expressions in the loop's names, with what depends on gains only taken out."""
-        renamed = [e.xreplace(names) for e in expressions]
-        refuse_what_differs(renamed)
-        return [_take_out(_nested(e, variables), known_gains, fixed) for e in renamed]
-
-    flow, reset = prepared(equations.flow), prepared(equations.reset)
-    update = [prepared(block) for block in equations.update]
-    (condition,) = prepared([equations.reset_condition])
+    formulas = Formulas(text, equations)
 
     def load(letter: str, array: str, rows: int = 0, row: int = 0) -> None:
         """Load a row of an array that has so many rows a step."""
-        wide = len(groups[letter])
+        wide = len(formulas.groups[letter])
         for k in range(wide):
             first = f"{rows * wide}*k + " if rows else ""
             text.assign(f"{letter}{k}", f"{array}[{first}{row * wide + k}]")
@@ -74,33 +60,8 @@ def source(equations: Equations, language: Printed = "python") -> str:
             with text.block("if", "varying"):
                 load("p", "parameters", EACH, instant)
 
-    def shared(shares: Sequence[Fraction]) -> str:
-        """The step over the common denominator of shares of it."""
-        return f"h/{lcm(*(share.denominator for share in shares))}.0"
-
-    def times(shares: Sequence[Fraction], stage: int, k: int) -> str:
-        """The rate of state k at a stage, times the numerator of its share."""
-        numerator = shares[stage] * lcm(*(share.denominator for share in shares))
-        return f"d{stage}_{k}" if numerator == 1 else f"{numerator}.0*d{stage}_{k}"
-
-    def gathered(stage: int, k: int) -> str:
-        """The sum of the rates of state k up to a stage, by their weights."""
-        return (f"q{k} + " if any(WEIGHTS[:stage]) else "") + times(WEIGHTS, stage, k)
-
-    def visit(stage: int) -> None:
-        """Assign the rates at a stage, and gather them for the step."""
-        shares = COUPLING[stage]
-        if any(shares):
-            text.assign("part", shared(shares))
-        for k in range(n):
-            rates = " + ".join(times(shares, j, k) for j, share in enumerate(shares) if share)
-            text.assign(f"x{k}", f"s{k} + part*({rates})" if rates else f"s{k}")
-        text.formulas(flow, f"d{stage}_")
-        for k in range(n if WEIGHTS[stage] and stage < LAST else 0):
-            text.assign(f"q{k}", gathered(stage, k))
-
     def update_by_samples(first: str = "") -> None:
-        for k, block in enumerate(update):
+        for k, block in enumerate(formulas.update):
             value = f"samples[{first}{k}]"
             with text.block("if", f"{value} == {value}"):
                 text.assign(f"y{k}", value)
@@ -116,35 +77,96 @@ def source(equations: Equations, language: Printed = "python") -> str:
             text.assign(f"s{k}", f"start[{k}]")
         load("g", "gains")
         load("p", "parameters")
-        for expression, symbol in fixed.items():
+        for expression, symbol in formulas.fixed.items():
             text.assign(symbol.name, text.print(expression))
         text.assign("row", "0")
         update_by_samples()
         keep()
         with text.loop("k", "steps"):
             text.assign("h", "steps[k]")
-            for stage, place in enumerate(PLACES):
-                if stage == 0 or place != PLACES[stage - 1]:
-                    look(place)
-                visit(stage)
-            if PLACES[-1] != EACH:
-                look(EACH)
-            text.assign("part", shared(WEIGHTS))
-            for k in range(n):
-                text.assign(f"s{k}", f"s{k} + part*({gathered(LAST, k)})")
+            formulas.step(look)
             update_by_samples(f"{m}*(k + 1) + ")
             if equations.reset:
                 text.copy("x", "s", n)
-                with text.block("if", text.print(condition)):
-                    text.formulas(reset, "s")
+                with text.block("if", text.print(formulas.condition)):
+                    text.formulas(formulas.reset, "s")
                     text.store("resets[k + 1]", "1.0")
-            text.assign("size", " + ".join(f"s{k}*s{k}" for k in range(n)))
+            text.assign("size", formulas.size)
             with text.block("unless", f"size < {LARGEST_SQUARED_STATE!r}"):
                 text.leave("k + 1")
             text.assign("row", f"row + {n}")
             keep()
         text.leave("-1")
     return str(text)
+
+
+class Formulas:
+    """The equations in the loop's names, and the lines of a step by the Runge-Kutta method.
+
+    State k is s{k} between stages and x{k} in formulas; these use y{k}, p{k} and g{k} for measured outputs, parameters
+    and gains.  What depends on gains only is taken out, to `fixed`.
+    """
+
+    def __init__(self, text: Text, equations: Equations) -> None:
+        self.text = text
+        groups = {"x": equations.state, "y": equations.measured, "p": equations.parameters, "g": equations.gains}
+        self.groups: dict[str, tuple[sp.Symbol, ...]] = groups
+        self.names = {
+            s: sp.Symbol(f"{letter}{k}", real=True) for letter, group in groups.items() for k, s in enumerate(group)
+        }
+        self.fixed: dict[sp.Expr, sp.Symbol] = {}
+        self.flow, self.reset = self.prepared(equations.flow), self.prepared(equations.reset)
+        self.update = [self.prepared(block) for block in equations.update]
+        (self.condition,) = self.prepared([equations.reset_condition])
+        self.size = " + ".join(f"s{k}*s{k}" for k in range(len(equations.state)))
+
+    def prepared(self, expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """The expressions in the loop's names, with what depends on gains only taken out."""
+        renamed = [e.xreplace(self.names) for e in expressions]
+        refuse_what_differs(renamed)
+        variables = tuple(self.names[symbol] for letter in "xy" for symbol in self.groups[letter])
+        gains = {self.names[symbol] for symbol in self.groups["g"]}
+        return [_take_out(_nested(e, variables), gains, self.fixed) for e in renamed]
+
+    def step(self, look: Callable[[int], None]) -> None:
+        """A step of the length h, with what loads the known signals at one of its instants."""
+        for stage, place in enumerate(PLACES):
+            if stage == 0 or place != PLACES[stage - 1]:
+                look(place)
+            self._visit(stage)
+        if PLACES[-1] != EACH:
+            look(EACH)
+        self.text.assign("part", _shared(WEIGHTS))
+        for k in range(len(self.flow)):
+            self.text.assign(f"s{k}", f"s{k} + part*({_gathered(LAST, k)})")
+
+    def _visit(self, stage: int) -> None:
+        """Assign the rates at a stage, and gather them for the step."""
+        shares, n = COUPLING[stage], len(self.flow)
+        if any(shares):
+            self.text.assign("part", _shared(shares))
+        for k in range(n):
+            rates = " + ".join(_times(shares, j, k) for j, share in enumerate(shares) if share)
+            self.text.assign(f"x{k}", f"s{k} + part*({rates})" if rates else f"s{k}")
+        self.text.formulas(self.flow, f"d{stage}_")
+        for k in range(n if WEIGHTS[stage] and stage < LAST else 0):
+            self.text.assign(f"q{k}", _gathered(stage, k))
+
+
+def _shared(shares: Sequence[Fraction]) -> str:
+    """The step over the common denominator of shares of it."""
+    return f"h/{lcm(*(share.denominator for share in shares))}.0"
+
+
+def _times(shares: Sequence[Fraction], stage: int, k: int) -> str:
+    """The rate of state k at a stage, times the numerator of its share."""
+    numerator = shares[stage] * lcm(*(share.denominator for share in shares))
+    return f"d{stage}_{k}" if numerator == 1 else f"{numerator}.0*d{stage}_{k}"
+
+
+def _gathered(stage: int, k: int) -> str:
+    """The sum of the rates of state k up to a stage, by their weights."""
+    return (f"q{k} + " if any(WEIGHTS[:stage]) else "") + _times(WEIGHTS, stage, k)
 
 
 @lru_cache(maxsize=4096)

@@ -13,11 +13,13 @@ from typing import Any
 from uuid import uuid4
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy"}
+LANES_OPTIONS = OPTIONS | {"nogil": True, "fastmath": {"contract"}}
+"""For runs side by side: threads beside each other, and a product and a sum rounded once, in no other order."""
 
 
 # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
 @lru_cache(maxsize=512)
-def machine_code(text: str, signature: str) -> Callable[..., Any]:
+def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[..., Any]:
     """The last function of a text in machine code; it may call those before it.
 
     numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
@@ -27,7 +29,8 @@ def machine_code(text: str, signature: str) -> Callable[..., Any]:
     import numba
     from platformdirs import user_cache_path
 
-    text = f'"""A loop of percept_obs, which numba compiles with {OPTIONS}."""\n\n{text}'
+    options = LANES_OPTIONS if of_lanes else OPTIONS
+    text = f'"""A loop of percept_obs, which numba compiles with {options}."""\n\n{text}'
     content = text.encode()
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
     file = folder / f"loop_{hashlib.sha256(content).hexdigest()[:32]}.py"
@@ -41,8 +44,8 @@ def machine_code(text: str, signature: str) -> Callable[..., Any]:
     exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
     *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
     for name in others:
-        setattr(module, name, numba.njit(**OPTIONS)(getattr(module, name)))
-    compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **OPTIONS)(getattr(module, last))
+        setattr(module, name, numba.njit(**options)(getattr(module, name)))
+    compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
     return compiled
 
 

@@ -15,6 +15,7 @@ from sympy.printing.pycode import PythonCodePrinter
 from percept_obs.compile.intermediate import Intermediate, common_subexpressions, intermediates
 
 Printed = Literal["python", "javascript"]
+Notation = Literal["python", "javascript", "lanes"]
 
 LARGEST_PRODUCT = 8
 """Powers of numbers or of roots up to this are printed as products, the same in every language."""
@@ -119,17 +120,18 @@ for _function in FUNCTIONS:
 
 _WORDS = {
     "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
+    "lanes": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"},
     "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
 }
 
 
 class Text:
-    """Lines of a program in one of two languages."""
+    """Lines of a program in one of two languages; Python's may be of lanes, where choices are no branches."""
 
-    def __init__(self, language: Printed) -> None:
+    def __init__(self, language: Notation) -> None:
         if language not in _WORDS:
             raise ValueError(f"the language {language!r} is neither 'python' nor 'javascript'")
-        self.python = language == "python"
+        self.python = language != "javascript"
         self.print = _Printer(_WORDS[language]).doprint
         self.lines: list[str] = []
         self.depth = 0
@@ -193,6 +195,10 @@ class Text:
         return self._indented(
             f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
         )
+
+    def over(self, lanes: str) -> Any:
+        """The loop over lanes, which only Python has."""
+        return self._indented(f"for i in {lanes}", "")
 
     def block(self, word: Literal["if", "unless"], condition: str) -> Any:
         """What is done only under a condition."""

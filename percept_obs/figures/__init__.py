@@ -7,6 +7,7 @@ from percept_obs.figures.entries import entries
 from percept_obs.figures.fields import fields
 from percept_obs.figures.image_plane import image_plane
 from percept_obs.figures.many_points import depth_errors, error_norm
+from percept_obs.figures.map import settings_map
 from percept_obs.figures.observability import bound_map, observability
 from percept_obs.figures.over_time import distance, runs_over_time
 from percept_obs.figures.scene import scene
@@ -36,6 +37,7 @@ __all__ = [
     "runs_over_time",
     "scan",
     "scene",
+    "settings_map",
     "signals",
     "trust",
     "velocities",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +40,9 @@ class Uniform:
 
     def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
         """Independent samples."""
+        return self._draw(generator, shape)
+
+    def _draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
         return generator.uniform(-self.bound, self.bound, shape)
 
 
@@ -61,6 +63,9 @@ class Gaussian:
 
     def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
         """Independent samples, by the Box-Muller transform of two uniform ones."""
+        return self._draw(generator, shape)
+
+    def _draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
         first, second = generator.random((*shape, 2)).transpose(-1, *range(len(shape)))
         return self.sigma * np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
 
@@ -166,6 +171,15 @@ class Camera:
         outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._beside(scene.view, truth)] = np.nan
         return outputs, self.noise.variance
 
+    def drawn(self, seeds: Sequence[int], shape: tuple[int, ...]) -> Array:
+        """For each of S seeds the noise of outputs of a shape, (S, K, ..., m); NaN where a sample is lost by chance."""
+        noise = np.zeros((len(seeds), *shape))
+        for k, generator in enumerate(_generators(seeds) if self.noise.variance or self.dropout else ()):
+            noise[k] = self.noise._draw(generator, shape)
+            if self.dropout:
+                noise[k][self._lost(generator, shape[:-1])] = np.nan
+        return noise
+
     def _beside(self, view: View, truth: Array) -> Flags | bool:
         """Which points lie outside of the field of view, shape (K, ...)."""
         if self.field_of_view == 2 * math.pi:
@@ -175,6 +189,9 @@ class Camera:
 
     def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         """Which samples are lost by chance, the first ones never."""
+        return self._lost(generator, shape)
+
+    def _lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         lost = generator.random(shape) < self.dropout
         lost[0] = False
         return lost
@@ -230,6 +247,13 @@ def seeded(seed: Seed) -> np.random.Generator:
         return seed
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**32:
         raise ValueError(f"the seed {seed!r} is neither a numpy Generator nor a whole number from 0 to 2^32 - 1")
-    bits = np.random.MT19937()
-    bits.state = cast(Any, np.random.RandomState(int(seed)).get_state(legacy=False))
-    return np.random.Generator(bits)
+    return next(_generators([int(seed)]))
+
+
+def _generators(seeds: Iterable[int]) -> Iterator[np.random.Generator]:
+    """One generator, seeded anew each time, for making one takes longer than a hundred seedings."""
+    bits = np.random.MT19937(0)
+    generator, seeding = np.random.Generator(bits), np.random.RandomState(bits)
+    for seed in seeds:
+        seeding.seed(seed)
+        yield generator

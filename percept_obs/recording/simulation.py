@@ -22,6 +22,9 @@ from percept_obs.system.motion import TIME, Motion, ask_for_degrees
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
 
+LONGEST_LOOK_SHARE = 0.25
+"""Share of the shortest time constant of a motion after which the distance is looked at."""
+
 
 @checked
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,7 @@ class Scenario(Scene):
         times, start, motion = times_of(times, len(POINT)), np.array(self.position), self.motion
         motion.known(times[:1])
         if motion.signal is None or motion.signal.constant:
-            A, b = _coefficients(motion, times[:1])
+            A, b = coefficients(motion, motion.known(times[:1]))
             return constant_path(A[0], b[0], start, times)
         breaks = () if motion.signal.times is None else motion.signal.times
         flow = _flow(point_in_motion(motion.A, motion.b, motion.parameters))
@@ -125,12 +128,12 @@ class Scenario(Scene):
 
     def _refuse_a_dip(self, times: Array, points: Array) -> None:
         """Refuse a motion that takes the point behind the camera and back between two of the times."""
-        A, b = _coefficients(self.motion, times)
+        A, b = coefficients(self.motion, self.motion.known(times))
         fastest = float(np.abs(A).sum(axis=-1).max(initial=0))
-        grid, _ = step_grid(times, 0.25 / max(fastest, 1e-9))
+        grid, _ = step_grid(times, LONGEST_LOOK_SHARE / max(fastest, 1e-9))
         if len(grid) > len(times):
             times, points = grid, self.points(grid)
-            A, b = _coefficients(self.motion, times)
+            A, b = coefficients(self.motion, self.motion.known(times))
         velocities = (A @ points[:, :, None])[..., 0] + b
         surface = self.surface
         for bound in surface.bounds:
@@ -217,9 +220,8 @@ def _flow(equations: Equations) -> Callable[..., list[float]]:
     return right_hand_side(equations, {})
 
 
-def _coefficients(motion: Motion, times: Array) -> tuple[Array, Array]:
-    """A and b at the times, shapes (T, 3, 3) and (T, 3), or (1, ...) when constant."""
-    known = motion.known(times)
+def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
+    """A and b for values of the motion's parameters, shape (T, p), as arrays of shapes (T, 3, 3) and (T, 3)."""
     columns = known.T if known.shape[1] else [np.zeros(len(known))]
     symbols = motion.parameters or (TIME,)
     rows = np.stack(vectorised(symbols, (*motion.A, *motion.b))(*columns), axis=-1)

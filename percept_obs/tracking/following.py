@@ -153,7 +153,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, along.grid)
     known = _known(along, believed)
-    given = _named(start, form.coordinates)
+    given = named_start(start, form.coordinates)
     initial = observer.initial_state(
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
         given,
@@ -251,7 +251,7 @@ def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None
         )
 
 
-def _named(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
+def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
     """Estimates at the start by the names of their coordinates."""
     refuse_kind("track", "start", start, Start)
     if start is None or isinstance(start, Mapping):

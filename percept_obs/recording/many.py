@@ -1,0 +1,65 @@
+"""Many scenarios that differ in numbers only."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+
+from percept_obs.compile import Array
+from percept_obs.recording.path import REACH, TERMS
+from percept_obs.recording.simulation import Scenario
+from percept_obs.system.signal import Signal
+from percept_obs.system.surfaces import POINT
+
+
+def numbers_of(scenario: Scenario) -> dict[str, float]:
+    """What can be another number in a scenario, and what it is now: X, Y, Z, a constant motion's and the surface's."""
+    motion, surface = scenario.motion, scenario.surface
+    found = {symbol.name: float(value) for symbol, value in zip(POINT, scenario.position, strict=True)}
+    found |= {symbol.name: value for symbol, value in motion.values.items()}
+    return found | {symbol.name: value for symbol, value in surface.values.items()}
+
+
+def with_numbers(scenario: Scenario, **values: float) -> Scenario:
+    """The scenario with some of its `numbers_of` replaced.
+
+    Raises
+    ------
+    BehindCamera
+        If its point does not begin in front of the camera.
+    """
+    now = numbers_of(scenario) | values
+    motion, surface = scenario.motion, scenario.surface
+    if motion.values:
+        motion = replace(motion, signal=Signal(np.array([[now[s.name] for s in motion.parameters]])))
+    surface = replace(surface, values=MappingProxyType({s: now[s.name] for s in surface.values}))
+    position = [now[symbol.name] for symbol in POINT]
+    return replace(scenario, motion=motion, position=position, surface=surface)
+
+
+def transitions(A: Array, b: Array, length: float) -> Array:
+    """Maps [M | v] of a position to the one a length of time later under constant motions.
+
+    Parameters
+    ----------
+    A, b : arrays of shapes (D, 3, 3) and (D, 3)
+    length : float
+        In seconds.
+
+    Returns
+    -------
+    array of shape (D, 3, 4)
+    """
+    whole = np.zeros((len(A), 4, 4))
+    whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
+    fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))
+    halvings = max(0, int(np.ceil(np.log2(max(fastest / REACH, 1.0)))))
+    across = np.broadcast_to(np.eye(4), whole.shape)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for k in range(TERMS, 0, -1):
+            across = np.eye(4) + (whole / 2**halvings) @ across / k
+        for _ in range(halvings):
+            across = across @ across
+    return np.ascontiguousarray(across[:, :3])

@@ -1,0 +1,196 @@
+"""Ensembles: one scenario and one observer, run over whatever may vary, many runs side by side."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Annotated, Any
+
+import numpy as np
+
+from percept_obs.border import Kind, checked, limit, needed
+from percept_obs.compile import Array, Language, choose
+from percept_obs.compile.integrator import LONGEST_STEP
+from percept_obs.observers.base import Observer
+from percept_obs.recording import Camera, Scenario, record
+from percept_obs.studies.filling import Store, fill
+from percept_obs.studies.part import Plan
+from percept_obs.studies.results import dataset, settings
+from percept_obs.studies.varying import CAMERA, Grid, camera_with, grid_of, refuse_gains, units
+from percept_obs.system.motion import Motion
+from percept_obs.tracking.course import Hold
+from percept_obs.tracking.following import DoesNotFit, named_start, track
+from percept_obs.tracking.verdict import TOLERANCE
+
+Start = Mapping[str, float] | Sequence[float] | None
+Client = Annotated[Any, Kind("a client of Dask", lambda c: c is None or hasattr(c, "get_executor"), "Client()")]
+
+CHUNK = 2048
+"""Runs that are computed, and stored, together unless asked otherwise."""
+
+MOST_RUNS = 10_000_000
+"""Runs that one ensemble may have: about 1 GiB of statistics."""
+
+
+@checked
+def ensemble(
+    scenario: Scenario,
+    observer: Observer,
+    over: Mapping[str, Any] | None = None,
+    seeds: int | Sequence[int] = 1,
+    duration: float | None = None,
+    camera: Camera | None = None,
+    start: Start = None,
+    hold: Hold = "zero",
+    believed: Motion | None = None,
+    step: float = LONGEST_STEP,
+    tolerance: float = TOLERANCE,
+    after: float = 0.0,
+    coordinates: Sequence[str] = (),
+    language: Language | None = None,
+    client: Client = None,
+    store: str | os.PathLike[str] | None = None,
+    chunk: int = CHUNK,
+) -> Any:
+    """Record a scenario and follow it, for every combination of what varies and every seed.
+
+    A run is what ``track(record(...), observer, ...)`` makes; its statistics are counted while it runs, so that the
+    memory does not grow with its length.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    observer : Observer
+    over : mapping of names to values, optional
+        What varies: a gain of the observer ("gain"); an estimate at the start ("start_y3"); the point's position
+        ("X"), the true motion ("b1") or the surface, by the names of their symbols; what the observer believes of the
+        motion ("believed_b1"); the camera's "noise" (bound or standard deviation), "period" and "dropout".  A list
+        of values is a dimension; a DataArray brings its own, so that two of them on one dimension go together.
+    seeds : int or sequence of int
+        Seeds of the noise, or how many of them, from 0 on.
+    duration, camera : see `record`
+    start, hold, believed, step : see `track`
+        A true motion that varies is believed in unless `believed` is given.
+    tolerance : float
+        Bound on the relative error of the distance, or on the absolute errors of the `coordinates`; see `Run.outcome`.
+    after : float
+        Seconds from which on errors count for their root mean square, their largest value, NEES and NIS.
+    coordinates : sequence of str, optional
+        Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
+    language : "python" or "numba", optional
+        See `solve`; Python's runs in numpy.
+    client : distributed.Client, optional
+        Of a Dask cluster, whose workers share the runs; the threads of this machine when left out.
+    store : path, optional
+        A Zarr store that keeps what is done chunk by chunk, and then the result.  The same call on a store that was
+        left behind goes on where it stopped.
+    chunk : int
+        Runs that are computed and stored together.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the dimension "seed" and those of `over`: status, outcome, settling_time (s, infinite if it has not
+        converged), judged (what the tolerance bounds, at the end), final, rms, worst (errors of the inverse distance in
+        1/m), resets, diverged_at (s, infinite if it does not), and for an observer with a covariance the means nees and
+        nis.  `status` and `outcome` are numbers whose meanings are among their attributes.  A point that
+        does not stay in front of the camera has the status "not_in_front" and NaN.  ``to_netcdf`` and ``to_zarr`` keep
+        it with all settings.
+
+    Raises
+    ------
+    ValueError
+        If nothing of the name can vary, a value is out of range, or the store holds another ensemble.
+    DoesNotFit
+        If the observer cannot follow the scenario.
+    ModuleNotFoundError
+        If xarray, or for a store zarr, is not installed.
+
+    Warns
+    -----
+    Unfinished
+        If it was interrupted; what is done is returned.
+
+    Notes
+    -----
+    Products and sums are rounded once in machine code, so that a run differs from `track`'s by about 1e-14 relative,
+    more only where a reset or a switch is met by a hair.  The same seeds give the same numbers, bit for bit, in any
+    chunks, threads or workers on processors of one kind.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ensemble, ibo, pinhole, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = ensemble(scenarios.ma2005_eq35(), ibo(form), {"gain": [2.0, 10.0]}, duration=5)
+    >>> found.settling_time.sel(gain=10.0, seed=0).item()
+    1.91
+    """
+    needed("cluster", "xarray", *(("zarr",) if store else ()))
+    camera, motion = camera or scenario.camera, believed or scenario.motion
+    duration = scenario.duration if duration is None else float(duration)
+    limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
+    several: Array = np.asarray(range(seeds) if isinstance(seeds, int | np.integer) else seeds)
+    names = units(scenario, observer, motion, camera)
+    unknown = sorted(set(over or {}) - set(names))
+    if unknown:
+        raise ValueError(
+            f"over has {', '.join(unknown)}, which is nothing that varies here; there are {', '.join(names)}"
+        )
+    if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
+        raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
+    grid = grid_of(over or {}, several)
+    limit(grid.runs, "runs", "take fewer values or seeds", MOST_RUNS)
+    if chunk < 1:
+        raise ValueError(f"a chunk of {chunk} runs is none; take at least 1")
+    steps = grid.runs * duration / min(step, camera.period)
+    plan = Plan(
+        scenario,
+        observer,
+        duration,
+        camera,
+        named_start(start, observer.form.coordinates),
+        hold,
+        motion,
+        step,
+        tolerance,
+        after,
+        tuple(coordinates),
+        choose(language, steps),
+        len(several) == 1 and not {"noise", "dropout"} & set(over or {}),
+    )
+    _refuse_values(plan, grid)
+    said = settings(plan, grid)
+    kept = np.zeros((grid.runs, len(plan.statistics)))
+    keep = None if store is None else Store(store, said, kept, chunk)
+    fill(plan, grid, kept, chunk, client, keep)
+    found = dataset(plan, grid, kept, names, said)
+    if keep:
+        keep.finish(found)
+    return found
+
+
+def _refuse_values(plan: Plan, grid: Grid) -> None:
+    """Refuse what no run could be made of, before any begins."""
+    scenario, camera, observer = plan.scenario, plan.camera, plan.observer
+    values = {name: column for name, (_, column) in grid.columns.items()}
+    refuse_gains(observer, values)
+    for name in set(values) & set(CAMERA):
+        for value in np.unique(values[name]).tolist():
+            camera_with(camera, {name: value}).times(plan.duration)
+    shape = sorted({symbol.name for symbol in scenario.surface.values} & set(values))
+    if shape and observer.form.values:
+        raise DoesNotFit(
+            f"{', '.join(shape)} of the surface cannot vary, for the {observer.name} observer was derived with numbers "
+            "for the surface; derive it for the surface with symbols"
+        )
+    plan.believed.known(np.array([0.0, plan.duration]))
+    if camera.field_of_view < 2 * math.pi:
+        raise ValueError("an ensemble knows no field of view; leave it out of the camera, or give it a reach")
+    short = min(camera.period, plan.step)  # the point need not stay in front of the camera for longer
+    first = record(scenario, short, replace(camera, period=short))
+    run = track(first, observer, plan.start, plan.hold, plan.believed, plan.step, "python")
+    run.outcome(plan.tolerance, *plan.coordinates)
+    if not 0 <= plan.after <= plan.duration:
+        raise ValueError(f"after is {plan.after} s; errors count from then on, within the {plan.duration} s of a run")

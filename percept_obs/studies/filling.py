@@ -1,0 +1,111 @@
+"""An ensemble, part by part: on the threads of this machine or on a cluster, kept in a store while it goes on."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from percept_obs.border import warn
+from percept_obs.compile import Array
+from percept_obs.studies.part import NOT_RUN, Plan
+from percept_obs.studies.varying import Grid
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Unfinished(UserWarning):
+    """An ensemble was interrupted; the runs that are missing have the status "not_run"."""
+
+
+class Store:
+    """A Zarr store in which an ensemble is kept as far as it is done.
+
+    Parameters
+    ----------
+    path : path
+    said : mapping
+        Settings of the ensemble.
+    kept : array of shape (number of runs, number of statistics)
+        Gets what a store that was left behind holds.
+    chunk : int
+        Runs that are written together.
+
+    Raises
+    ------
+    ValueError
+        If the store holds something else.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], said: dict[str, Any], kept: Array, chunk: int) -> None:
+        import zarr
+
+        self.path = path
+        group = zarr.open_group(os.fspath(path), mode="a")
+        known = group.attrs.get("fingerprint")
+        if known not in (None, said["fingerprint"]) or (known is None and len(list(group))):
+            raise ValueError(
+                f"the store {os.fspath(path)} holds something else than this ensemble; name a new one, or call with "
+                "the settings that it was begun with"
+            )
+        if known is None:
+            group.create_array("progress/runs", shape=kept.shape, chunks=(chunk, kept.shape[1]), dtype=float)
+            group.attrs["fingerprint"] = said["fingerprint"]
+        self.runs: Any = group["progress/runs"]
+        kept[:] = self.runs[:]
+
+    def keep(self, begin: int, found: Array) -> None:
+        """Write what is known of the runs from one on."""
+        self.runs[begin : begin + len(found)] = found
+
+    def finish(self, found: xr.Dataset) -> None:
+        """Write the whole."""
+        found.to_zarr(os.fspath(self.path), mode="a", consolidated=False)
+
+
+def fill(plan: Plan, grid: Grid, kept: Array, chunk: int, client: Any = None, store: Store | None = None) -> None:
+    """Compute the runs that are not kept yet.
+
+    Parameters
+    ----------
+    plan : Plan
+    grid : Grid
+    kept : array of shape (number of runs, number of statistics)
+    chunk : int
+        Runs of a part.
+    client : distributed.Client, optional
+        Whose workers compute; what a worker that dies had begun, Dask gives to another one.
+    store : Store, optional
+
+    Warns
+    -----
+    Unfinished
+        If it was interrupted.
+    """
+    from tqdm.auto import tqdm
+
+    left = kept[:, 0] == NOT_RUN
+    parts = [np.arange(begin, min(begin + chunk, len(kept))) for begin in range(0, len(kept), chunk)]
+    todo = [part for part in parts if left[part].any()]
+    if client is None:
+        plan.prepare(grid.columns)
+    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(os.cpu_count())
+    begun: dict[Future[Array], int] = {}
+    with tqdm(total=len(kept), initial=int((~left).sum()), desc="runs", unit="run", delay=2, leave=False) as bar:
+        try:
+            begun |= {executor.submit(plan.compute, grid.part(part)): int(part[0]) for part in todo}
+            for future in as_completed(begun):
+                begin, found = begun.pop(future), future.result()
+                kept[begin : begin + len(found)] = found
+                if store:
+                    store.keep(begin, found)
+                bar.update(len(found))
+        except KeyboardInterrupt:
+            warn(Unfinished(f"interrupted: {int((kept[:, 0] == NOT_RUN).sum())} of {len(kept)} runs are missing"))
+        finally:
+            for future in begun:
+                future.cancel()
+            executor.shutdown()
