@@ -5,7 +5,7 @@ import re
 
 import pytest
 from lab_alone import DRAWN, opened, stated_policy
-from lab_browser import assert_equals_python, control, rested, state
+from lab_browser import UNFOLD, assert_equals_python, control, rested, state
 from sample_sizes import sampled
 
 from percept_obs.labs import observer_lab, points_lab
@@ -118,6 +118,7 @@ def memory_of(page):
 def test_under_the_stated_policy_a_worker_computes_what_python_computes(browser):
     page = with_worker(browser, observer_lab(observers=["identifier_based", "extended_kalman"], duration=10.0))
     page.evaluate(COUNT)
+    page.evaluate(UNFOLD)
     page.fill(control("duration number"), "8")
     page.check(control("observer de_luca"))
     page.click(control("keep"))
@@ -137,6 +138,7 @@ def test_where_a_policy_forbids_workers_the_page_computes(browser):
     page.evaluate(TOUCH)
     rested(page)
     page.wait_for_function("() => window.refused.length")
+    page.evaluate(UNFOLD)
     page.fill(control("duration number"), "8")
     rested(page)
     assert not page.evaluate(BESIDE)

@@ -8,7 +8,7 @@ import sys
 import pytest
 from jupyter_harness import NOTEBOOKS
 from lab_alone import DRAWN as SHOWN
-from lab_browser import assert_equals_python, control, state
+from lab_browser import UNFOLD, assert_equals_python, control, state
 from lab_settings import ALL, KEYS
 
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
@@ -60,6 +60,7 @@ def page(chromium, saved):
         page = browser.new_page(offline=True)
         page.evaluate(SHOW, saved)
         page.wait_for_function(DRAWN)
+        page.evaluate(UNFOLD)
         yield page
         browser.close()
 

@@ -230,6 +230,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(page):
     opening = state(page)
     assert "after 1.91 s" in opening["verdicts"][0]
 
+    page.click(control("topic point"))
     page.select_option(control("scenario"), "ma2005_eq36")
     rested(page)
     assert "after 2.42 s" in state(page)["verdicts"][0]

@@ -19,6 +19,7 @@ from lab_settings import FRONT
 from points_settings import as_array
 
 from percept_obs.labs.points.lab import points_lab, run_of
+from percept_obs.labs.points.settings import MOST_POINTS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -142,20 +143,20 @@ def test_a_key_changes_the_depth_and_keeps_the_image(fresh):
 
 def test_points_are_added_and_removed(fresh):
     add = fresh.locator(control("add point")).first
-    for _ in range(5):
+    for _ in range(MOST_POINTS - 3):
         add.click()
     assert add.is_disabled()
     rested(fresh)
-    eight = state(fresh)
-    assert len(eight["settings"]["points"]) == 8
-    assert_equals_python(eight)
-    for _ in range(7):
+    most = state(fresh)
+    assert len(most["settings"]["points"]) == MOST_POINTS
+    assert_equals_python(most)
+    for _ in range(MOST_POINTS - 1):
         fresh.locator(control("remove 1")).first.click()
     assert fresh.locator(control("remove 1")).first.is_disabled()
     rested(fresh)
     one = state(fresh)
     assert len(one["settings"]["points"]) == 1
-    assert len(one["estimate"]) * 8 == len(eight["estimate"])
+    assert len(one["estimate"]) * MOST_POINTS == len(most["estimate"])
     assert_equals_python(one)
 
 

@@ -25,9 +25,9 @@ export function constantPath(start, rates, grid, index, points) {
     if (!(Math.abs(time - step.time) <= 4 * Number.EPSILON * end)) step = stepOf(time, size, rates, term);
     const m = step.rows;
     const [a, b, c] = [x, y, z];
-    x = m[0] * a + m[1] * b + m[2] * c + m[3];
-    y = m[4] * a + m[5] * b + m[6] * c + m[7];
-    z = m[8] * a + m[9] * b + m[10] * c + m[11];
+    x += m[0] * a + m[1] * b + m[2] * c + m[3];
+    y += m[4] * a + m[5] * b + m[6] * c + m[7];
+    z += m[8] * a + m[9] * b + m[10] * c + m[11];
     if (!(x * x + y * y + z * z < LARGEST_SQUARED_STATE)) break;
     points[3 * k - 3] = x;
     points[3 * k - 2] = y;
@@ -36,34 +36,34 @@ export function constantPath(start, rates, grid, index, points) {
   return points;
 }
 
-/** Where a time leads: the rows of a matrix and beside it those of a vector, from what becomes of 0 and the unit vectors. */
+/**
+ * What a time adds to a position: the rows of a matrix and beside it those of a vector, from what is added to 0 and to the
+ * unit vectors.  The position itself is left out, since its rounding would add up over the steps.
+ */
 function stepOf(time, size, rates, term) {
   const pieces = Math.max(1, Math.ceil((size * time) / REACH));
   const still = Float64Array.from(rates, (value, at) => (at % 4 === 3 ? 0 : value));
   const rows = new Float64Array(12);
   for (let c = 0; c < 4; c++) {
-    const x = Float64Array.of(0, 0, 0);
-    if (c < 3) x[c] = 1;
-    for (let piece = 0; piece < pieces; piece++) advance(x, term, c < 3 ? still : rates, time / pieces);
-    for (let i = 0; i < 3; i++) rows[4 * i + c] = x[i];
+    const added = new Float64Array(3);
+    for (let piece = 0; piece < pieces; piece++) advance(added, c, term, c < 3 ? still : rates, time / pieces);
+    for (let i = 0; i < 3; i++) rows[4 * i + c] = added[i];
   }
   return { time, rows };
 }
 
-/** x + h (A x + b) + h^2/2 A (A x + b) + ... */
-function advance(x, term, rates, time) {
-  let [a, b, c] = x;
+/** Add h (A x + b) + h^2/2 A (A x + b) + ... to what was added, where x is that and the unit vector `c`, or 0 for 3. */
+function advance(added, c, term, rates, time) {
+  let [u, v, w] = [0, 1, 2].map((i) => added[i] + (i === c ? 1 : 0));
   let constant = 1;
   for (let k = 1; k <= TERMS; k++) {
     const share = time / k;
     for (let i = 0; i < 3; i++) {
       const row = 4 * i;
-      term[i] = share * (rates[row] * a + rates[row + 1] * b + rates[row + 2] * c + constant * rates[row + 3]);
+      term[i] = share * (rates[row] * u + rates[row + 1] * v + rates[row + 2] * w + constant * rates[row + 3]);
     }
     constant = 0;
-    [a, b, c] = term;
-    x[0] += a;
-    x[1] += b;
-    x[2] += c;
+    [u, v, w] = term;
+    for (let i = 0; i < 3; i++) added[i] += term[i];
   }
 }
