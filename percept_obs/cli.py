@@ -10,6 +10,7 @@ from importlib import resources, util
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 from percept_obs.border import write_whole
 from percept_obs.exercises import COPIES
@@ -69,17 +70,17 @@ def lab(options: argparse.Namespace) -> int:
 
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
-    from percept_obs.site import SiteFault, build, missing
+    from percept_obs.border import needed
+    from percept_obs.site import NEEDS, SiteFault, build
 
-    if lacking := missing():
-        return _complain(f"get {', '.join(lacking)} first: {sys.executable} -m pip install {' '.join(lacking)}", 1)
     if options.directory.exists() and not options.directory.is_dir():
         return _complain(f"{options.directory} is a file; name a folder, or a new one", 2)
     found = sorted((entry for entry in notebooks().iterdir() if entry.name.endswith(".ipynb")), key=lambda e: e.name)
     copies = {entry.name: COPIES[options.readers](json.loads(entry.read_bytes())) for entry in found}
     try:
+        needed("site", *NEEDS)
         build(options.directory, copies)
-    except (SiteFault, OSError) as error:
+    except (SiteFault, OSError, ModuleNotFoundError) as error:
         return _complain(str(error), 1)
     return 0
 
@@ -155,7 +156,7 @@ def sweep(options: argparse.Namespace) -> int:
         if options.scheduler:
             from distributed import Client
 
-            connected = Client(options.scheduler)
+            connected: Any = Client(options.scheduler)
         else:
             connected = nullcontext()
         with connected as client:

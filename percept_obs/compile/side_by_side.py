@@ -14,8 +14,9 @@ from percept_obs.compile.arrays import Array, Indices
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.kernels import Language
-from percept_obs.compile.lanes import COUNTED, LANES, Moving, Watched, lanes_source
+from percept_obs.compile.lanes import COUNTED, LANES, Moving, lanes_source
 from percept_obs.compile.machine_code import machine_code
+from percept_obs.compile.watched import Watched
 
 _MAKING = Lock()
 

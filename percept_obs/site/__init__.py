@@ -10,7 +10,6 @@ import shutil
 import tempfile
 from collections.abc import Callable, Mapping
 from importlib import resources
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +18,10 @@ from percept_obs.papers import NAMED, Ledger
 from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
-__all__ = ["SiteFault", "build", "missing"]
+__all__ = ["NEEDS", "SiteFault", "build"]
 
-NEEDS = {
-    "sphinx": "sphinx",
-    "myst_nb": "myst-nb",
-    "furo": "furo",
-    "latex2mathml": "latex2mathml",
-    "nbclient": "nbclient",
-}
-"""Packages of the extra "site", by the modules that are imported."""
+NEEDS = ("sphinx", "myst_nb", "furo", "latex2mathml", "nbclient")
+"""Modules of the extra "site"."""
 
 TEXTS = resources.files("percept_obs.site") / "texts"
 SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in ("labs.js", "alone.js"))
@@ -53,11 +46,6 @@ SETTINGS = {
     "autodoc_typehints": "none",
     "add_module_names": False,
 }
-
-
-def missing() -> list[str]:
-    """Packages of the extra "site" that are not installed."""
-    return [package for module, package in NEEDS.items() if find_spec(module) is None]
 
 
 def build(

@@ -9,7 +9,8 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array
-from percept_obs.compile.lanes import COUNTED, Moving, Watched
+from percept_obs.compile.lanes import COUNTED, Moving
+from percept_obs.compile.watched import Watched
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.system.surfaces import POINT, ImagingSurface

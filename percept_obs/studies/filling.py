@@ -44,7 +44,7 @@ class Store:
         import zarr
 
         self.path = path
-        group = zarr.open_group(os.fspath(path), mode="a")
+        group: Any = zarr.open_group(os.fspath(path), mode="a")
         known = group.attrs.get("fingerprint")
         if known not in (None, said["fingerprint"]) or (known is None and len(list(group))):
             raise ValueError(
