@@ -92,6 +92,7 @@ def test_machine_code_says_the_same(make):
         assert_array_equal(fast[name], slow[name])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hold", ["zero", "first", "exact"])
 def test_true_and_believed_motion_and_surface_vary(hold):
     surface = SURFACES["plane"]
@@ -159,6 +160,7 @@ def test_coordinates_are_judged_when_they_are_asked_for():
     assert found.judged.item() == pytest.approx(outcome.final)
 
 
+@pytest.mark.slow
 def test_it_keeps_names_units_and_settings_in_files(tmp_path):
     found = ensemble(EQ35, ekf(BOTH), {"b1": [0.4, 0.5], "start_y3": [0.2]}, 2, 1.0, NOISY)
     assert {name: found[name].attrs["units"] for name in ("b1", "start_y3", "settling_time", "rms")} == {

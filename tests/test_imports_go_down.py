@@ -201,6 +201,7 @@ def complaints(folder, path, text):
     return [line for rule in RULES for line in rule(package)]
 
 
+@pytest.mark.slow
 def test_importing_the_package_loads_nothing_heavy_that_may_wait():
     wait = {"numba", "anywidget", "ipywidgets", "matplotlib", "pandas", "scipy"}
     program = f"import sys, percept_obs; print(*sorted({wait} & set(sys.modules)))"

@@ -220,6 +220,7 @@ VARYING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("kind", VARYING)
 def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(kind, node):

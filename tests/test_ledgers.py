@@ -170,6 +170,7 @@ def test_entries_show_themselves_as_latex(known):
         assert entry._repr_latex_().startswith(r"$\displaystyle \begin{gathered}")
 
 
+@pytest.mark.slow
 @each_paper
 def test_a_ledger_is_a_table_with_all_formulas_and_entries_show_all_their_parts(known):
     ledger = known.ledger

@@ -29,6 +29,7 @@ def test_the_noise_is_found_and_a_doubt_that_nothing_speaks_for_is_none():
     assert found.log_likelihood == log_likelihood([follow(each, found.observer) for each in RECORDINGS])
 
 
+@pytest.mark.slow
 def test_an_edge_is_said():
     found = tune_by_likelihood(RECORDINGS[:1], ekf(BOTH), {"noise_variance": (1e-3, 1e-2)}, follow)
     assert found.at_edge == ("noise_variance",)

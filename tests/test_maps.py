@@ -131,6 +131,7 @@ def test_the_figure_refuses_what_is_no_map():
         figures.bound_map(bound_map(SYSTEM, resolution=3), threshold=0)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize(
     ("surface", "measured"), [(pinhole(), ("y1", "y2")), (sphere(), ("y1",)), (plane((0.1, -0.2, 0.9)), ("y1", "y2"))]

@@ -234,6 +234,7 @@ def test_perturbed_runs_give_the_gramian_of_the_linearised_system(form):
     assert np.abs(wide.matrices - runs.matrices).max() > 1e-2
 
 
+@pytest.mark.slow
 def test_without_a_canonical_form_the_other_measures_speak():
     surface = ON_SPHERE.surface
     recording = record(scenarios.ma2005_eq35(surface), 4, CAMERA)

@@ -124,6 +124,7 @@ def test_the_input_decides_at_equal_a():
     assert max(abs(least[0]), abs(least[1])) < 1e-9 < 1e-3 < least[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 2])
 def test_where_14_holds_the_pair_is_uniformly_observable(points):
     """Proposition 3.3 with its constant."""

@@ -191,6 +191,7 @@ def test_a_body_starts_on_its_rays_and_later_points_on_theirs():
     np.testing.assert_allclose(run.state[first, :3], before.state[first, :3], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_sample_is_believed_for_so_long():
     """A camera that stops: held for ever its last image misleads, believed for a while it does not."""
     whole = turning(1, 8.0)

@@ -212,6 +212,7 @@ def test_motion_that_is_asked_for_too_early_is_refused_by_any_clock(begin):
             signal.at([wrong])
 
 
+@pytest.mark.slow
 def test_a_start_from_the_first_sample_is_as_uncertain_as_the_sample():
     """The normalised error squared is 1 an output at the start, and no innovation is counted twice."""
     sigma, errors, second = 0.01, [], []
@@ -254,6 +255,7 @@ def test_without_a_truth_no_observer_is_trusted_before_a_camera_at_rest(make, ca
         assert "do not trust" in run.verdict()
 
 
+@pytest.mark.slow
 def test_without_a_truth_nobody_is_trusted_at_a_millimetre_a_second():
     recording = blind(record(SLOW, camera=NOISY, seed=0))
     for make in OBSERVERS:
@@ -272,6 +274,7 @@ def test_least_squares_near_the_focus_of_expansion_are_not_trusted():
     assert trust.information is None or 2 * trust.information.deviation > TOLERANCE
 
 
+@pytest.mark.slow
 def test_a_good_estimate_is_trusted_for_points_and_structure_too():
     points = blind(record(moving_body(2), 15, Camera(0.05, Uniform(0.001)), seed=1))
     good, bad = (
