@@ -123,6 +123,7 @@ def test_a_text_in_the_settings_cannot_end_the_script():
 
 
 def test_a_formula_is_written_for_the_browser():
+    pytest.importorskip("latex2mathml", reason="get it with: python -m pip install 'percept-obs[site]'")
     assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
 
 
