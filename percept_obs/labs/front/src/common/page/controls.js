@@ -57,6 +57,11 @@ function fits(value, { least = -Infinity, most = Infinity, above = -Infinity, wh
   return !(whole && !Number.isInteger(value)) && !(nonzero && value === 0) && (!allowed || allowed(value));
 }
 
+/** Whether somebody is typing what cannot be taken: it stays to be mended, whatever is computed meanwhile. */
+function isBeingTyped(field) {
+  return document.activeElement === field && field.getAttribute("aria-invalid") === "true";
+}
+
 /** `meaning` says in small letters what the name stands for. */
 export function slider({ name, label, meaning = "", letter = "", low, high, step, log = false, unit = "", get, set, rest, ...limits }) {
   const id = `percept-${++count}`;
@@ -85,6 +90,7 @@ export function slider({ name, label, meaning = "", letter = "", low, high, step
   field.addEventListener("input", () => field.value !== "" && take(Number(field.value)));
   field.addEventListener("change", () => {
     const good = field.getAttribute("aria-invalid") !== "true";
+    field.setAttribute("aria-invalid", "false");
     show();
     refused.tell(good);
     rest?.();
@@ -93,7 +99,7 @@ export function slider({ name, label, meaning = "", letter = "", low, high, step
   const show = () => {
     const value = get();
     // Writing to a page costs its styles and layout, so nothing is written that is there already.
-    if (value === last && field.value === shown(value)) return;
+    if (value === last && (field.value === shown(value) || isBeingTyped(field))) return;
     last = value;
     row.hidden = value === undefined;
     if (row.hidden) return;
@@ -171,6 +177,7 @@ export function grid({ name, label, rows, columns, step, names, get, set, rest, 
       if (good) set(k, value);
     });
     field.addEventListener("change", () => {
+      field.setAttribute("aria-invalid", "false");
       show();
       rest?.();
     });
@@ -178,11 +185,15 @@ export function grid({ name, label, rows, columns, step, names, get, set, rest, 
   });
   const block = element("div", { class: "grid", style: `--columns: ${columns}`, "data-rows": rows }, ...fields);
   const row = element("div", { class: "control block", role: "group", "aria-label": label }, element("span", {}, label), block, refused.node);
+  let last = /** @type {number[]} */ ([]);
   const show = () => {
     const values = get();
     row.hidden = !values;
+    const before = last;
+    last = values ? [...values] : [];
     values?.forEach((value, k) => {
       if (Number(fields[k].value) === value && fields[k].value !== "") return;
+      if (value === before[k] && isBeingTyped(fields[k])) return;
       fields[k].value = String(value);
       fields[k].setAttribute("aria-invalid", "false");
     });
