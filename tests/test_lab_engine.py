@@ -19,7 +19,7 @@ from utias_folder import utias_folder
 from percept_obs.labs.observer.lab import observer_lab, runs
 from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS
 from percept_obs.labs.shared.printed import part
-from percept_obs.observability import windowed
+from percept_obs.observability import cramer_rao, windowed
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.surfaces import BehindCamera
 
@@ -48,6 +48,41 @@ def test_smooth_observers_agree_to_1e_9(lab, answers, case):
         assert_same_recording(answer, run.recording)
         assert_same_run(answer["runs"][name], run, 1e-9)
         assert answer["summary"]["verdicts"][name] == run.verdict()
+
+
+BOUND_CASES = {
+    "both outputs": {"dropout": 0.1, "duration": 20.0},
+    "y1 alone, another belief": {"outputs": ["y1"], "believed": {"A": np.eye(3).tolist(), "b": [0.1, 0.2, 0.3]}},
+    "Gaussian noise, y2 alone": {"outputs": ["y2"], "noise": {"kind": "gaussian", "size": 0.005}, "period": 0.05},
+    "long intervals": {"period": 0.037, "dropout": 0.3},
+    "a motion that varies": {"motion": "a12 = 0.4 cos(2t); b3 = b3 + 0.1 sin(t)", "period": 0.037},
+    "the point leaves": {"b": [0.5, 0.25, -0.9]},
+    "chained": {"surface": "chained"},
+    "plane": {"surface": "plane", "normal": PLANE, "outputs": ["y1"]},
+    "sphere": {"surface": "sphere", "observers": ["extended_kalman"]},
+    "unified": {"surface": "unified", "xi": 0.6},
+}
+
+
+def test_the_bound_is_that_of_cramer_rao(lab, node):
+    """In every case to 1e-9, with lost samples, intervals of several steps and motions that vary."""
+    shared = {"bound": ["error"], "noise": NOISY, "seed": 3, "duration": 10.0}
+    whole = [observer_lab(**{**shared, **case}).settings for case in BOUND_CASES.values()]
+    for settings in whole:
+        lab.settings = settings  # so that it writes a typed motion for the page
+    for settings, answer in zip(whole, run_in_node(node, lab, whole), strict=True):
+        lab.settings = settings
+        (run, *_) = lab.run().values()
+        least = cramer_rao(run.recording, run.observer.form).relative
+        np.testing.assert_allclose(np.array(answer["bound"], dtype=float), least, rtol=1e-9)
+        assert "bound = cramer_rao(recording, form)" in answer["code"]
+
+
+def test_where_there_is_no_bound_the_page_draws_none(lab, node):
+    whole = [observer_lab(**case).settings for case in ({"bound": ["error"]}, {"noise": NOISY})]
+    for answer in run_in_node(node, lab, whole):
+        assert answer["bound"] is None
+        assert "cramer_rao" not in answer["code"]
 
 
 @pytest.fixture(scope="module")

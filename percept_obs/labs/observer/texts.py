@@ -104,6 +104,9 @@ def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, .
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
+        "flow": function_source(
+            (*system.coordinates, *system.parameters), (*system.rate, *system.rate.jacobian(system.coordinates))
+        ),
     }
 
 

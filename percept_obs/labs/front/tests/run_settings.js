@@ -20,6 +20,7 @@ for (const settings of tasks) {
     answer.time = numbers(shown.time);
     answer.outputs = numbers(shown.outputs);
     answer.truth = numbers(shown.truth);
+    answer.bound = numbers(shown.bound);
     answer.excitation = numbers(shown.excitation.smallest);
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [

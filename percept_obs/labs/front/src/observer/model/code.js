@@ -31,6 +31,10 @@ export function pythonOf(shown, model) {
     return [name, way === Object.keys(model.observers[name].ways)[0] ? "" : `, switch="${way}"`];
   };
   lines.push(...trackings(settings, model, { makerOf, form: "form", options }));
+  if (shown.bound) {
+    names.add("cramer_rao");
+    lines.push("bound = cramer_rao(recording, form)", 'print(f"least relative error at the end: {bound.relative[-1]:.3g}")');
+  }
   const ours = settings.observers.filter((name) => !model.own[name]);
   const wanted = { percept_obs: names, "percept_obs.observers": ours, ...brought.modules };
   const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
