@@ -16,6 +16,7 @@ import { PRESETS, settingsOf } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
+import { MapPicture } from "./page/map.js";
 import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
@@ -42,6 +43,7 @@ export class ObserverLab extends Live {
       onMove: (foe) => this.moveFoe(foe),
     });
     plane.frames = new Frames(this);
+    this.map = plane.map = new MapPicture(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
@@ -55,6 +57,10 @@ export class ObserverLab extends Live {
   focus() {
     const functions = this.kernels.of(this.settings);
     return functions ? focusOf(this.settings, functions, this.model) : null;
+  }
+
+  copy() {
+    return pythonOf(this.shown, this.model, this.map.found);
   }
 
   /** Why the bound is not drawn, though it is asked for. */
