@@ -19,7 +19,7 @@ function shadeOf(value) {
 }
 
 function opacityOf(shade) {
-  return (DARKEST * shade) / (SHADES - 1);
+  return (DARKEST * (shade + 1)) / SHADES;
 }
 
 export class MapPicture {
