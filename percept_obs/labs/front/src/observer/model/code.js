@@ -35,7 +35,7 @@ export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import
     names.add("cramer_rao");
     lines.push("bound = cramer_rao(recording, form)", 'print(f"least relative error at the end: {bound.relative[-1]:.3g}")');
   }
-  if (map) {
+  if (map?.relative.some(Number.isFinite)) {
     names.add("bound_map");
     const { seconds, distance, y1, y2, resolution, period, noiseVariance } = map;
     const measured = settings.outputs.map((o) => `"${o}", `).join("");
