@@ -50,6 +50,49 @@ def test_smooth_observers_agree_to_1e_9(lab, answers, case):
         assert answer["summary"]["verdicts"][name] == run.verdict()
 
 
+BOUND_CASES = {
+    "both outputs": {"dropout": 0.1, "duration": 20.0},
+    "y1 alone, another belief": {"outputs": ["y1"], "believed": {"A": np.eye(3).tolist(), "b": [0.1, 0.2, 0.3]}},
+    "Gaussian noise, y2 alone": {"outputs": ["y2"], "noise": {"kind": "gaussian", "size": 0.005}, "period": 0.05},
+    "long intervals": {"period": 0.037, "dropout": 0.3},
+    "a motion that varies": {"motion": "a12 = 0.4 cos(2t); b3 = b3 + 0.1 sin(t)", "period": 0.037},
+    "the point leaves": {"b": [0.5, 0.25, -0.9]},
+    "chained": {"surface": "chained"},
+    "plane": {"surface": "plane", "normal": PLANE, "outputs": ["y1"]},
+    "sphere": {"surface": "sphere", "observers": ["extended_kalman"]},
+    "unified": {"surface": "unified", "xi": 0.6},
+}
+
+
+@pytest.fixture(scope="module")
+def of_bound_cases(lab, node):
+    shared = {"bound": ["error", "map"], "noise": NOISY, "seed": 3, "duration": 10.0}
+    whole = [observer_lab(**{**shared, **case}).settings for case in BOUND_CASES.values()]
+    for settings in whole:
+        lab.settings = settings  # so that it writes a typed motion for the page
+    return dict(zip(BOUND_CASES, zip(whole, run_in_node(node, lab, whole), strict=True), strict=True))
+
+
+@pytest.mark.parametrize("case", BOUND_CASES)
+def test_the_bound_and_its_map_are_those_of_python(of_bound_cases, case):
+    """Copied code computes what the page draws, with lost samples, intervals of several steps, motions that vary."""
+    settings, answer = of_bound_cases[case]
+    names = {}
+    exec(answer["code"], names)
+    assert "cramer_rao(recording, form)" in answer["code"]
+    found, there = names["found"].relative.ravel(), as_array(answer["map"], 1).ravel()
+    np.testing.assert_allclose(there, found, rtol=1e-9)
+    np.testing.assert_allclose(answer["bound"], names["bound"].relative, rtol=1e-9)
+    assert names["found"].measured == tuple(settings["outputs"])
+
+
+def test_where_there_is_no_bound_the_page_draws_none(lab, node):
+    whole = [observer_lab(**case).settings for case in ({"bound": ["error"]}, {"noise": NOISY})]
+    for answer in run_in_node(node, lab, whole):
+        assert answer["bound"] is None
+        assert "cramer_rao" not in answer["code"]
+
+
 @pytest.fixture(scope="module")
 def of_every_structure(lab, node):
     """What the page says of all observers of every structure, with noise and losses, and of every switch."""

@@ -50,6 +50,7 @@ from percept_obs.labs.shared.sampling import (
 )
 from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
+from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
 from percept_obs.system.motion import Motion, affine
@@ -142,6 +143,7 @@ class ObserverLab(Lab):
             own=self._offer.for_the_page(),
             varies={n: VARIES.format("motion") for n, make in self._offer.observers.items() if make.constant_motion},
             pictures=PICTURES,
+            bound={"noise": {kind: make(1.0).variance for kind, make in NOISES.items()}, "hidden": HIDDEN_VARIANCE},
             **for_the_page(),
             judged=DISTANCE,
             remedy=REMEDY,

@@ -31,6 +31,7 @@ from percept_obs.recording import Scenario, scenarios
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 HOLDS = ("zero", "first", "exact")
 PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
+BOUND = ("error", "map")
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 
@@ -101,6 +102,14 @@ SCHEMA = Schema(
     window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW),
     threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD),
     pictures=Names(["distance", "error", "excitation"], PICTURES, label="Time charts", about="those that are shown"),
+    bound=Names([], BOUND, label="The bound", least=0, about="where the least error that the noise leaves is drawn"),
+    map=Group(
+        {
+            "seconds": Number(2.0, 0.1, 20, (0.5, 10), 0.5, label="map: seen for", unit="s"),
+            "distance": Number(5.0, 0.1, 1000, (1, 20), 0.5, label="map: distance at first", unit="m"),
+        },
+        about="of the points of the map of the bound, the seconds that they are seen and their distance at first",
+    ),
     kept=KEPT,
 )
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""

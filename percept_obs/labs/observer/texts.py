@@ -14,6 +14,7 @@ from percept_obs.labs.shared.brought import Maker, observers_for_the_page, of_an
 from percept_obs.labs.shared.markup import dotted, formula, markup
 from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts, Texts
+from percept_obs.observability.maps import map_kernel
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.recording.simulation import point_in_motion
@@ -94,16 +95,21 @@ def model_for_the_page() -> Texts:
 
 
 def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, ...]]) -> Texts:
-    """A surface: where a point is seen, and what may be measured of it."""
+    """A surface: where a point is seen, what may be measured of it, and how well that tells the distance."""
+    outputs = tuple(outputs)
     system = system_on(surface)
     shape = surface.parameters
     return {
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
-        "outputs": tuple(outputs),
+        "outputs": outputs,
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
+        "flow": function_source(
+            (*system.coordinates, *system.parameters), (*system.rate, *system.rate.jacobian(system.coordinates))
+        ),
+        "maps": {"+".join(names): map_kernel(surface, names).sources() for names in map(tuple, outputs)},
     }
 
 

@@ -48,6 +48,7 @@
  * @property {number[] | null} circle  its y1, y2 and radius, within which |w| is below the threshold
  * @property {number[][]} inside  when the image of the point is in it: begin and end
  * @property {Excitation | null} excitation
+ * @property {Float64Array | null} bound  the least relative error that the noise leaves, at each sample
  * @typedef {SharedResult & OfObserverLab} ObserverResult
  *
  * @typedef {object} OfStructureLab

@@ -1,6 +1,7 @@
 // Runs lab settings given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
 import { pythonOf } from "../src/observer/model/code.js";
+import { mapOf } from "../src/observer/model/bound_map.js";
 import { Engine } from "../src/observer/model/engine.js";
 import { loadHere } from "./load_here.js";
 import { Kernels } from "../src/observer/model/kernels.js";
@@ -16,10 +17,15 @@ for (const settings of tasks) {
   const shown = engine.run(settings, kernels.of(settings));
   const answer = { problem: shown.problem ?? null, summary: summaryOf(shown, 1, model) };
   if (!shown.problem) {
-    answer.code = pythonOf(shown, model);
+    const square = { centre: [0.5, 0.4], half: 0.75 };
+    const moving = engine.camera.motion(settings, kernels.of(settings));
+    const map = settings.bound.includes("map") ? mapOf(settings, kernels.of(settings), moving, square, 12, model) : null;
+    answer.map = map && numbers(map.relative);
+    answer.code = pythonOf(shown, model, map);
     answer.time = numbers(shown.time);
     answer.outputs = numbers(shown.outputs);
     answer.truth = numbers(shown.truth);
+    answer.bound = numbers(shown.bound);
     answer.excitation = numbers(shown.excitation.smallest);
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [

@@ -8,6 +8,7 @@ import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
+import { noBound } from "./model/bound.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, focusOf, translationTowards } from "./model/engine.js";
 import { Kernels, keyOf } from "./model/kernels.js";
@@ -15,6 +16,7 @@ import { PRESETS, settingsOf } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
+import { MapPicture } from "./page/map.js";
 import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
@@ -27,7 +29,8 @@ export class ObserverLab extends Live {
   constructor(widget, place, model) {
     super(widget, model, {
       ...{ words: WORDS, presets: PRESETS, settingsOf },
-      ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf, causesOf },
+      reasons: (shown) => [...reasons(shown, model), ...this.unbound(shown.settings)],
+      ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, readingAt, summaryOf, pythonOf, causesOf },
     });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
@@ -40,6 +43,7 @@ export class ObserverLab extends Live {
       onMove: (foe) => this.moveFoe(foe),
     });
     plane.frames = new Frames(this);
+    this.map = plane.map = new MapPicture(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
@@ -53,6 +57,21 @@ export class ObserverLab extends Live {
   focus() {
     const functions = this.kernels.of(this.settings);
     return functions ? focusOf(this.settings, functions, this.model) : null;
+  }
+
+  copy() {
+    return pythonOf(this.shown, this.model, this.map.found);
+  }
+
+  /** Why the bound is not drawn, though it is asked for. */
+  unbound(settings) {
+    const why = settings.bound.length ? noBound(settings, this.model) : "";
+    return why ? [why] : [];
+  }
+
+  legend() {
+    const { bound, settings } = this.shown;
+    return [...super.legend(), ...(bound && settings.pictures.includes("error") ? [["limit", "bound"]] : [])];
   }
 
   moveFoe(place) {

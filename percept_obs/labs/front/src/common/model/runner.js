@@ -44,7 +44,7 @@ export class Runner {
 
   /** The run of an observer, made anew if settings have changed that it depends on; those of other observers have not. */
   unlessKept(name, settings, make) {
-    const { gains, switches, observers: _observers, pictures: _pictures, window: _window, threshold: _threshold, kept: _kept, ...seen } = settings;
+    const { gains, switches, observers: _observers, pictures: _pictures, window: _window, threshold: _threshold, kept: _kept, bound: _bound, map: _map, ...seen } = settings;
     return this.memory.once(`run of ${name}`, [seen, gains[name], switches?.[name]], make);
   }
 

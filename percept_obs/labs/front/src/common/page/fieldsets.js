@@ -90,12 +90,12 @@ export class Fieldsets {
     return this.add(radios(this.bound(place, true, more)));
   }
 
-  /** How to read and change whether a name is among those at a place, of which one stays. */
-  among(place, all, name, refusal) {
+  /** How to read and change whether a name is among those at a place, of which one stays if there is a refusal. */
+  among(place, all, name, refusal = "") {
     const { lab } = this;
     const set = (on) => {
       const chosen = all.filter((n) => (n === name ? on : lab.settings[place].includes(n)));
-      if (chosen.length) lab.change({ [place]: chosen }, true);
+      if (chosen.length || !refusal) lab.change({ [place]: chosen }, true);
       else this.refuse(refusal);
     };
     return { get: () => lab.settings[place].includes(name), set };
@@ -103,11 +103,16 @@ export class Fieldsets {
 
   /** Boxes to tick for the charts. */
   pictures() {
-    const { label, choices } = this.schema.pictures;
+    return this.boxes("pictures", "picture", "At least one chart stays.");
+  }
+
+  /** Boxes to tick for the names at a place. */
+  boxes(place, called, refusal = "") {
+    const { label, choices } = this.schema[place];
     const all = Object.keys(choices);
     const boxes = all.map((name) => {
-      const bound = this.among("pictures", all, name, "At least one chart stays.");
-      return this.add(checkbox({ name: `picture ${name}`, label: choices[name], ...bound }));
+      const bound = this.among(place, all, name, refusal);
+      return this.add(checkbox({ name: `${called} ${name}`, label: choices[name], ...bound }));
     });
     return element("div", { class: "choices", role: "group", "aria-label": label }, ...boxes);
   }

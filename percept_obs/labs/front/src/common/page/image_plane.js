@@ -83,12 +83,15 @@ export class ImagePlane extends FramedImage {
     this.towardsOf = towardsOf;
     /** @type {any} the film behind the track, if there is one */
     this.frames = null;
+    /** @type {any} the map under the track, if there is one */
+    this.map = null;
   }
 
   draw(shown, ghost, cursor, theme) {
     const place = this.placeOf(shown);
     const inside = (pen, frame) => {
       this.frames?.draw(pen, frame, shown.settings, cursor);
+      this.map?.draw(pen, frame, this.square, shown, theme);
       this.trace(pen, frame, shown, ghost, cursor, theme);
     };
     const towards = this.towardsOf(shown);
@@ -124,7 +127,7 @@ export class ImagePlane extends FramedImage {
   }
 
   describe(shown) {
-    this.tell(imagePlaneInWords(shown));
+    this.tell([imagePlaneInWords(shown), this.map?.inWords(shown)].filter(Boolean).join(" "));
     this.handles[0].describe(this.towardsOf(shown) ? ", at infinity" : "");
   }
 }

@@ -39,7 +39,7 @@ export class Legend {
   pick(which) {
     const { theme } = this.lab;
     if (!theme) return;
-    const named = { truth: theme.ink, kept: theme.kept, fit: theme.lines[1], bound: theme.lines[2] };
+    const named = { truth: theme.ink, kept: theme.kept, fit: theme.lines[1], bound: theme.lines[2], limit: theme.warning };
     this.lab.pick(which === null ? null : (named[which] ?? theme.lines[which]));
   }
 }

@@ -1,5 +1,84 @@
 // The bound over the image, as percept_obs/observability/maps.py computes it and says what it means.
 
+import { LONGEST_STEP } from "../../common/model/integrator.js";
+import { stepper } from "../../common/model/runge_kutta.js";
+import { EACH, known, sampleTimes, withSteps, stepGrid } from "../../common/model/tables.js";
+import { variancesOf } from "./bound.js";
+
+/** Intervals between the samples that a map is computed with; together they tell as much as those of the camera. */
+const INTERVALS = 20;
+
+/**
+ * The bound over a square of the image, for points that are first seen there.
+ *
+ * @param {any} settings
+ * @param {any} functions
+ * @param {{motion: any, shape: number[]}} moving the motion, and the numbers of the surface's shape
+ * @param {{centre: number[], half: number}} square
+ * @param {number} resolution places along a side
+ * @param {any} model
+ */
+export function mapOf(settings, functions, { motion, shape }, { centre, half }, resolution, model) {
+  const { seconds, distance } = settings.map;
+  const { noise, hidden } = variancesOf(settings, model);
+  const period = seconds / INTERVALS;
+  const noiseVariance = (noise * (INTERVALS + 1)) / sampleTimes(settings.period, seconds).length;
+  const [y1, y2] = centre.map((c) => [c - half, c + half]);
+  const along = (ends, k) => placeAlong(ends, resolution, k);
+  const points = new Float64Array(3 * resolution * resolution);
+  const seen = new Float64Array(2 + shape.length);
+  const out = new Float64Array(3);
+  seen.set(shape, 2);
+  for (let i = 0; i < points.length / 3; i++) {
+    seen[0] = along(y1, i % resolution);
+    seen[1] = along(y2, Math.floor(i / resolution));
+    functions.ray(seen, out);
+    for (let c = 0; c < 3; c++) points[3 * i + c] = out[c] * distance;
+  }
+  const times = Float64Array.from({ length: INTERVALS + 1 }, (_, k) => period * k);
+  const given = { points, ...displacements(motion, times), noiseVariance, hiddenVariance: hidden, shape };
+  return { y1, y2, resolution, seconds, distance, period, noiseVariance, relative: boundMap(functions, given) };
+}
+
+/** Where one of so many places along a side lies. */
+export function placeAlong(ends, resolution, k) {
+  return ends[0] + ((ends[1] - ends[0]) * k) / (resolution - 1);
+}
+
+/** The value of a map at the place that is nearest; NaN outside. */
+export function mapAt({ y1, y2, resolution, relative }, place) {
+  const [i, j] = [y1, y2].map(([low, high], c) => Math.round(((place[c] - low) / (high - low)) * (resolution - 1)));
+  return i >= 0 && i < resolution && j >= 0 && j < resolution ? relative[j * resolution + i] : NaN;
+}
+
+/** Phi and what is moved, of X(t) = Phi X(0) + moved at times from 0 on. */
+export function displacements(motion, times) {
+  const { grid, index, steps } = withSteps(stepGrid(times, LONGEST_STEP));
+  const { rows, width, varying } = known(motion, [], grid);
+  const step = stepper(12);
+  const state = Float64Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0); // rows of Phi, each with what is moved behind it
+  const Phi = new Float64Array(9 * times.length);
+  const moved = new Float64Array(3 * times.length);
+  let at = 0;
+  const rate = (instant, stage, out) => {
+    const row = varying ? (EACH * at + instant) * width : 0;
+    for (let i = 0; i < 3; i++) {
+      for (let j = 0; j < 4; j++) {
+        out[4 * i + j] = j === 3 ? rows[row + 9 + i] : 0;
+        for (let k = 0; k < 3; k++) out[4 * i + j] += rows[row + 3 * i + k] * stage[4 * k + j];
+      }
+    }
+  };
+  for (let k = 0; k < times.length; k++) {
+    for (; at < index[k]; at++) step(state, steps[at], rate);
+    for (let i = 0; i < 3; i++) {
+      for (let j = 0; j < 3; j++) Phi[9 * k + 3 * i + j] = state[4 * i + j];
+      moved[3 * k + i] = state[4 * i + 3];
+    }
+  }
+  return { Phi, moved };
+}
+
 /**
  * Least relative standard deviation of the distance of points, NaN where one comes behind the camera on the way.
  *

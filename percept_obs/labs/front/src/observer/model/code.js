@@ -5,7 +5,7 @@ import { switchOf } from "../../common/model/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../common/model/typed.js";
 
-export function pythonOf(shown, model) {
+export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import("./bound_map.js").mapOf> | null} */ (null)) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
@@ -31,6 +31,20 @@ export function pythonOf(shown, model) {
     return [name, way === Object.keys(model.observers[name].ways)[0] ? "" : `, switch="${way}"`];
   };
   lines.push(...trackings(settings, model, { makerOf, form: "form", options }));
+  if (shown.bound) {
+    names.add("cramer_rao");
+    lines.push("bound = cramer_rao(recording, form)", 'print(f"least relative error at the end: {bound.relative[-1]:.3g}")');
+  }
+  if (map?.relative.some(Number.isFinite)) {
+    names.add("bound_map");
+    const { seconds, distance, y1, y2, resolution, period, noiseVariance } = map;
+    const measured = settings.outputs.map((o) => `"${o}", `).join("");
+    lines.push(
+      ...["found = bound_map(", "    PerspectiveSystem(motion, scenario.surface),"],
+      `    ${seconds}, ${distance}, (${measured}), (${y1.join(", ")}), (${y2.join(", ")}), ${resolution}, ${period}, ${noiseVariance},`,
+      ...[")", "print(found)"],
+    );
+  }
   const ours = settings.observers.filter((name) => !model.own[name]);
   const wanted = { percept_obs: names, "percept_obs.observers": ours, ...brought.modules };
   const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";

@@ -6,6 +6,7 @@ import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
 import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { spansInside, windowed } from "./measures.js";
@@ -34,6 +35,7 @@ export class Engine extends Runner {
       tolerance: this.model.tolerance,
       judged: this.model.judged,
       runs: [],
+      bound: null,
       excitation: null,
       inside: [],
       whole: false,
@@ -48,6 +50,7 @@ export class Engine extends Runner {
       const follow = () => this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
       return this.unlessKept(name, settings, follow);
     });
+    result.bound = this.bound(settings, result, inputs, functions);
     return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
   }
 
@@ -69,6 +72,18 @@ export class Engine extends Runner {
     const of = settings.believed ?? (recorded ? "" : [A, b, text, scenario]);
     const table = memory.once("known", [clock, of, shape], () => known(believed, shape, lines.grid));
     return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]), settings.start.mode === "own");
+  }
+
+  /** The least relative error that the noise leaves, where it is drawn and there is one. */
+  bound(settings, result, { grid, index, steps, known: table }, functions) {
+    const { bound, pictures, noise, dropout, seed, outputs, believed } = settings;
+    if (!bound.includes("error") || !pictures.includes("error") || noBound(settings, this.model)) return null;
+    const { motion, shape } = this.camera.motion(settings, functions);
+    const told = [this.camera.placeOf(settings), outputs, noise, dropout, seed];
+    return this.memory.once("bound", told, () => {
+      const truly = believed ? known(motion, shape, grid) : table;
+      return boundOf(result, { steps, index }, truly, functions.flow, variancesOf(settings, this.model));
+    });
   }
 
   /** Of the distance, whose inverse is the last coordinate. */

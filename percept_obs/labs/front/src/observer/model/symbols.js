@@ -14,5 +14,6 @@ export const SYMBOLS = [
   ["innovation", "what is measured less what the observer expects"],
   ["injection", "the innovation, put back into the equations with a weight"],
   ["gain", "how strongly the innovation corrects the estimate"],
+  ["bound", "the Cramer-Rao bound: the least root mean square error that the noise of the samples leaves to any unbiased observer, which is one that is right on average"],
   ["hold", "what the observer takes for the outputs between two samples"],
 ];

@@ -1,7 +1,8 @@
 // Why it happened, in words.
 
 import { readable } from "../../common/model/scales.js";
-import { leavingInWords } from "../../common/model/words.js";
+import { leavingInWords, percent } from "../../common/model/words.js";
+import { noBound } from "./bound.js";
 import { varies } from "./camera.js";
 
 const UNEXCITED = 1e-4;
@@ -45,11 +46,26 @@ export function reasons(shown, model) {
   if (settings.noise.size > 0) {
     found.push("Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.");
   }
+  found.push(...boundInWords(shown));
+  if (settings.bound.includes("map") && !noBound(settings, model)) {
+    found.push(
+      "The darker a place of the image is shaded, the less any unbiased observer can know of the distance of a point that is first seen there. " +
+        "Where there is no shade, the point comes behind the camera.",
+    );
+  }
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
   if (settings.noise.size > 0 && measured.length === 1 && biased) {
     found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the estimate, it pushes it.");
   }
   return found;
+}
+
+/** What the bound is, and what it comes to. */
+function boundInWords({ settings, bound }) {
+  if (!bound) return [];
+  const left = Number.isFinite(bound.at(-1)) ? ` At the end it is ${percent(bound.at(-1), 2)} of the distance.` : "";
+  const uniform = settings.noise.kind === "uniform" ? " It is that of Gaussian noise of the same variance." : "";
+  return [`The dotted line is the bound: no unbiased observer has a smaller root mean square error; one run alone may be below it at times.${left}${uniform}`];
 }
 
 function leastOf({ time, smallest }) {

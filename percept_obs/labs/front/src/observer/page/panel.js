@@ -23,6 +23,7 @@ export const WORDS = {
       outputs: "image coordinates", inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
     },
   },
+  bound: { choices: { error: "bound under the error", map: "map of the bound in the image" } },
 };
 
 /** What the lab calls a setting when it says which have changed. */
@@ -30,7 +31,7 @@ export const NAMES = {
   motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A", b: "the translation b", X0: "where the point starts", surface: "the imaging surface",
   normal: "the normal", outputs: "what is measured", observers: "the observers", gains: "gains", switches: "how an observer switches",
   believed: "the motion that is believed", noise: "noise", dropout: "lost samples", hold: "what is held between samples",
-  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts",
+  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts", bound: "where the bound is drawn", map: "what the map is of",
 };
 
 export class Panel extends Fieldsets {
@@ -52,7 +53,7 @@ export class Panel extends Fieldsets {
         this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
       ),
       topic("start", "Start and belief", ...this.belief()),
-      topic("pictures", "Charts", this.pictures(), ...this.numbers("window", "threshold")),
+      topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...["map.seconds", "map.distance"].map((place) => this.numberIf(place, ({ bound }) => bound.includes("map"))), ...this.numbers("window", "threshold")),
     ];
     this.body = element("div", { class: "panel" }, ...body);
   }

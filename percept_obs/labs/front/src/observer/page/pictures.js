@@ -3,7 +3,7 @@
 import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
-import { SOLID } from "../../common/page/lines.js";
+import { BOUND, SOLID } from "../../common/page/lines.js";
 import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range", unified: "Distance Z + ξR" };
@@ -49,6 +49,7 @@ const BUILD = {
   error(shown, ghost, theme) {
     const [own, kept] = [shown, ghost].map((result) => (result?.truth ? result : null));
     const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
+    if (shown.bound) lines.push(line("bound", shown.time, shown.bound, theme.warning, BOUND));
     const title = `Relative error of ${shown.judged}; tolerance ${percent(shown.tolerance, 6)}`;
     return { title, lines, scale: decades(lines, 1e-6, 1e2, shown.tolerance), ...toleranceOf(shown, theme), marks: marksOf(shown, theme) };
   },
