@@ -29,7 +29,7 @@ WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style
 
 RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
-        && lab.link.waitingFor === null)"""
+        && lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings)"""
 
 STATE = """(which) => {
     const lab = [...window.perceptObsLabs][which];
@@ -64,14 +64,19 @@ def usable(page):
 
 
 def used_at_random(page, seed, wanted=frozenset(), count=EVENTS, most=20_000):
-    """Names of the controls that random events used, a few more where a wanted one is left; nothing goes wrong."""
+    """Names of the controls that random events used, a few more for the wanted ones that are left; nothing goes wrong."""
     used = set()
-    for more in (0, 1, 2, 3):
-        if not more or not wanted <= used:
-            page.evaluate(UNFOLD)  # a random event may have closed a topic
-            found = page.evaluate(FUZZ, [seed + 1000 * more, 100 if more else count, most])
-            assert found["wrong"] == [], found["wrong"]
-            used |= set(found["used"])
+    for more in range(4):
+        left = sorted(wanted - used) if more else []
+        if more and not left:
+            break
+        if more:
+            page.click(control("reset"))  # what could be used at the start can be used again
+            rested(page, 60)
+        page.evaluate(UNFOLD)  # a random event may have closed a topic
+        found = page.evaluate(FUZZ, [seed + 1000 * more, 100 if more else count, most, left])
+        assert found["wrong"] == [], found["wrong"]
+        used |= set(found["used"])
     rested(page, 60)
     return used
 

@@ -1,7 +1,7 @@
 // Random events over every control of a lab, the same for the same seed; what went wrong and what was used is returned.
-// Some of the events go to a control that was not used yet, so that all have their turn.  Now and then the lab may come to
+// Some of the events go to a control that was not used yet, of those that are wanted, so that all have their turn.  Now and then the lab may come to
 // rest, and then all that it shows must be what a fresh engine makes of its settings.
-async ([seed, count, most = 20000]) => {
+async ([seed, count, most = 20000, wanted = []]) => {
     const [lab] = window.perceptObsLabs;
     const { root } = lab.view;
     const wrong = [];
@@ -34,7 +34,8 @@ async ([seed, count, most = 20000]) => {
     function next() {
         const controls = [...root.querySelectorAll("[data-control]")];
         const usable = (control) => !control.disabled && control.checkVisibility();
-        const unused = (control) => !used.has(control.dataset.control) && usable(control);
+        const asked = (name) => !used.has(name) && (!wanted.length || wanted.includes(name));
+        const unused = (control) => asked(control.dataset.control) && usable(control);
         let control = (random() < 0.5 && controls.find(unused)) || pick(controls);
         while (!usable(control)) control = pick(controls);  // asking all takes long
         return control;

@@ -228,6 +228,11 @@ def bound_map(
             J += np.array(share) / noise_variance
             seen &= away > 0
         (relative,) = vectorised((*INFORMATION, *PLACE), [kernel.finish], values)(*J, *last)
+    if np.isnan(relative[seen]).any():
+        raise ValueError(
+            f"at a distance of {distance} m the images tell less than rounding takes away; take a shorter distance, more "
+            "seconds or a smaller noise_variance"
+        )
     relative = np.where(seen, relative, np.nan).reshape(resolution, resolution)
     if not np.isfinite(relative).any():
         raise ValueError(

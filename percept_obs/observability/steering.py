@@ -175,7 +175,11 @@ def steered(
     table = Table(np.full(count, step), np.empty((count, EACH + 1, 0)), np.array([fixed]), np.empty((count + 1, 0)))
     trace = solve(equations, [*scenario.position, *begin], table, [gain])
     if trace.diverged is not None:
-        raise ValueError(f"the steered motion leaves every bound after {trace.diverged * step:.3g} s; shorten it")
+        when = f"{trace.diverged * step:.3g} s"
+        raise ValueError(
+            f"steered with gain = {gain} the motion leaves every bound after {when}; take a smaller gain, or a shorter "
+            "duration of the scenario"
+        )
     rows = np.tile([motion.values[symbol] for symbol in motion.parameters], (count + 1, 1))
     rows[:, [motion.parameters.index(symbol) for symbol in found.velocity]] = trace.states[:, 3:]
     smooth = CubicSpline(step * np.arange(count + 1, dtype=float), rows)  # as a function of time it has no kinks

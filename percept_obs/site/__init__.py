@@ -45,6 +45,7 @@ SETTINGS = {
     "napoleon_google_docstring": False,
     "autodoc_typehints": "none",
     "add_module_names": False,
+    "suppress_warnings": ["ref.python"],  # the word "matrix" in a docstring is a word, not the name of an attribute
 }
 
 
