@@ -64,7 +64,7 @@ def usable(page):
 
 
 def used_at_random(page, seed, wanted=frozenset(), count=EVENTS, most=20_000):
-    """Names of the controls that random events used, a few more for the wanted ones that are left; nothing goes wrong."""
+    """Names of the controls that random events used, a few more for wanted ones that are left; nothing goes wrong."""
     used = set()
     for more in range(4):
         left = sorted(wanted - used) if more else []

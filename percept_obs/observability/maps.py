@@ -230,8 +230,8 @@ def bound_map(
         (relative,) = vectorised((*INFORMATION, *PLACE), [kernel.finish], values)(*J, *last)
     if np.isnan(relative[seen]).any():
         raise ValueError(
-            f"at a distance of {distance} m the images tell less than rounding takes away; take a shorter distance, more "
-            "seconds or a smaller noise_variance"
+            f"at a distance of {distance} m the images tell less than rounding takes away; take a shorter distance, "
+            "more seconds or a smaller noise_variance"
         )
     relative = np.where(seen, relative, np.nan).reshape(resolution, resolution)
     if not np.isfinite(relative).any():
