@@ -77,6 +77,7 @@ def used_at_random(page, seed, wanted=frozenset(), count=EVENTS, most=20_000):
         found = page.evaluate(FUZZ, [seed + 1000 * more, 100 if more else count, most, left])
         assert found["wrong"] == [], found["wrong"]
         used |= set(found["used"])
+    page.evaluate(UNFOLD)
     rested(page, 60)
     return used
 

@@ -113,7 +113,7 @@ def test_the_figure_names_its_best_and_worst_places():
         ({"y1": (1.0, -1.0)}, "the smaller one first"),
         ({"measured": ("y3",)}, "name at least one of y1, y2"),
         ({"period": 5e-324}, "lengthen the period"),
-        ({"distance": 1e308}, "no place of the image has a bound"),
+        ({"distance": 1e308}, "tell less than rounding takes away"),
         ({"resolution": 1}, "two places or more"),
         ({"resolution": 5000}, "lower the resolution"),
         ({"system": PerspectiveSystem(EQ35, plane((0.0, 0.0, 1.0), outputs=3))}, "a map is of two"),

@@ -228,7 +228,7 @@ def read_stereo_mat(path: str | os.PathLike[str]) -> StereoTracks:
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a MATLAB file of stereo tracks")
     try:
         recorded = loadmat(file, variable_names=(*SHAPES, LANDMARKS))
-    except (ValueError, TypeError, NotImplementedError, MatReadError, OSError, zlib.error) as error:
+    except (ValueError, TypeError, IndexError, NotImplementedError, MatReadError, OSError, zlib.error) as error:
         raise ValueError(
             f"the path names '{file}', which is no MATLAB file up to version 7 ({error}); save it with -v7"
         ) from None
