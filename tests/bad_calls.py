@@ -23,7 +23,6 @@ import sympy as sp
 import percept_obs as po
 from percept_obs import observers, points, structure
 from percept_obs.observability import (
-    bound_filter,
     empirical_gramian,
     error_gramian,
     gramian,
@@ -209,7 +208,6 @@ def calls():
         (lie_ranks, {"recording": recording, "system": form, "orders": 1}),
         (error_gramian, {"recording": recording, "system": form, "window": 1.0}),
         (empirical_gramian, {"recording": recording, "system": form, "window": 1.0, "perturbed": 1e-3}),
-        (bound_filter, {"system": form}),
         (
             po.bound_map,
             {"system": moving, "seconds": 1.0, "distance": 4.0, "measured": ("y1",), "y1": (-1, 1), "resolution": 4},

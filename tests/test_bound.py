@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from examples import AFFINE, BOTH, ON_SPHERE, ONE
-from javascript import solve_in_node
 from sample_sizes import sampled
 from scipy.linalg import cho_factor, cho_solve, expm
 
@@ -25,9 +24,6 @@ from percept_obs import (
     scenarios,
     track,
 )
-from percept_obs.compile import Table, solve
-from percept_obs.compile.integrator import EACH, step_grid
-from percept_obs.observability import bound_filter
 from percept_obs.observers import OBSERVERS
 
 CAMERA = Camera(0.05, Gaussian(0.01))
@@ -199,37 +195,6 @@ def test_the_bound_is_drawn_under_the_errors():
     other = cramer_rao(record(scenarios.ma2005_eq36(), 10, CAMERA), BOTH)
     with pytest.raises(ValueError, match="along another truth"):
         figures.runs_over_time(run, bound=other)
-
-
-def told_the_truth(form, variance=1e-4):
-    """What the bound as equations is run on: start, table and gains."""
-    recording = record(scenarios.ma2005_eq35(), 2, CAMERA)
-    observer = ekf(form, noise_variance=variance, measured_variance=0.01, hidden_variance=0.04)
-    equations, truth = bound_filter(form), recording.truth[:, [form.coordinates.index(s) for s in (*form.x1, *form.x2)]]
-    grid, index = step_grid(recording.time, 0.01)
-    samples = np.full((len(grid), 3), np.nan)
-    samples[index] = truth
-    held = np.zeros((len(grid) - 1, EACH + 1, 3))
-    table = Table(np.diff(grid), held, recording.motion.known(0.0), samples)
-    spread = [0.01] * len(form.x1) + [0.04] * len(form.x2)
-    start = [*truth[0], *np.diag(spread)[np.triu_indices(3)]]
-    return recording, equations, start, table, [gain.value for gain in observer.gains], index, spread
-
-
-@pytest.mark.parametrize("form", [BOTH, ONE], ids=["y1+y2", "y1"])
-def test_the_bound_as_equations_is_the_bound(form):
-    recording, equations, start, table, gains, index, spread = told_the_truth(form)
-    trace = solve(equations, start, table, gains)
-    prior = dict(zip(form.measured + form.hidden, spread, strict=True))
-    expected = cramer_rao(recording, form, prior, 1e-4).covariance[:, *np.triu_indices(3)]
-    np.testing.assert_allclose(trace.states[index, 3:], expected, rtol=1e-5, atol=1e-12)
-
-
-@pytest.mark.node
-def test_the_page_s_language_computes_the_same(node):
-    _, equations, start, table, gains, _, _ = told_the_truth(ONE)
-    here, there = solve(equations, start, table, gains), solve_in_node(node, equations, start, table, gains)
-    np.testing.assert_allclose(there.states, here.states, rtol=1e-9, atol=1e-12)
 
 
 def ratios(scenario, seeds, seconds, language):

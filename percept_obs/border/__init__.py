@@ -1,6 +1,6 @@
 """What comes in from outside: of which kind it must be, how a number becomes sympy's, and how much work is allowed."""
 
-from percept_obs.border.checking import WrongKind, checked, numbers, refuse_kind
+from percept_obs.border.checking import WrongKind, checked, numbers, positive, refuse_kind
 from percept_obs.border.expressions import derived, expression, expressions, matrix
 from percept_obs.border.files import write_whole
 from percept_obs.border.kinds import Coefficients, Entries, Kind, are_numbers
@@ -24,6 +24,7 @@ __all__ = [
     "matrix",
     "needed",
     "numbers",
+    "positive",
     "refuse_kind",
     "warn",
     "write_whole",

@@ -222,3 +222,17 @@ def _remedy(value: Any, kind: Any) -> str:
     example = next((EXAMPLES[name] for name in classes(kind) if name in EXAMPLES), "")
     named = next((k.example for k in (*getattr(kind, "__metadata__", ()),) if isinstance(k, Kind)), "")
     return f"pass for example {example or named}" if example or named else ""
+
+
+def positive(**values: float) -> None:
+    """Refuse numbers that are not positive and finite, each by its name.
+
+    Examples
+    --------
+    >>> positive(seconds=2.0, distance=0.0)
+    Traceback (most recent call last):
+    ValueError: distance is 0.0; it must be positive and finite
+    """
+    for name, value in values.items():
+        if not 0 < value < float("inf"):
+            raise ValueError(f"{name} is {value}; it must be positive and finite")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import sympy as sp
 
@@ -62,17 +62,8 @@ class _Rows:
         return f"work[{self.places.setdefault(name, len(self.places))}, i]"
 
 
-@lru_cache(maxsize=128)
-def lanes_source(
-    equations: Equations,
-    watched: Watched,
-    moving: Moving | None,
-    held: bool,
-    varying: bool,
-    alike: tuple[bool, bool],
-    language: Literal["numba", "numpy"],
-) -> str:
-    """Text of the loop over runs side by side.
+class LanesLoop(NamedTuple):
+    """What a loop over runs side by side is made for.
 
     Parameters
     ----------
@@ -84,8 +75,26 @@ def lanes_source(
         Whether outputs between samples come from an array; otherwise the last sample is held.
     varying : bool
         Whether the parameters vary over time.
-    alike : two bools
+    noises_alike, truths_alike : bool
         Whether the noise, and the truth, are the same in all lanes.
+    """
+
+    equations: Equations
+    watched: Watched
+    moving: Moving | None
+    held: bool
+    varying: bool
+    noises_alike: bool
+    truths_alike: bool
+
+
+@lru_cache(maxsize=128)
+def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
+    """Text of the loop over runs side by side.
+
+    Parameters
+    ----------
+    loop : LanesLoop
     language : "numba" or "numpy"
         For `LANES` lanes in machine code, or for any number of them as arrays.
 
@@ -94,10 +103,11 @@ def lanes_source(
     str
         A function of `ARGUMENTS`, described in `percept_obs.compile.side_by_side`, that fills `result`.
     """
+    equations, watched, moving, held, varying, noises_alike, truths_alike = loop
     text, rows = Text("lanes"), _Rows()
     formulas = Formulas(text, equations)
     n, m, parameters = len(equations.state), len(equations.measured), len(equations.parameters)
-    numba, (noises_alike, truths_alike) = language == "numba", alike
+    numba = language == "numba"
     watch = _Watch(formulas, watched, moving)
     inner = f"range({LANES})" if numba else "(slice(None),)"
 

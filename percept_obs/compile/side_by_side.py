@@ -14,7 +14,7 @@ from percept_obs.compile.arrays import Array, Indices
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.kernels import Language
-from percept_obs.compile.lanes import COUNTED, LANES, Moving, lanes_source
+from percept_obs.compile.lanes import COUNTED, LANES, LanesLoop, Moving, lanes_source
 from percept_obs.compile.machine_code import machine_code
 from percept_obs.compile.watched import Watched
 
@@ -109,13 +109,12 @@ def count(
     runs = len(lanes.start)
     result = np.empty((runs, len(COUNTED) + 2 * len(watched.means)))
     width = LANES if language == "numba" else max(runs, 1)
-    shape = (
-        lanes.held is not None,
-        lanes.known.shape[1] > 1,
-        (lanes.noises_alike, moving is None and lanes.truths_alike),
+    truths_alike = moving is None and lanes.truths_alike
+    held, varying = lanes.held is not None, lanes.known.shape[1] > 1
+    kernel = function_of(
+        LanesLoop(equations, watched, moving, held, varying, lanes.noises_alike, truths_alike), language
     )
-    kernel = loop_for(equations, watched, moving, *shape, language)
-    held = np.zeros((1, 1, 1, 1)) if lanes.held is None else lanes.held
+    outputs = np.zeros((1, 1, 1, 1)) if lanes.held is None else lanes.held
     shared = (lanes.noise, lanes.truth, lanes.known)
     rest = (lanes.lengths, lanes.arriving)
     last = (lanes.elapsed, lanes.reach, float(tolerance), late)
@@ -124,13 +123,13 @@ def count(
             part = slice(begin, begin + width)
             own: tuple[Array, ...] = (lanes.start[part], lanes.first[part], lanes.gains[part], lanes.moves[part])
             which, filled = lanes.which[part], result[part]
-            between = held if lanes.held is None else held[part]
+            between = outputs[part] if held else outputs
             if len(filled) < width:  # the last lanes stand twice, for all are always run
                 lack = width - len(filled)
                 own = tuple(np.pad(each, ((0, lack), (0, 0)), "edge") for each in own)
                 which = np.pad(which, ((0, lack), (0, 0)), "edge")
                 filled = np.empty((width, result.shape[1]))
-                between = between if lanes.held is None else np.pad(between, ((0, lack), *[(0, 0)] * 3), "edge")
+                between = between if not held else np.pad(between, ((0, lack), *[(0, 0)] * 3), "edge")
             kernel(*own, *shared, which, *rest, between, *last, filled)
             result[part] = filled[: runs - begin]
     return result
@@ -146,37 +145,19 @@ def seized(lanes: Lanes) -> Lanes:
     return replace(lanes, **changes)
 
 
-def loop_for(
-    equations: Equations,
-    watched: Watched,
-    moving: Moving | None,
-    held: bool,
-    varying: bool,
-    alike: tuple[bool, bool],
-    language: Language,
-) -> Callable[..., None]:
-    """The loop, made once even if several threads ask for it at the same time."""
+def function_of(loop: LanesLoop, language: Language) -> Callable[..., None]:
+    """The loop as a function, made once even if several threads ask for it at the same time."""
     with _MAKING:
-        return _loop(equations, watched, moving, held, varying, alike, language)
+        return _function_of(loop, language)
 
 
 @lru_cache(maxsize=128)
-def _loop(
-    equations: Equations,
-    watched: Watched,
-    moving: Moving | None,
-    held: bool,
-    varying: bool,
-    alike: tuple[bool, bool],
-    language: Language,
-) -> Callable[..., None]:
+def _function_of(loop: LanesLoop, language: Language) -> Callable[..., None]:
     if language == "python":
-        text = lanes_source(equations, watched, moving, held, varying, alike, "numpy")
+        text = lanes_source(loop, "numpy")
         return executed(text, math=np, np=np, where=np.where)
-    sheet, book, shelf = (f"float64[{':, ' * further}::1]" for further in range(1, 4))
-    line, index, indices = "float64[::1]", "intp[::1]", "intp[:, ::1]"
-    own, shared = ", ".join([sheet] * 4), ", ".join([book] * 3)
-    signature = f"({own}, {shared}, {indices}, {line}, {index}, {shelf}, {line}, float64, float64, intp, {sheet})"
-    return machine_code(
-        lanes_source(equations, watched, moving, held, varying, alike, "numba"), signature, of_lanes=True
-    )
+    one, two, three, four = (f"float64[{':, ' * further}::1]" for further in range(4))
+    index, indices = "intp[::1]", "intp[:, ::1]"
+    own, shared = ", ".join([two] * 4), ", ".join([three] * 3)
+    signature = f"({own}, {shared}, {indices}, {one}, {index}, {four}, {one}, float64, float64, intp, {two})"
+    return machine_code(lanes_source(loop, "numba"), signature, of_lanes=True)

@@ -1,7 +1,6 @@
 """What can be observed, in all its meanings, and how well at best."""
 
 from percept_obs.observability.bound import Bound, cramer_rao
-from percept_obs.observability.bound_filter import bound_filter
 from percept_obs.observability.efficiency import Efficiency, efficiency
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives, lie_ranks
@@ -22,7 +21,6 @@ __all__ = [
     "Measure",
     "Observability",
     "Steering",
-    "bound_filter",
     "bound_map",
     "cramer_rao",
     "efficiency",

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked, limit
+from percept_obs.border import checked, limit, positive
 from percept_obs.compile import Array, Printed, function_source, vectorised
 from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
@@ -192,15 +192,13 @@ def bound_map(
         raise ValueError(f"measured is {measured}; name at least one of {', '.join(names)}, each once")
     if len(names) != 2:
         raise ValueError(f"the {surface.name} has {len(names)} image coordinates; a map is of two")
-    for name, value in {
-        "seconds": seconds,
-        "distance": distance,
-        "period": period,
-        "noise_variance": noise_variance,
-        "hidden_variance": hidden_variance,
-    }.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} is {value}; it must be positive and finite")
+    positive(
+        seconds=seconds,
+        distance=distance,
+        period=period,
+        noise_variance=noise_variance,
+        hidden_variance=hidden_variance,
+    )
     for name, ends in {"y1": y1, "y2": y2}.items():
         if not (np.isfinite(ends).all() and ends[0] < ends[1]):
             raise ValueError(f"the image ends at {name} = {ends}; give two finite numbers, the smaller one first")

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
+from percept_obs.border import checked, positive
 from percept_obs.compile import Table, solve
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH, LONGEST_STEP
@@ -160,9 +160,7 @@ def steered(
     from scipy.interpolate import CubicSpline
 
     motion, surface = scenario.motion, scenario.surface
-    for name, value in {"gain": gain, "step": step}.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"the {name} is {value}; it must be positive and finite")
+    positive(gain=gain, step=step)
     if not motion.parameters or set(motion.values) != set(motion.parameters):
         raise ValueError(f"the {motion.name} motion varies or has no parameters; steer a constant affine(A, b)")
     found = steering(PerspectiveSystem(replace(motion, signal=None), surface), velocity)

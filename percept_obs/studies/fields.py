@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked, limit
+from percept_obs.border import checked, limit, positive
 from percept_obs.compile import Array, Flags, vectorised
+from percept_obs.observability.maps import displacements
 from percept_obs.recording import NO_NOISE, Camera
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -30,7 +31,7 @@ class PixelNoise:
     across: float = 640.0
 
     def __post_init__(self) -> None:
-        _refuse_what_is_not_positive(sigma=self.sigma, across=self.across)
+        positive(sigma=self.sigma, across=self.across)
 
 
 @checked
@@ -47,7 +48,7 @@ class AngleNoise:
     sigma: float = 0.002
 
     def __post_init__(self) -> None:
-        _refuse_what_is_not_positive(sigma=self.sigma)
+        positive(sigma=self.sigma)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +116,7 @@ def field_bound(
     surface : ImagingSurface
         With numbers for its shape; its centre and the field of view must be seen on it.
     motion : Motion
-        With constant numbers.
+        With numbers, constant or over time.
     noise : PixelNoise or AngleNoise
     field_of_view : float
         Full angle in radians of the cone around the optical axis.
@@ -135,7 +136,7 @@ def field_bound(
     Raises
     ------
     ValueError
-        If the surface does not see the field of view, the motion varies or has no numbers, an output is not there, or a
+        If the surface does not see the field of view, the motion has no numbers, an output is not there, or a
         number is not positive.
 
     Examples
@@ -146,7 +147,9 @@ def field_bound(
     >>> wide[0] > wide[1]
     True
     """
-    _refuse_what_is_not_positive(seconds=seconds, distance=distance, period=period, doubt=doubt)
+    positive(seconds=seconds, distance=distance, period=period, doubt=doubt)
+    if motion.signal is None:
+        raise ValueError(f"the {motion.name} motion has no numbers; give it some, such as affine(A, b)")
     if not 0 < field_of_view <= surface.field_of_view + 1e-6:
         raise ValueError(
             f"the field of view is {np.degrees(field_of_view):.4g} degrees; the {surface.name} sees "
@@ -165,7 +168,7 @@ def field_bound(
     information = np.eye(3) / (doubt * distance) ** 2 + np.zeros((len(starts), 3, 3))
     rows = [surface.image[names.index(name)] for name in measured]
     gradient = vectorised(POINT, [row.diff(axis) for row in rows for axis in POINT], surface.values)
-    for Phi, moved in _paths(motion, times):
+    for Phi, moved in zip(*displacements(motion, times), strict=True):
         points = starts @ Phi.T + moved
         seen = _inside(points, field_of_view) & surface.sees(points)
         D = np.stack(gradient(*points[seen].T), axis=-1).reshape(-1, len(rows), 3)
@@ -210,22 +213,3 @@ def _directions(angles: Array) -> Array:
 def _inside(points: Array, field_of_view: float) -> Flags:
     angle = np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     return np.asarray(angle <= field_of_view / 2 * (1 + 1e-9))
-
-
-def _paths(motion: Motion, times: Array) -> list[tuple[Array, Array]]:
-    """Phi and d of X(t) = Phi X(0) + d at the times."""
-    from scipy.linalg import expm
-
-    if motion.signal is None or not motion.signal.constant:
-        raise ValueError(f"the {motion.name} motion has no constant numbers; give it some, such as affine(A, b)")
-    values = vectorised(motion.parameters, [*motion.A, *motion.b])(*motion.known(times[:1])[0])
-    A, b = np.split(np.array(values, dtype=float), [9])
-    both = np.zeros((4, 4))
-    both[:3, :3], both[:3, 3] = A.reshape(3, 3), b
-    return [(step[:3, :3], step[:3, 3]) for step in (expm(both * t) for t in times.tolist())]
-
-
-def _refuse_what_is_not_positive(**numbers: float) -> None:
-    for name, value in numbers.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} is {value}; it must be positive and finite")

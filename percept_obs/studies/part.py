@@ -10,8 +10,8 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices, Language, vectorised
 from percept_obs.compile.integrator import by_step, instants, step_grid
-from percept_obs.compile.lanes import COUNTED, LANES
-from percept_obs.compile.side_by_side import Lanes, count, loop_for, seized
+from percept_obs.compile.lanes import COUNTED, LANES, LanesLoop
+from percept_obs.compile.side_by_side import Lanes, count, function_of, seized
 from percept_obs.observers.base import Observer
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Camera, Scenario
@@ -67,8 +67,17 @@ class Plan:
         """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
         looked, varying = watched(self.observer, self.coordinates), not self.believed.values
         move = moving(self.scenario.surface) if self._alone(varied) else None
-        alike = (self.noises_alike, move is None and self._truths_alike(varied))
-        loop_for(self.observer.equations, looked, move, self.hold != "zero", varying, alike, self.language)
+        truths_alike = move is None and self._truths_alike(varied)
+        made_for = (
+            self.observer.equations,
+            looked,
+            move,
+            self.hold != "zero",
+            varying,
+            self.noises_alike,
+            truths_alike,
+        )
+        function_of(LanesLoop(*made_for), self.language)
 
     def compute(self, columns: Mapping[str, Array]) -> Array:
         """Run some runs.
