@@ -49,7 +49,7 @@ export function reasons(shown, model) {
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
     found.push(
-      "The darker a place of the image is shaded, the less any unbiased observer can know of the distance of a point that is first seen there. " +
+      "The stronger the shade of a place in the image, the less any unbiased observer can know of the distance of a point that is first seen there. " +
         "Where there is no shade, the point comes behind the camera.",
     );
   }
