@@ -3,8 +3,10 @@
 import base64
 import json
 import re
+from contextlib import contextmanager
 
 from jupyter_harness import NOTEBOOKS
+from lab_browser import UNFOLD, rested
 from lab_settings import FRONT
 
 PAGE = '<!doctype html><meta charset="utf-8"><title>A lab</title><body><script type="module" src="/start.js"></script>'
@@ -70,3 +72,27 @@ def opened(browser, lab, policy=None, answers=None, **options):
     page.route("http://lab.test/**", answer)
     page.goto("http://lab.test/")
     return page
+
+
+def following(lab):
+    """What Python would answer the page's messages."""
+
+    def answers(message):
+        lab.set_state(message)
+        return {name: getattr(lab, name) for name in ("analysis", "error", "written")}
+
+    return answers
+
+
+@contextmanager
+def answered(browser, lab, **options):
+    """A page with a lab at rest that Python answers, all topics open; no error of the page is left unseen."""
+    page, wrong = opened(browser, lab, answers=following(lab), **options), []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.set_default_timeout(15_000)
+    rested(page)
+    page.evaluate(UNFOLD)
+    yield page
+    assert wrong == []
+    assert page.evaluate("window.refused") == []
+    page.close()

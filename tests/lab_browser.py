@@ -3,6 +3,7 @@
 import json
 import time
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from conftest import missing
@@ -26,6 +27,13 @@ lab
 """
 
 WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
+
+OUTSIDE = """() => {
+    const lab = document.querySelector('.percept-lab');
+    return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
+        (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((e) => e.className);
+}"""
+"""What is wider than its lab."""
 
 RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
@@ -116,6 +124,11 @@ def state(page, which=0):
     return page.evaluate(STATE, which)
 
 
+def assert_has(lab, settings):
+    """The lab in Python has these settings."""
+    assert json.loads(json.dumps(lab.settings)) == settings
+
+
 def assert_python_has(folder, settings, patience=10):
     """The kernel's lab comes to have these settings; it writes them down a moment after the page has its answer."""
     kept, deadline = {}, time.monotonic() + patience
@@ -185,7 +198,45 @@ def drag_by_keys(page, handle):
         page.keyboard.press(key)
 
 
-def reached_by_keyboard(page, first):
+MOVES = {
+    "range": ("ArrowRight", "ArrowLeft"),
+    "number": ("ArrowUp", "ArrowDown"),
+    "checkbox": ("Space", "Space"),
+    "select-one": ("ArrowDown", "ArrowUp"),
+    "radio": ("ArrowDown", "ArrowUp"),
+}
+"""Keys that move a kind of control there and back."""
+
+LISTEN = """() => {
+    window.moved = false;
+    window.value = (node) => `${node.value} ${node.checked}`;
+    document.addEventListener("keyup", ({ target }) => {
+        window.moved ||= target !== window.focused || target.opening !== value(target);
+    }, true);
+}"""
+FOCUSED = """async () => {
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    const node = document.activeElement;
+    node.opening ??= value(node);
+    const [there, back] = [Boolean(node.closest(".percept-lab")), node.opening === value(node)];
+    const found = { name: node.dataset.control ?? "", kind: node.type, there, back, moved };
+    Object.assign(window, { focused: node, moved: false });
+    return found;
+}"""
+
+
+def moved_by_keyboard(page, first):
+    """Names of the controls on which the Tab key comes by, beginning with the first; each was moved by its own keys.
+
+    Raises
+    ------
+    AssertionError
+        If one that can be seen and is enabled is left out, or one is not moved.
+    """
+    return reached_by_keyboard(page, first, MOVES)
+
+
+def reached_by_keyboard(page, first, moves=MappingProxyType({})):
     """Names of the controls on which the Tab key comes by, beginning with the first.
 
     Raises
@@ -201,42 +252,24 @@ def reached_by_keyboard(page, first):
             .map((c) => c.dataset.control)""")
     )
     reached = []
+    page.evaluate(LISTEN)
     page.focus(control(first))
     for _ in range(2 * len(wanted)):
-        name = page.evaluate("document.activeElement.dataset.control ?? ''")
-        if not name and reached and not page.evaluate("Boolean(document.activeElement.closest('.percept-lab'))"):
+        now = page.evaluate(FOCUSED)
+        if reached and not now["there"]:
             break
-        reached.append(name)
-        page.keyboard.press("Tab")
-    assert wanted - set(reached) == set()
-    return reached
-
-
-def assert_moved_by_keyboard(page, names):
-    """Each of the controls changes its value by keys, and is put back."""
-    there_and_back = {
-        "range": ("ArrowRight", "ArrowLeft"),
-        "number": ("ArrowUp", "ArrowDown"),
-        "checkbox": ("Space", "Space"),
-        "select-one": ("ArrowDown", "ArrowUp"),
-        "radio": ("ArrowDown", "ArrowUp"),
-    }
-    for name in names:
-        kind = page.evaluate("(s) => document.querySelector(s)?.type ?? ''", control(name))
-        if kind not in there_and_back:
-            continue
-        before = value_of(page, name)
-        page.focus(control(name))
-        there, back = there_and_back[kind]
-        page.keyboard.press(there)
-        moved = value_of(page, name) != before
-        page.keyboard.press(back)
-        if not moved:  # it stood at its end
-            moved = value_of(page, name) != before
+        reached.append(now["name"])
+        there, back = moves.get(now["kind"], ("", ""))
+        if there:
             page.keyboard.press(there)
-        if kind == "select-one":
-            page.select_option(control(name), before[0])
-        assert moved, name
+            page.keyboard.press(back)
+            moved = page.evaluate(FOCUSED)
+            assert moved["moved"], now["name"]
+            if not moved["back"]:  # it stood at its end
+                page.keyboard.press(there)
+        page.keyboard.press("Tab")
+    assert sorted(wanted - set(reached)) == []
+    return reached
 
 
 def open_topics_by_keyboard(page):
@@ -246,11 +279,6 @@ def open_topics_by_keyboard(page):
         page.focus(control(name))
         page.keyboard.press("Enter")
     assert page.evaluate(closed) == []
-
-
-def value_of(page, name):
-    """What a control says."""
-    return page.evaluate("(s) => { const c = document.querySelector(s); return [c.value, c.checked]; }", control(name))
 
 
 def serious_violations(page, widths=("", "400px")):

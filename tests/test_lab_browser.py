@@ -1,24 +1,20 @@
-"""The observer lab does in JupyterLab what it promises: it follows the hand, tells Python, and outlives it."""
+"""The observer lab does what it promises: it follows the hand, tells Python, and leads back."""
 
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from lab_alone import answered
 from lab_browser import (
-    OPEN,
-    UNFOLD,
     assert_equals_python,
-    assert_python_has,
+    assert_has,
     control,
     drag_by_keys,
     drag_by_mouse,
     drag_by_touch,
-    end_kernel,
-    open_lab,
-    open_unfolded,
     rested,
     state,
-    write_notebook,
 )
 from lab_settings import ALL
+
+from percept_obs.labs import observer_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -26,28 +22,16 @@ FOE = control("foe")
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("notebooks")
+def python():
+    """The lab in Python."""
+    return observer_lab()
 
 
 @pytest.fixture(scope="module")
-def server(folder, tmp_path_factory):
-    with jupyterlab(folder, tmp_path_factory.mktemp("server")) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def browser_page(chromium, server, tmp_path_factory):
-    with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
-        page.set_default_timeout(15_000)
-        yield page
-
-
-@pytest.fixture(scope="module")
-def lab(browser_page, folder):
+def lab(browser, python):
     """A page with one lab that the tests of this module share."""
-    open_lab(browser_page, folder)
-    return browser_page
+    with answered(browser, python) as page:
+        yield page
 
 
 @pytest.fixture
@@ -60,7 +44,7 @@ def fresh(lab):
 
 
 @pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
-def test_the_focus_of_expansion_follows_the_hand(fresh, folder, drag):
+def test_the_focus_of_expansion_follows_the_hand(fresh, python, drag):
     before = state(fresh)
     drag(fresh, FOE)
     rested(fresh)
@@ -70,7 +54,7 @@ def test_the_focus_of_expansion_follows_the_hand(fresh, folder, drag):
     assert after["runs"] != before["runs"]
     assert after["labels"] != before["labels"]
     assert_equals_python(after)
-    assert_python_has(folder, after["settings"])
+    assert_has(python, after["settings"])
 
 
 def test_an_output_is_dropped_and_taken_back(fresh):
@@ -174,7 +158,7 @@ def test_a_number_that_is_not_allowed_is_refused_where_it_was_typed(fresh):
     assert state(fresh)["settings"]["gains"]["identifier_based"]["gain"] == 12.5
 
 
-def test_the_lab_ends_on_the_last_of_many_events(fresh, folder):
+def test_the_lab_ends_on_the_last_of_many_events(fresh, python):
     slider = control("identifier_based gain")
     fresh.evaluate(
         """async (selector) => {
@@ -192,7 +176,7 @@ def test_the_lab_ends_on_the_last_of_many_events(fresh, folder):
     shown = state(fresh)
     assert shown["settings"]["gains"]["identifier_based"]["gain"] == last
     assert_equals_python(shown)
-    assert_python_has(folder, shown["settings"])
+    assert_has(python, shown["settings"])
 
 
 def test_a_preset_asks_shows_and_leads_back(fresh):
@@ -275,98 +259,3 @@ def test_a_slider_lights_up_its_letter(fresh):
     fresh.focus(control("identifier_based gain"))
     lit = fresh.locator(".formulas .lit")
     assert set(lit.all_text_contents()) == {"G", "10"}
-
-
-def test_keys_stay_in_the_lab(fresh):
-    fresh.focus(FOE)
-    cells = fresh.locator(".jp-Cell").count()
-    for key in ("a", "b", "d", "d", "x", "m", "Enter", "Escape"):
-        fresh.keyboard.press(key)
-    assert fresh.locator(".jp-Cell").count() == cells
-    assert fresh.locator(".jp-MarkdownCell").count() == 0
-
-
-def test_python_may_set_the_settings_and_says_what_is_wrong(browser_page, folder, server):
-    page = browser_page
-    cells = [
-        OPEN.format(arguments=""),
-        "lab.settings = {**lab.settings, 'outputs': ['y2'], 'observers': ['extended_kalman']}",
-        "type(lab).analyse = lambda self: 1 / 0",
-    ]
-    write_notebook(folder, "set.ipynb", *cells)
-    open_notebook(page, "set.ipynb")
-    run_all(page)
-    page.wait_for_function("[...window.perceptObsLabs][0].shown?.settings.outputs[0] === 'y2'", timeout=120_000)
-    assert_equals_python(state(page))
-    page.evaluate(UNFOLD)
-    page.fill(control("seed number"), "3")
-    page.wait_for_selector(".percept-obs-error:not([hidden])")
-    assert "ZeroDivisionError" in page.inner_text(".percept-obs-error:not([hidden])")
-    shown = state(page)
-    assert shown["settings"]["seed"] == 3
-
-
-def test_two_labs_live_side_by_side_and_a_cell_replaces_its_own(browser_page, folder):
-    page = browser_page
-    second = "other = observer_lab(outputs=['y1'])\nother"
-    write_notebook(folder, "two.ipynb", OPEN.format(arguments=""), second, "print('open:', other.comm is not None)")
-    open_unfolded(page, "two.ipynb")
-    first, other = state(page, 0), state(page, 1)
-    page.locator(control("seed number")).nth(1).fill("9")
-    rested(page)
-    assert state(page, 0) == first
-    assert state(page, 1)["settings"] == {**other["settings"], "seed": 9}
-    run_all(page)
-    page.wait_for_function("document.querySelectorAll('.percept-lab').length === 2")
-    page.wait_for_function("window.perceptObsLabs.size === 2")
-    rested(page)
-    assert state(page, 1)["settings"] == other["settings"]
-
-
-def test_the_lab_outlives_its_kernel_and_says_so(browser_page, folder, server):
-    page = browser_page
-    open_lab(page, folder, "dead.ipynb")
-    end_kernel(page, server, "dead.ipynb")
-    page.fill(control("identifier_based gain number"), "4")
-    page.wait_for_selector(".silence:not([hidden])")
-    assert "Python has not answered yet" in page.inner_text(".silence")
-    page.check(control("outputs y1"))
-    page.check(control("observer spica"))
-    page.wait_for_function(
-        "() => { const [l] = window.perceptObsLabs; return l.shown.runs.length === 2 && !l.pending; }"
-    )
-    shown = state(page)
-    assert shown["settings"]["outputs"] == ["y1"]
-    assert_equals_python(shown)
-
-
-def test_a_restarted_kernel_leaves_the_lab_alive_and_opens_a_new_one(browser_page, folder):
-    page = browser_page
-    open_lab(page, folder, "again.ipynb")
-    page.click(".lm-MenuBar-item:has-text('Kernel')")
-    page.click(".lm-Menu-item[data-command='kernelmenu:restart']")
-    page.click(".jp-Dialog-button.jp-mod-accept")
-    page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]")
-    page.fill(control("identifier_based gain number"), "4")
-    page.wait_for_function("[...window.perceptObsLabs][0].shown.settings.gains.identifier_based.gain === 4")
-    assert_equals_python(state(page))
-    run_all(page)
-    page.wait_for_function("window.perceptObsLabs.size === 1")
-    rested(page)
-    assert state(page)["settings"]["gains"]["identifier_based"]["gain"] == 10
-
-
-def test_the_kernel_may_be_busy_while_the_lab_is_moved(browser_page, folder):
-    page = browser_page
-    write_notebook(folder, "busy.ipynb", OPEN.format(arguments=""), "import time; time.sleep(2)")
-    open_notebook(page, "busy.ipynb")
-    page.click(".lm-MenuBar-item:has-text('Run')")
-    page.click(".lm-Menu-item[data-command='runmenu:run-all']")
-    page.wait_for_function("window.perceptObsLabs?.size && [...window.perceptObsLabs][0].shown")
-    page.evaluate(UNFOLD)
-    for seed in range(1, 6):
-        page.fill(control("seed number"), str(seed))
-        page.wait_for_function(f"[...window.perceptObsLabs][0].shown.settings.seed === {seed}")
-    rested(page)
-    assert_python_has(folder, {"seed": 5})
-    assert not log_entries(page)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN, following, opened
 from lab_browser import control
 from test_lab_open import CALM, MOTION, cubic, slanted
 
@@ -15,16 +15,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 SETTINGS = "() => [...window.perceptObsLabs][0].settings"
 FIELD = control("motion")
 SAID = f".expression:has({FIELD}) .refusal"
-
-
-def following(lab):
-    """What Python would answer the page's messages."""
-
-    def answers(message):
-        lab.set_state(message)
-        return {name: getattr(lab, name) for name in ("analysis", "error", "written")}
-
-    return answers
 
 
 def type_in(page, text):

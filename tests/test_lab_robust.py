@@ -1,16 +1,16 @@
 """The observer lab survives any order of events, keeps its memory, and is open to keyboards and screen readers."""
 
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries
+from lab_alone import DRAWN, answered, opened
 from lab_browser import (
     EVENTS,
+    OUTSIDE,
+    UNFOLD,
     WIDTH,
     assert_equals_python,
-    assert_moved_by_keyboard,
-    assert_python_has,
+    assert_has,
     control,
-    open_lab,
-    reached_by_keyboard,
+    moved_by_keyboard,
     rested,
     serious_violations,
     state,
@@ -18,9 +18,8 @@ from lab_browser import (
     used_at_random,
 )
 from lab_settings import ALL, assert_follows_python
-from test_lab_layout import WALK
 
-from percept_obs.labs.observer.lab import runs
+from percept_obs.labs.observer.lab import observer_lab, runs
 from percept_obs.system.surfaces import BehindCamera
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -30,17 +29,15 @@ COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, .
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("notebooks")
+def python():
+    """The lab in Python."""
+    return observer_lab()
 
 
 @pytest.fixture(scope="module")
-def lab(chromium, folder, tmp_path_factory):
+def lab(browser, python):
     """A page with one lab that the tests of this module share."""
-    homes = [tmp_path_factory.mktemp(name) for name in ("server", "browser")]
-    with jupyterlab(folder, homes[0]) as server, lab_page(chromium, server, homes[1]) as page:
-        page.set_default_timeout(15_000)
-        open_lab(page, folder)
+    with answered(browser, python) as page:
         yield page
 
 
@@ -51,13 +48,13 @@ def fresh(lab):
     return lab
 
 
-def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
+def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):
     opening, unused = state(fresh), usable(fresh)
     for seed in range(CHUNKS):
         wanted = unused if seed == CHUNKS - 1 else set()
         unused -= used_at_random(fresh, seed, wanted, EVENTS // CHUNKS, SAMPLES)
         shown = state(fresh)
-        assert_python_has(folder, shown["settings"])
+        assert_has(python, shown["settings"])
         assert shown["problems"] == []
         if shown["runs"]:
             told = {n: {"estimate": e, "divergedAt": shown["divergedAt"][n]} for n, e in shown["runs"].items()}
@@ -70,32 +67,6 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder
     rested(fresh, 60)
     assert state(fresh) == opening
     assert_equals_python(state(fresh))
-    assert not log_entries(fresh)
-
-
-def test_a_thousand_moves_do_not_fill_the_memory(fresh):
-    """A run's estimates are 48 kB here; kept at every move they would fill five times what is allowed."""
-    fresh.fill(control("duration number"), "20")
-    session = fresh.context.new_cdp_session(fresh)
-
-    def used():
-        session.send("HeapProfiler.collectGarbage")
-        usage = session.send("Runtime.getHeapUsage")
-        return (usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6
-
-    move = """async (count) => {
-        const [lab] = window.perceptObsLabs;
-        for (let k = 0; k < count; k++) {
-            lab.moveFoe([1.6 + 0.1 * Math.sin(k / 9), 0.8]);
-            await new Promise((resolve) => requestAnimationFrame(resolve));
-        }
-    }"""
-    fresh.evaluate(move, 100)
-    rested(fresh)
-    before = used()
-    fresh.evaluate(move, 1000)
-    rested(fresh)
-    assert used() - before < 10
 
 
 def test_axe_finds_nothing_serious(fresh):
@@ -103,15 +74,16 @@ def test_axe_finds_nothing_serious(fresh):
     assert serious_violations(fresh) == []
 
 
-def test_every_control_is_reached_and_moved_by_keyboard(fresh):
-    fresh.fill(control("duration number"), "5")
-    fresh.check(control("believed"))
-    fresh.select_option(control("start"), "chosen")
-    for name in ("sliding_mode", "extended_kalman", "immersion_and_invariance"):
-        fresh.check(control(f"observer {name}"))
-    rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "foe"))
-    rested(fresh)
+def test_every_control_is_reached_and_moved_by_keyboard(browser):
+    observers = ["identifier_based", "sliding_mode", "extended_kalman", "immersion_and_invariance"]
+    page = opened(browser, observer_lab(duration=2.0, observers=observers, pictures=["error", "inverse"]))
+    page.wait_for_function(DRAWN)
+    page.evaluate(UNFOLD)
+    page.check(control("believed"))
+    page.select_option(control("start"), "chosen")
+    assert len(moved_by_keyboard(page, "foe")) > 100
+    page.wait_for_function(DRAWN)
+    page.close()
 
 
 def test_each_picture_says_in_words_what_it_shows(fresh):
@@ -148,24 +120,8 @@ def test_lines_are_told_apart_without_colour(fresh):
 def test_the_lab_fits_its_cell(fresh, width):
     fresh.evaluate(WIDTH, f"{width}px")
     fresh.wait_for_timeout(200)
-    assert (
-        fresh.evaluate("""() => {
-        const lab = document.querySelector('.percept-lab');
-        return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
-            (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
-    }""")
-        == 0
-    )
+    assert fresh.evaluate(OUTSIDE) == []
     fresh.evaluate(WIDTH, "")
-
-
-def test_in_jupyterlab_pictures_are_in_view_whichever_control_has_the_focus(fresh):
-    fresh.set_viewport_size({"width": 1280, "height": 800})
-    fresh.wait_for_timeout(300)
-    found = fresh.evaluate(WALK)
-    fresh.set_viewport_size({"width": 1280, "height": 900})
-    assert found["wrong"] == []
-    assert found["walked"] > 60
 
 
 def test_a_kernel_text_that_fails_to_load_is_told(fresh):

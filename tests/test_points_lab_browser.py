@@ -1,21 +1,22 @@
-"""The lab of many points follows the hand in JupyterLab, survives any order of events, and is open to keyboards."""
+"""The lab of many points follows the hand, survives any order of events, and is open to keyboards."""
 
 import numpy as np
 import pytest
-from conftest import missing
-from jupyter_harness import jupyterlab, lab_page, log_entries
+from lab_alone import answered
 from lab_browser import (
-    OPEN,
-    assert_python_has,
-    centre,
+    OUTSIDE,
+    WIDTH,
+    assert_has,
     control,
-    open_unfolded,
+    drag_by_keys,
+    drag_by_mouse,
+    drag_by_touch,
+    reached_by_keyboard,
     rested,
+    serious_violations,
     usable,
     used_at_random,
-    write_notebook,
 )
-from lab_settings import FRONT
 from points_settings import as_array
 
 from percept_obs.labs.points.lab import points_lab, run_of
@@ -23,10 +24,7 @@ from percept_obs.labs.points.settings import MOST_POINTS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-CELL = OPEN.replace("observer_lab", "points_lab")
-SHORT = "duration=8.0, window=4.0"
 MOST_SAMPLES = 800
-WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
 POINT = control("point 2")
 
 STATE = """(which) => {
@@ -47,27 +45,23 @@ STATE = """(which) => {
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("notebooks")
+def python():
+    """The lab in Python."""
+    return points_lab(duration=8.0, window=4.0)
 
 
 @pytest.fixture(scope="module")
-def lab(chromium, folder, tmp_path_factory):
-    """A page with two labs, the first of which the tests of this module share."""
-    homes = [tmp_path_factory.mktemp(name) for name in ("server", "browser")]
-    with jupyterlab(folder, homes[0]) as server, lab_page(chromium, server, homes[1]) as page:
-        page.set_default_timeout(15_000)
-        other = "other = points_lab(state='independent', duration=4.0, window=2.0)\nother"
-        write_notebook(folder, "two.ipynb", CELL.format(arguments=SHORT), other)
-        open_unfolded(page, "two.ipynb")
+def lab(browser, python):
+    """A page with one lab that the tests of this module share."""
+    with answered(browser, python) as page:
         yield page
 
 
 @pytest.fixture
 def fresh(lab):
-    lab.locator(control("reset")).first.click()
+    lab.locator(control("reset")).click()
     rested(lab)
-    lab.locator(POINT).first.scroll_into_view_if_needed()
+    lab.locator(POINT).scroll_into_view_if_needed()
     return lab
 
 
@@ -90,33 +84,10 @@ def assert_equals_python(shown, tolerance=1e-9):
         np.testing.assert_allclose(as_array(error["values"]), run.deviation, rtol=1e-9, atol=tolerance)
 
 
-def drag_by_mouse(page):
-    x, y = centre(page, POINT)
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + 12, y - 9, steps=4)
-    page.mouse.up()
-
-
-def drag_by_touch(page):
-    x, y = centre(page, POINT)
-    session = page.context.new_cdp_session(page)
-    for kind, step in (("touchStart", 0), ("touchMove", 4), ("touchMove", 9), ("touchEnd", None)):
-        points = [] if step is None else [{"x": x + step, "y": y - step}]
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-    session.detach()
-
-
-def drag_by_keys(page):
-    page.locator(POINT).first.focus()
-    for key in ("ArrowRight", "ArrowUp", "Shift+ArrowUp", "ArrowDown"):
-        page.keyboard.press(key)
-
-
 @pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
-def test_a_point_follows_the_hand_and_keeps_its_depth(fresh, folder, drag):
+def test_a_point_follows_the_hand_and_keeps_its_depth(fresh, python, drag):
     before = state(fresh)
-    drag(fresh)
+    drag(fresh, POINT)
     rested(fresh)
     after = state(fresh)
     (one, moved, three), (first, old, third) = after["settings"]["points"], before["settings"]["points"]
@@ -127,12 +98,12 @@ def test_a_point_follows_the_hand_and_keeps_its_depth(fresh, folder, drag):
     assert after["words"] != before["words"]
     assert after["labels"] != before["labels"]
     assert_equals_python(after)
-    assert_python_has(folder, after["settings"])
+    assert_has(python, after["settings"])
 
 
 def test_a_key_changes_the_depth_and_keeps_the_image(fresh):
     (_, before, _) = state(fresh)["settings"]["points"]
-    fresh.locator(POINT).first.focus()
+    fresh.locator(POINT).focus()
     for _ in range(4):
         fresh.keyboard.press("+")
     rested(fresh)
@@ -151,8 +122,8 @@ def test_points_are_added_and_removed(fresh):
     assert len(most["settings"]["points"]) == MOST_POINTS
     assert_equals_python(most)
     for _ in range(MOST_POINTS - 1):
-        fresh.locator(control("remove 1")).first.click()
-    assert fresh.locator(control("remove 1")).first.is_disabled()
+        fresh.locator(control("remove 1")).click()
+    assert fresh.locator(control("remove 1")).is_disabled()
     rested(fresh)
     one = state(fresh)
     assert len(one["settings"]["points"]) == 1
@@ -162,19 +133,19 @@ def test_points_are_added_and_removed(fresh):
 
 def test_a_point_is_hidden_for_a_while(fresh):
     before = state(fresh)
-    fresh.locator(control("hide 2")).first.check()
-    fresh.locator(control("hidden from 2")).first.fill("2")
-    fresh.locator(control("hidden to 2")).first.fill("5.6")
+    fresh.locator(control("hide 2")).check()
+    fresh.locator(control("hidden from 2")).fill("2")
+    fresh.locator(control("hidden to 2")).fill("5.6")
     rested(fresh)
     shown = state(fresh)
     assert shown["settings"]["hidden"] == [None, [2, 5.6], None]
     assert "Point 2 was hidden from 2 to 5.6 s" in shown["words"]
     assert (before["drawn"]["error"]["bars"], shown["drawn"]["error"]["bars"]) == (0, 1)
     assert_equals_python(shown)
-    fresh.locator(control("hidden to 2")).first.fill("1")
-    assert fresh.locator(control("hidden to 2")).first.get_attribute("aria-invalid") == "true"
+    fresh.locator(control("hidden to 2")).fill("1")
+    assert fresh.locator(control("hidden to 2")).get_attribute("aria-invalid") == "true"
     assert state(fresh)["settings"]["hidden"] == [None, [2, 5.6], None]
-    fresh.locator(control("hide 2")).first.uncheck()
+    fresh.locator(control("hide 2")).uncheck()
     rested(fresh)
     assert state(fresh)["drawn"] == before["drawn"]
 
@@ -182,8 +153,8 @@ def test_a_point_is_hidden_for_a_while(fresh):
 def test_another_p_is_chosen(fresh):
     estimates = [state(fresh)["estimate"]]
     for kind in ("scheduled", "lyapunov", "riccati"):
-        fresh.locator(control("weight")).first.select_option(kind)
-        fresh.locator(control("size number")).first.fill("0.05")
+        fresh.locator(control("weight")).select_option(kind)
+        fresh.locator(control("size number")).fill("0.05")
         rested(fresh)
         shown = state(fresh)
         assert shown["settings"]["weight"] == kind
@@ -193,16 +164,16 @@ def test_another_p_is_chosen(fresh):
 
 
 def test_the_motion_is_changed_and_what_is_lost_is_said(fresh):
-    fresh.locator(control("no input")).first.click()
+    fresh.locator(control("no input")).click()
     rested(fresh)
     lost = state(fresh)
     assert "(14) fails" in lost["words"]
     assert "images do not tell its scale" in lost["words"]
     assert_equals_python(lost)
-    fresh.locator(control("velocity X number")).first.fill("0.4")
+    fresh.locator(control("velocity X number")).fill("0.4")
     rested(fresh)
     assert "images do not tell its scale" not in state(fresh)["words"]
-    fresh.locator(control("state origin")).first.check()
+    fresh.locator(control("state origin")).check()
     rested(fresh)
     shown = state(fresh)
     assert "3 directions are not seen: o_x - d1_x" in shown["words"]
@@ -210,78 +181,43 @@ def test_the_motion_is_changed_and_what_is_lost_is_said(fresh):
 
 
 def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
-    fresh.locator(control("seed number")).first.fill("7")
+    fresh.locator(control("seed number")).fill("7")
     rested(fresh)
     before = state(fresh)
-    fresh.locator(control("preset riccati")).first.click()
-    assert "follows a Riccati equation" in fresh.locator(".question").first.inner_text()
+    fresh.locator(control("preset riccati")).click()
+    assert "follows a Riccati equation" in fresh.locator(".question").inner_text()
     assert state(fresh)["settings"] == {**points_lab().settings, "hold": "exact"}
-    fresh.locator(control("act riccati 0")).first.click()
+    fresh.locator(control("act riccati 0")).click()
     rested(fresh)
     shown = state(fresh)
     assert "relative error of the points' positions stays within 10 % after 1" in shown["words"]
     assert shown["drawn"]["error"]["lines"][0]["name"] == "kept error"
-    fresh.locator(control("way back")).first.click()
+    fresh.locator(control("way back")).click()
     rested(fresh)
     assert state(fresh) == before
 
 
-def test_one_lab_leaves_the_other_alone(fresh):
-    other = state(fresh, 1)
-    drag_by_keys(fresh)
-    rested(fresh)
-    assert state(fresh, 1) == other
-    assert other["settings"]["state"] == "independent"
-    assert_equals_python(other)
-
-
 def test_every_control_is_reached_by_keyboard(fresh):
-    wanted = set(
-        fresh.evaluate("""() => [...document.querySelector('.percept-lab').querySelectorAll('[data-control]')]
-            .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
-            .map((c) => c.dataset.control)""")
-    )
-    reached = set()
-    fresh.locator(control("point 1")).first.focus()
-    for _ in range(2 * len(wanted)):
-        name = fresh.evaluate("""() => {
-            const { activeElement } = document;
-            return activeElement.closest(".percept-lab") === document.querySelector(".percept-lab")
-                ? activeElement.dataset.control ?? "" : null;
-        }""")
-        if name is None:
-            break
-        reached.add(name)
-        fresh.keyboard.press("Tab")
-    assert wanted - reached == set()
+    reached = set(reached_by_keyboard(fresh, "point 1"))
     assert {"point 1", "remove 2", "hide 3", "add point", "size", "aim", "cursor"} <= reached
 
 
 def test_axe_finds_nothing_serious(fresh):
-    axe = FRONT / "node_modules/axe-core/axe.min.js"
-    if not axe.exists():
-        missing(f"axe-core is missing: run npm ci in {FRONT}.")
-    fresh.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))")
-    fresh.locator(control("hide 1")).first.check()
-    fresh.locator(control("preset hide")).first.click()
-    fresh.evaluate(axe.read_text())
-    for width in ("", "400px"):
-        fresh.evaluate(WIDTH, width)
-        found = fresh.evaluate("axe.run(document.querySelector('.percept-lab'))")
-        serious = [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
-        assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious] == []
-        assert len(found["passes"]) > 10
-        outside = fresh.evaluate("""() => {
-            const lab = document.querySelector('.percept-lab');
-            return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
-                (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).length;
-        }""")
-        assert outside == 0
+    fresh.check(control("hide 1"))
+    fresh.click(control("preset hide"))
+    assert serious_violations(fresh) == []
+
+
+@pytest.mark.parametrize("width", [400, 800])
+def test_the_lab_fits_its_cell(fresh, width):
+    fresh.evaluate(WIDTH, f"{width}px")
+    fresh.wait_for_timeout(200)
+    assert fresh.evaluate(OUTSIDE) == []
     fresh.evaluate(WIDTH, "")
 
 
 def test_each_picture_says_in_words_what_it_shows(fresh):
-    fresh.locator(control("picture points")).first.check()
+    fresh.locator(control("picture points")).check()
     rested(fresh)
     labels = state(fresh)["labels"][:6]
     expected = {
@@ -297,16 +233,15 @@ def test_each_picture_says_in_words_what_it_shows(fresh):
         assert all(part in label for part in parts), label
 
 
-def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
+def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):
     opening, wanted = state(fresh), usable(fresh)
     assert wanted - used_at_random(fresh, 1, wanted, most=MOST_SAMPLES) == set()
     shown = state(fresh)
     assert shown["problems"] == []
-    assert_python_has(folder, shown["settings"])
+    assert_has(python, shown["settings"])
     assert points_lab(**shown["settings"]).settings == shown["settings"]
     assert_equals_python(shown, 1e-6)
-    fresh.locator(control("reset")).first.click()
+    fresh.locator(control("reset")).click()
     rested(fresh, 60)
     assert state(fresh) == opening
     assert_equals_python(state(fresh))
-    assert not log_entries(fresh)

@@ -1,27 +1,22 @@
-"""The lab of structure and motion does in JupyterLab what it promises: ticking, dragging, telling, and surviving."""
+"""The lab of structure and motion does what it promises: ticking, dragging, telling, and surviving."""
 
-import numpy as np
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries
+from lab_alone import DRAWN, answered, opened
 from lab_browser import (
-    OPEN,
+    OUTSIDE,
+    UNFOLD,
     WIDTH,
-    assert_moved_by_keyboard,
-    assert_python_has,
+    assert_has,
     control,
     drag_by_keys,
     drag_by_mouse,
     drag_by_touch,
-    end_kernel,
-    open_lab,
-    open_unfolded,
-    reached_by_keyboard,
+    moved_by_keyboard,
     rested,
     serious_violations,
     state,
     usable,
     used_at_random,
-    write_notebook,
 )
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
@@ -31,28 +26,20 @@ from percept_obs.structure import ImpossibleChoice
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 START = control("ybar")
-SECOND = "structure_lab(unknown=['v_p1', 'v_p2', 'v_p3'])"
 TOLD = ".unknowns .told"
 COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("notebooks")
+def python():
+    """The lab in Python."""
+    return structure_lab()
 
 
 @pytest.fixture(scope="module")
-def server(folder, tmp_path_factory):
-    with jupyterlab(folder, tmp_path_factory.mktemp("server")) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def lab(chromium, server, folder, tmp_path_factory):
+def lab(browser, python):
     """A page with one lab that the tests of this module share."""
-    with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
-        page.set_default_timeout(15_000)
-        open_lab(page, folder, lab="structure_lab")
+    with answered(browser, python) as page:
         yield page
 
 
@@ -76,7 +63,7 @@ def assert_is_python(shown):
 
 
 @pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
-def test_the_start_follows_the_hand(fresh, folder, drag):
+def test_the_start_follows_the_hand(fresh, python, drag):
     before = state(fresh)
     drag(fresh, START)
     rested(fresh)
@@ -86,10 +73,10 @@ def test_the_start_follows_the_hand(fresh, folder, drag):
     assert after["runs"] != before["runs"]
     assert after["labels"] != before["labels"]
     assert_is_python(after)
-    assert_python_has(folder, after["settings"])
+    assert_has(python, after["settings"])
 
 
-def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, folder):
+def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, python):
     before = state(fresh)
     fresh.uncheck(control("known v_c1"))
     rested(fresh)
@@ -99,7 +86,7 @@ def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, folder):
     assert fresh.inner_text(f"{TOLD} .refused").lower() == f"{reason.value}.".lower()
     assert refused["runs"] == {}
     assert set(refused["drawn"]) == {"image", "depth"}
-    assert_python_has(folder, refused["settings"])
+    assert_has(python, refused["settings"])
     fresh.check(control("known v_c1"))
     rested(fresh)
     assert state(fresh) == before
@@ -203,14 +190,15 @@ def test_too_many_steps_are_refused_where_they_were_typed(fresh):
     assert state(fresh)["settings"]["step"] == 1e-3
 
 
-def test_every_control_is_reached_and_moved_by_keyboard(fresh):
-    for name, value in (("period", "0.02"), ("step", "0.01"), ("duration", "1")):
-        fresh.fill(control(f"{name} number"), value)
-    fresh.check(control("swings"))
-    fresh.check(control("observer layer"))
-    rested(fresh)
-    assert_moved_by_keyboard(fresh, reached_by_keyboard(fresh, "ybar"))
-    rested(fresh)
+def test_every_control_is_reached_and_moved_by_keyboard(browser):
+    settings = {"period": 0.02, "step": 0.01, "duration": 1.0, "observers": ["ideal", "layer"], "pictures": ["error", "depth"]}
+    page = opened(browser, structure_lab(**settings))
+    page.wait_for_function(DRAWN)
+    page.evaluate(UNFOLD)
+    page.check(control("swings"))
+    assert len(moved_by_keyboard(page, "ybar")) > 60
+    page.wait_for_function(DRAWN)
+    page.close()
 
 
 def test_axe_finds_nothing_serious(fresh):
@@ -222,12 +210,7 @@ def test_axe_finds_nothing_serious(fresh):
 def test_the_lab_fits_its_cell(fresh, width):
     fresh.evaluate(WIDTH, f"{width}px")
     fresh.wait_for_timeout(200)
-    outside = fresh.evaluate("""() => {
-        const lab = document.querySelector('.percept-lab');
-        return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
-            (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((e) => e.className);
-    }""")
-    assert outside == []
+    assert fresh.evaluate(OUTSIDE) == []
     fresh.evaluate(WIDTH, "")
 
 
@@ -240,30 +223,13 @@ def test_dark_and_light_have_their_own_colours(fresh):
     assert light[1] != dark[1]
 
 
-def test_random_events_break_nothing_and_reset_restores_everything(fresh, folder):
+def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):
     opening, wanted = state(fresh), usable(fresh)
     assert wanted - used_at_random(fresh, 11, wanted) == set()
     shown = state(fresh)
-    assert_python_has(folder, shown["settings"])
+    assert_has(python, shown["settings"])
     assert shown["problems"] == []
     fresh.click(control("reset"))
     rested(fresh, 60)
     assert state(fresh) == opening
     assert_is_python(opening)
-    assert not log_entries(fresh)
-
-
-def test_two_labs_live_side_by_side_and_outlive_their_kernel(lab, folder, server):
-    write_notebook(folder, "two.ipynb", OPEN.replace("observer_lab", "structure_lab").format(arguments=""), SECOND)
-    open_unfolded(lab, "two.ipynb")
-    first, other = state(lab, 0), state(lab, 1)
-    lab.locator(control("seed number")).nth(1).fill("9")
-    rested(lab)
-    assert state(lab, 0) == first
-    assert state(lab, 1)["settings"] == {**other["settings"], "seed": 9}
-    assert np.isfinite(first["runs"]["ideal"][-1])
-    end_kernel(lab, server, "two.ipynb")
-    lab.click(control("corollary 6"))
-    lab.wait_for_selector(".silence:not([hidden])")
-    lab.wait_for_function("[...window.perceptObsLabs][0].shown.settings === [...window.perceptObsLabs][0].settings")
-    assert_is_python(state(lab, 0))
