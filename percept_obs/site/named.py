@@ -9,6 +9,7 @@ from typing import Any
 from percept_obs.compile.integrator import LARGEST_STEP_RATE, LONGEST_STEP, PLANT_STEP
 from percept_obs.labs.observer.settings import SCHEMA as OF_A_POINT
 from percept_obs.labs.points.settings import SCHEMA as OF_POINTS
+from percept_obs.labs.points.texts import MOST_POINTS
 from percept_obs.labs.shared.offered import MOST_NUMBERS
 from percept_obs.labs.structure.settings import SCHEMA as OF_STRUCTURE
 from percept_obs.papers import NAMED, Ledger
@@ -59,6 +60,6 @@ def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, 
         "most_numbers": MOST_NUMBERS,
         "structure_step": f"{OF_STRUCTURE.opening['step']:g} s",
         "points_step": f"{OF_POINTS.opening['step']:g} s",
-        "most_points": OF_POINTS["points"].most,
-        "duration": f"{OF_A_POINT['duration'].high:g} s",
+        "most_points": MOST_POINTS,
+        "duration": f"{OF_A_POINT['duration'].expected} s",
     }
