@@ -1,6 +1,7 @@
 """README.md says what the package says, its pictures can be made anew, and one line names the repository everywhere."""
 
 import re
+import tomllib
 
 import pytest
 from PIL import Image
@@ -67,6 +68,11 @@ def test_one_line_names_the_repository(path):
     text = path.read_text("utf-8")
     assert repository() in text
     assert with_repository(text) == text, ANEW
+
+
+def test_the_citation_names_the_version_of_the_package():
+    told = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.MULTILINE)
+    assert told[1] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 
 def test_a_repository_that_is_renamed_is_renamed_everywhere(monkeypatch):
