@@ -128,6 +128,17 @@ def picture(figure):
     return few_colours(written.getvalue())
 
 
+def pictures_of_labs(chromium):
+    """All labs of the gallery."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        images = {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
+        browser.close()
+    return images
+
+
 def picture_of_lab(browser, make):
     """A lab as it opens, as an image."""
     from lab_alone import DRAWN, opened
@@ -146,15 +157,14 @@ def few_colours(png):
 def main():
     """Write all of it."""
     from conftest import found_chromium
-    from playwright.sync_api import sync_playwright
 
     PICTURES.mkdir(exist_ok=True)
     drawn = {name: make() for name, make in FIGURES.items()}
     images = {name: picture(figure) for name, figure in drawn.items()}
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found_chromium(), args=["--no-sandbox", "--disable-gpu"])
-        images |= {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
-        browser.close()
+    if chromium := found_chromium():
+        images |= pictures_of_labs(chromium)
+    else:
+        print("the pictures of labs stay as they are, for Chromium is missing")
     for name, image in images.items():
         image.save(PICTURES / f"{name}.png", optimize=True)
     texts = {name: text for name, (_, text) in LABS.items()} | {name: figure.text for name, figure in drawn.items()}
