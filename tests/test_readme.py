@@ -20,6 +20,8 @@ from readme import (
     with_repository,
 )
 
+from percept_obs import cli
+
 ANEW = "python tests/readme.py writes it anew"
 TEXT = README.read_text("utf-8")
 
@@ -68,6 +70,13 @@ def test_one_line_names_the_repository(path):
     text = path.read_text("utf-8")
     assert repository() in text
     assert with_repository(text) == text, ANEW
+
+
+def test_the_link_to_binder_opens_what_binder_copies(tmp_path, monkeypatch):
+    command = re.search(r"^percept-obs (.*)$", (ROOT / "binder/postBuild").read_text("utf-8"), re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(command[1].split()) == 0
+    assert (tmp_path / re.search(r"mybinder\.org\S*urlpath=lab/tree/([^)\s]*)", TEXT)[1]).exists()
 
 
 def test_the_citation_names_the_version_of_the_package():
