@@ -75,14 +75,9 @@ def always_compiled():
 @pytest.fixture(scope="session")
 def chromium():
     """The path of Chromium or Chrome: the system's, or the one that Playwright keeps."""
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
-    return (
-        found
-        or playwright_chromium()
-        or missing(
-            "Chromium is missing. Debian: sudo apt-get install chromium. "
-            "macOS and Windows: python -m playwright install chromium."
-        )
+    return found_chromium() or missing(
+        "Chromium is missing. Debian: sudo apt-get install chromium. "
+        "macOS and Windows: python -m playwright install chromium."
     )
 
 
@@ -95,6 +90,11 @@ def browser(chromium):
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
         yield browser
         browser.close()
+
+
+def found_chromium():
+    """The path of Chromium or Chrome, if there is one."""
+    return next(filter(None, map(shutil.which, BROWSERS)), None) or playwright_chromium()
 
 
 def playwright_chromium():

@@ -1,7 +1,5 @@
 """One call runs every observer on any set of recordings, and says which recordings and times were left out and why."""
 
-import doctest
-import importlib
 from dataclasses import replace
 
 import numpy as np
@@ -20,12 +18,6 @@ GAINS = {de_luca: ({"measured_gain": 5.0, "hidden_gain": 1.0}, {"measured_gain":
 
 def found(recordings=SEEN, candidates=GAINS, **settings):
     return all_observers(recordings, candidates=candidates, **settings)
-
-
-def test_the_example_of_the_docstring_runs():
-    failed, attempted = doctest.testmod(importlib.import_module("percept_obs.studies.all_observers"))
-    assert attempted
-    assert not failed
 
 
 def test_it_is_what_choosing_and_reporting_finds():

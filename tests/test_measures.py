@@ -1,7 +1,5 @@
 """Each measure of observability says what it must where the answer is known, and the table says why they disagree."""
 
-import doctest
-import importlib
 import random
 from fractions import Fraction
 from functools import cache
@@ -291,12 +289,3 @@ def test_the_figure_draws_every_measure():
     assert "All measures agree" in figures.observability(alone).text
     with pytest.raises(ValueError, match="an Observability is needed"):
         figures.observability(3)
-
-
-@pytest.mark.slow
-def test_the_examples_of_the_docstrings_run():
-    names = ("bound", "efficiency", "lie", "maps", "measures", "steering")
-    for name in names:
-        module = importlib.import_module(f"percept_obs.observability.{name}")
-        found = doctest.testmod(module)
-        assert (found.attempted > 0, found.failed) == (True, 0), name

@@ -3,7 +3,6 @@
 import inspect
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -364,13 +363,3 @@ def test_noise_leaves_little_error_with_both_outputs(make):
     for seed in range(5):
         run = track(record(scenarios.ma2005_eq35(), camera=NOISY, seed=seed), make(BOTH), ZERO)
         assert run.rms(20, 80, "y3") <= 0.005
-
-
-def test_the_readme_has_a_row_for_each():
-    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-    wanted = []
-    for make in OBSERVERS:
-        cells = make.about.title, f"`{make.key}`", make.about.source, make.about.needs, make.about.claim
-        wanted.append(f"| {' | '.join(cells)} |".replace("|w|", "\\|w\\|"))
-    found = [line for line in readme.splitlines() if line.startswith("| ") and "`" in line.split(" | ")[1]]
-    assert found == wanted, "the table of README.md should be:\n" + "\n".join(wanted)

@@ -1,8 +1,6 @@
 """Files of one's own become recordings: what is written is read back, and the real recording rebuilt is the same."""
 
 import ast
-import doctest
-import importlib
 from pathlib import Path
 
 import numpy as np
@@ -49,17 +47,6 @@ def stereo(landmarks=True):
     images[50:60, 1] = np.nan
     places = np.array([[0.1, 0, 2], [0, 0.1, 3], [0.2, 0.2, 2.5]]) if landmarks else None
     return StereoTracks(POSES, mount, images, CAMERA, 0.24, places)
-
-
-EXAMPLES = ("derivatives", "poses", "pose_files", "pixels", "recording", "text_table", "track_files", "worked")
-
-
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_the_examples_of_the_docstrings_run(name):
-    module = importlib.import_module(f"percept_obs.recording.{name}")
-    failed, attempted = doctest.testmod(module)
-    assert attempted
-    assert not failed
 
 
 # Written and read back.

@@ -15,6 +15,7 @@ from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
+from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
@@ -41,7 +42,7 @@ SETTINGS = {
     "nb_execution_mode": "off",
     "nb_merge_streams": True,
     "nb_render_markdown_format": "myst",
-    "myst_enable_extensions": ["dollarmath", "amsmath"],
+    "myst_enable_extensions": ["dollarmath", "amsmath", "substitution"],
     "napoleon_google_docstring": False,
     "autodoc_typehints": "none",
     "add_module_names": False,
@@ -83,7 +84,7 @@ def build(
         for path, text in [*ledger_pages(ledgers), *reference(), *_texts()]:
             _write(source / path, text)
         tell("writing the pages")
-        _generate(source, target)
+        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers)})
     tell(f"wrote {target / 'index.html'}")
 
 
@@ -116,11 +117,12 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _generate(source: Path, target: Path) -> None:
+def _generate(source: Path, target: Path, names: Mapping[str, Any]) -> None:
     from sphinx.application import Sphinx
 
     said = io.StringIO()
-    app = Sphinx(source, None, target, source / ".doctrees", "html", SETTINGS, status=None, warning=said, freshenv=True)
+    settings, kept = {**SETTINGS, **names}, source / ".doctrees"
+    app = Sphinx(source, None, target, kept, "html", settings, status=None, warning=said, freshenv=True)
     app.build(force_all=True)
     if said.getvalue():
         raise SiteFault(f"the site has faults:\n{said.getvalue()}")

@@ -34,7 +34,7 @@ def typed_markup(words: list[Token], letters: Mapping[str, sp.Symbol] = MappingP
     --------
     >>> from percept_obs.checking.tokens import tokens
     >>> typed_markup(tokens("x/2"))
-    '<mrow><mfrac><mi>x</mi><mn>2</mn></mfrac></mrow>'
+    '<mrow><mfrac><mrow><mi>x</mi></mrow><mrow><mn>2</mn></mrow></mfrac></mrow>'
     """
     return _Writer(words, letters).line()
 

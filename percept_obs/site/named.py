@@ -1,0 +1,65 @@
+"""What texts of the site name by a key: notebooks, equations of papers, numbers of the package.
+
+A text writes ``{{ nb["02"] }}``, ``{{ MA2005["(11)"] }}`` or ``{{ longest_step }}``, and MyST puts in what stands here.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from percept_obs.compile.integrator import LARGEST_STEP_RATE, LONGEST_STEP, PLANT_STEP
+from percept_obs.labs.observer.settings import SCHEMA as OF_A_POINT
+from percept_obs.labs.points.settings import SCHEMA as OF_POINTS
+from percept_obs.labs.points.texts import MOST_POINTS
+from percept_obs.labs.shared.offered import MOST_NUMBERS
+from percept_obs.labs.structure.settings import SCHEMA as OF_STRUCTURE
+from percept_obs.papers import NAMED, Ledger
+from percept_obs.recording.path import RELATIVE_ERROR
+from percept_obs.site.pages import ledger_addresses, slug
+from percept_obs.tracking.verdict import TOLERANCE
+
+
+class Notebooks(dict[str, str]):
+    """Links to notebooks by their numbers; one that is not on the site stands as its number."""
+
+    def __missing__(self, number: str) -> str:
+        """The number alone."""
+        return number
+
+
+def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, Any]:
+    """What keys in texts stand for; an equation of a paper that is not on the site stands without a link.
+
+    Parameters
+    ----------
+    notebooks : iterable of str
+        File names of the site's notebooks.
+    ledgers : mapping of str to Ledger
+        The site's papers.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import NAMED
+    >>> found = named(["02_two_observers.ipynb"], NAMED)
+    >>> found["nb"]["02"], found["nb"]["03"], found["MA2005"]["(11)"]
+    ('[02](/notebooks/02_two_observers.ipynb)', '03', '[(11)](/ledger/ma2005/11.md)')
+    """
+    return {
+        "nb": Notebooks({name[:2]: f"[{name[:2]}](/notebooks/{name})" for name in notebooks}),
+        **{
+            name: {
+                place: f"[{place}](/ledger/{slug(name)}/{page}.md)" if name in ledgers else place
+                for place, page in ledger_addresses(ledger).items()
+            }
+            for name, ledger in NAMED.items()
+        },
+        "longest_step": f"{LONGEST_STEP:g} s",
+        "plant_step": f"{PLANT_STEP:g} s",
+        "largest_step_rate": f"{LARGEST_STEP_RATE:g}",
+        "relative_error": f"{RELATIVE_ERROR:g}",
+        "tolerance": f"{TOLERANCE:.0%}".replace("%", " %"),
+        "most_numbers": MOST_NUMBERS,
+        "structure_step": f"{OF_STRUCTURE.opening['step']:g} s",
+        "points_step": f"{OF_POINTS.opening['step']:g} s",
+        "most_points": MOST_POINTS,
+        "duration": f"{OF_A_POINT['duration'].expected} s",
+    }

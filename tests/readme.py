@@ -1,0 +1,178 @@
+"""What README.md takes from the package, its pictures, and the repository's name: ``python tests/readme.py`` writes it.
+
+The name of the repository stands in ``pyproject.toml``, under ``[project.urls]``, and nowhere else by hand.
+"""
+
+import io
+import re
+import tomllib
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from PIL import Image
+
+from percept_obs import (
+    Camera,
+    Gaussian,
+    PerspectiveSystem,
+    affine,
+    bound_map,
+    cramer_rao,
+    ekf,
+    figures,
+    ibo,
+    pinhole,
+    record,
+    scenarios,
+    sphere,
+    track,
+    unified,
+)
+from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.observers import OBSERVERS
+from percept_obs.studies.fields import PixelNoise, field_bound
+
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+PICTURES = ROOT / ".github/pictures"
+NAMES_THE_REPOSITORY = (README, ROOT / "CITATION.cff")
+
+COLOURS = 64  # in a picture: curves and letters need no more, and the file is a quarter as large
+SCREEN = {"width": 1100, "height": 660}
+
+
+def observers_at_their_limit():
+    """Two observers and the bound that no observer beats."""
+    form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    seen = record(scenarios.ma2005_eq35(), 20, Camera(0.05, Gaussian(0.01)), seed=1)
+    runs = [track(seen, ekf(form, noise_variance=1e-4)), track(seen, ibo(form))]
+    return figures.runs_over_time(runs, bound=cramer_rao(seen, form))
+
+
+def map_of_the_bound():
+    """How well the distance can be had at each place of the image."""
+    moving = PerspectiveSystem(scenarios.ma2005_eq35().motion, pinhole())
+    return figures.bound_map(bound_map(moving, 2.0, 5.0, resolution=80, y1=(-0.5, 2.5), y2=(-0.5, 1.8)))
+
+
+def three_surfaces():
+    """The same for three cameras with equal pixels that move sideways, in all directions that they see."""
+    sideways, noise = affine(np.zeros((3, 3)), [0.5, 0, 0]), PixelNoise(sigma=0.5, across=640)
+    seen = [field_bound(surface, sideways, noise, np.radians(150)) for surface in (pinhole(), unified(0.8), sphere())]
+    return figures.fields(seen)
+
+
+FIGURES = {make.__name__: make for make in (observers_at_their_limit, map_of_the_bound, three_surfaces)}
+"""Figures of the gallery; each brings its text equivalent."""
+
+LABS = {
+    "observer_lab": (
+        observer_lab,
+        "The lab of one point. On the left the image, with the track of the point, its estimate and the focus of "
+        "expansion, and the scene in three dimensions. In the middle charts of the distance, its relative error and "
+        "the excitation over time. On the right a question with three answers, and the controls. Below, the verdict.",
+    ),
+    "structure_lab": (
+        structure_lab,
+        "The lab of structure and motion, laid out in the same way. The charts show the three unknowns and their "
+        "relative error; on the right one ticks what is known.",
+    ),
+    "points_lab": (
+        points_lab,
+        "The lab of many points. Three points and their estimates move through the image and the scene; the charts "
+        "show the error of the state, the depth of each point, and what the images of a window tell of the state.",
+    ),
+}
+"""Labs of the gallery, with what their pictures show."""
+
+
+def repository():
+    """Address of the repository, as the package's metadata has it."""
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["urls"]["Repository"]
+
+
+def with_repository(text):
+    """A text with the repository's owner and name in its links to GitHub and Binder."""
+    name = repository().removeprefix("https://github.com/")
+    return re.sub(r"(https://(?:github\.com|mybinder\.org/v2/gh)/)[^/\s]+/[^/\s\")]+", rf"\g<1>{name}", text)
+
+
+def observer_table():
+    """The rows of the table of observers."""
+    rows = []
+    for make in OBSERVERS:
+        cells = make.about.title, f"`{make.key}`", make.about.source, make.about.needs, make.about.claim
+        rows.append(f"| {' | '.join(cells)} |".replace("|w|", "\\|w\\|"))
+    head = ["observer", "function", "source", "needs", "what is claimed"]
+    return "\n".join([f"| {' | '.join(head)} |", "|---" * len(head) + "|", *rows])
+
+
+def gallery(texts):
+    """Pictures by their names, with what they show."""
+    return "\n\n".join(f"![{text}]({(PICTURES / name).relative_to(ROOT)}.png)" for name, text in texts.items())
+
+
+def with_part(text, name, part):
+    """A text with a part anew, which stands between comments."""
+    start, end = f"<!-- {name} -->\n", "\n<!-- end -->"
+    before, rest = text.split(start)
+    return f"{before}{start}{part}{rest[rest.index(end) :]}"
+
+
+def picture(figure):
+    """A figure as an image."""
+    written = io.BytesIO()
+    with matplotlib.rc_context({"savefig.dpi": 110}):
+        figure.figure.savefig(written, format="png")
+    return few_colours(written.getvalue())
+
+
+def pictures_of_labs(chromium):
+    """All labs of the gallery."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        images = {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
+        browser.close()
+    return images
+
+
+def picture_of_lab(browser, make):
+    """A lab as it opens, as an image."""
+    from lab_alone import DRAWN, opened
+
+    page = opened(browser, make(), viewport=SCREEN, color_scheme="light")
+    page.wait_for_function(DRAWN)
+    shot = page.screenshot()
+    page.close()
+    return few_colours(shot)
+
+
+def few_colours(png):
+    return Image.open(io.BytesIO(png)).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+
+
+def main():
+    """Write all of it."""
+    from conftest import found_chromium
+
+    PICTURES.mkdir(exist_ok=True)
+    drawn = {name: make() for name, make in FIGURES.items()}
+    images = {name: picture(figure) for name, figure in drawn.items()}
+    if chromium := found_chromium():
+        images |= pictures_of_labs(chromium)
+    else:
+        print("the pictures of labs stay as they are, for Chromium is missing")
+    for name, image in images.items():
+        image.save(PICTURES / f"{name}.png", optimize=True)
+    texts = {name: text for name, (_, text) in LABS.items()} | {name: figure.text for name, figure in drawn.items()}
+    text = with_part(README.read_text("utf-8"), "observers", observer_table())
+    README.write_text(with_part(text, "gallery", gallery(texts)), "utf-8")
+    for path in NAMES_THE_REPOSITORY:
+        path.write_text(with_repository(path.read_text("utf-8")), "utf-8")
+
+
+if __name__ == "__main__":
+    main()

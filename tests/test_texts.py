@@ -1,0 +1,95 @@
+"""What texts say holds: their examples run, and the files, notebooks, sections and equations that they name exist."""
+
+import doctest
+import importlib
+import json
+import re
+
+import pytest
+from jupyter_harness import NOTEBOOKS
+
+from percept_obs.papers import NAMED
+from percept_obs.site import TEXTS
+from percept_obs.site.named import named
+
+ROOT = NOTEBOOKS.parent
+GUIDE = (TEXTS / "guide.md").read_text("utf-8")
+ON_THE_SITE = {path.name: path.read_text("utf-8") for path in TEXTS.iterdir() if path.name.endswith(".md")}
+READ = {"CONTRIBUTING.md": (ROOT / "CONTRIBUTING.md").read_text("utf-8"), **ON_THE_SITE}
+SECTIONS = {
+    path.name[:2]: {
+        int(number)
+        for cell in json.loads(path.read_bytes())["cells"]
+        for number in re.findall(r"^## (\d+)\.", "".join(cell["source"]), re.MULTILINE)
+    }
+    for path in NOTEBOOKS.glob("*.ipynb")
+}
+
+
+@pytest.mark.slow
+def test_the_guide_s_solutions_compute_what_they_say():
+    text = re.sub(r"^```.*$", "", GUIDE, flags=re.MULTILINE)
+    test = doctest.DocTestParser().get_doctest(text, {}, "guide", None, None)
+    assert len(test.examples) > 20
+    assert doctest.DocTestRunner().run(test).failed == 0
+    questions = GUIDE[GUIDE.index("## Exam questions") :].split("<details>")[1:]
+    assert all(">>> " in question for question in questions)
+
+
+def test_every_notebook_stands_in_the_lecture_map():
+    lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Two lesson plans")]
+    assert set(SECTIONS) <= set(re.findall(r'nb\["(\d\d)"\]', lectures))
+
+
+def test_the_sections_that_the_guide_names_exist():
+    found = re.findall(r'nb\["(\d\d)"\] }}, sections? (\d+)(?: (and|to) (\d+))?', GUIDE)
+    assert len(found) > 20
+    for notebook, first, _, last in found:
+        assert {int(first), int(last or first)} <= SECTIONS[notebook], (notebook, first, last)
+
+
+@pytest.mark.parametrize("minutes", [45, 90])
+def test_a_lesson_fills_its_time(minutes):
+    plan = GUIDE[GUIDE.index(f"### {minutes} minutes") :]
+    plan = plan[: plan.index("*Learning goals.*")]
+    spans = [(int(begin), int(end)) for begin, end in re.findall(r"^\| (\d+) to (\d+) \|", plan, re.MULTILINE)]
+    assert [begin for begin, _ in spans] == [0, *(end for _, end in spans[:-1])]
+    assert spans[-1][1] == minutes
+
+
+@pytest.mark.parametrize("name", ON_THE_SITE)
+def test_what_a_text_names_by_a_key_is_there(name):
+    values = named([path.name for path in NOTEBOOKS.glob("*.ipynb")], NAMED)
+    for key, _, place in re.findall(r'{{ (\w+)(\["(.*?)"\])? }}', ON_THE_SITE[name]):
+        assert key in values, f"nothing is called {key}"
+        assert not place or values[key][place], f"{key} has no {place}"
+
+
+@pytest.mark.parametrize("name", READ)
+def test_the_files_that_a_text_names_exist(name):
+    for quoted in re.findall(r"`([^`]*)`", READ[name]):
+        for path in re.findall(r"(?<![\w/.-])[\w/.-]+\.(?:py|js|md|cff|toml)\b", quoted):
+            if path.startswith("my_") or "/my_" in path:
+                continue  # the reader's own
+            assert list(ROOT.glob(path)) or [
+                f for f in (ROOT / "percept_obs").rglob(path) if "node_modules" not in f.parts
+            ], f"there is no {path}"
+
+
+EXAMPLES = sorted(
+    ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    for path in (ROOT / "percept_obs").rglob("*.py")
+    if ">>> " in path.read_text("utf-8")
+)
+
+
+def test_examples_are_found_in_many_modules():
+    assert len(EXAMPLES) > 50
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_examples_of_the_docstrings_run(name):
+    found = doctest.testmod(importlib.import_module(name.removesuffix(".__init__")))
+    assert found.attempted
+    assert not found.failed
