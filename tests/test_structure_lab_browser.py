@@ -191,7 +191,13 @@ def test_too_many_steps_are_refused_where_they_were_typed(fresh):
 
 
 def test_every_control_is_reached_and_moved_by_keyboard(browser):
-    settings = {"period": 0.02, "step": 0.01, "duration": 1.0, "observers": ["ideal", "layer"], "pictures": ["error", "depth"]}
+    settings = {
+        "period": 0.02,
+        "step": 0.01,
+        "duration": 1.0,
+        "observers": ["ideal", "layer"],
+        "pictures": ["error", "depth"],
+    }
     page = opened(browser, structure_lab(**settings))
     page.wait_for_function(DRAWN)
     page.evaluate(UNFOLD)
