@@ -31,25 +31,28 @@ export function build(lab, place, presets) {
   const sketch = new Sketch(lab);
   const whatIf = lab.parts.causesOf && new WhatIf(lab);
   const card = new Card(lab, presets, sketch);
-  const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
+  const code = element("pre", { class: "code", hidden: true, tabindex: 0 });
   const keep = button("Keep", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" });
 
-  async function copy() {
-    code.textContent = lab.copy();
+  async function copy(text, what, then) {
+    code.textContent = text;
+    code.setAttribute("aria-label", what);
     code.hidden = false;
     try {
-      await navigator.clipboard.writeText(code.textContent);
-      view.say("Copied: paste it into a cell.");
+      await navigator.clipboard.writeText(text);
+      view.say(then);
     } catch {
       view.say("The browser does not let the lab copy; select the lines below.");
     }
   }
+  const copyLink = () => copy(lab.address.link(), "Link to this lab as it is now", window.location.protocol === "file:" ? "Copied: it opens where this file is." : "Copied: it opens the lab as it is now.");
 
   const actions = element(
     "div",
     { class: "actions" },
     ...[history.undo, history.redo, keep],
-    button("Copy as code", copy, { "data-control": "copy" }),
+    button("Copy as code", () => copy(lab.copy(), "Python code of this run", "Copied: paste it into a cell."), { "data-control": "copy" }),
+    ...(lab.address ? [button("Copy link", copyLink, { "data-control": "copy link", title: "The address of this page, with the settings of this lab" })] : []),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
   );
   const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
