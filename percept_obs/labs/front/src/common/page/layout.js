@@ -4,6 +4,7 @@ import { Card } from "./card.js";
 import { button, element } from "./controls.js";
 import { topic } from "./fieldsets.js";
 import { Legend } from "./legend.js";
+import { Paper } from "./paper.js";
 import { Player } from "./player.js";
 import { beside, fill, put, show } from "./put.js";
 import { Sketch } from "./sketch.js";
@@ -31,6 +32,7 @@ export function build(lab, place, presets) {
   const sketch = new Sketch(lab);
   const whatIf = lab.parts.causesOf && new WhatIf(lab);
   const card = new Card(lab, presets, sketch);
+  const paper = new Paper(lab, presets);
   const code = element("pre", { class: "code", hidden: true, tabindex: 0 });
   const keep = button("Keep", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" });
 
@@ -126,7 +128,10 @@ export function build(lab, place, presets) {
       sketch.show();
     },
     playing: () => player.playing,
-    close: () => player.close(),
+    close() {
+      player.close();
+      paper.close();
+    },
     ...functions,
     analysis: (sentences) => fill(analysis, sentences),
     answered: (answer) => analysis.classList.toggle("of-others", !answer),
