@@ -116,6 +116,15 @@ def test_a_page_of_its_own_is_small_and_asks_for_nothing(make, from_disk, tmp_pa
     page.close()
 
 
+def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
+    page, asked = from_disk(points_lab())
+    page.evaluate("() => [...window.perceptObsLabs][0].change({ spin: 0.5 }, true)")
+    page.wait_for_function("() => [...window.perceptObsLabs][0].latest.beside")
+    page.wait_for_function(SHOWN)
+    assert asked == []
+    page.close()
+
+
 def test_its_curves_are_those_of_python(from_disk):
     page, _ = from_disk(
         observer_lab(outputs=["y1"], observers=["identifier_based", "de_luca"], noise={"kind": "uniform", "size": 0.01})
