@@ -15,11 +15,11 @@ Object.assign(globalThis, { window: { location: place, addEventListener() {} } }
 async function followed(name, model, hash) {
   const Lab = LABS[name];
   const lab = Object.create(Lab.prototype);
-  const said = { notice: "", replaced: null };
+  const said = { notice: "", visited: null };
   const view = { notice: (text) => (said.notice = text), root: { scrollIntoView() {} } };
-  const replace = (settings) => (said.replaced = settings);
+  const visit = (settings) => (said.visited = settings);
   const fail = (error) => (said.failed = error.message);
-  Object.assign(lab, { model, kernels: new Lab.computing.Kernels(model, loadHere), view, replace, fail });
+  Object.assign(lab, { model, state: { settings: model.opening }, kernels: new Lab.computing.Kernels(model, loadHere), view, visit, fail });
   place.hash = hash;
   await new Address(lab, { name, names: [name] }).follow();
   return said;

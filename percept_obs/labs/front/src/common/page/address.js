@@ -14,8 +14,8 @@ export class Address {
     this.lab = lab;
     this.name = place.name;
     this.names = place.names;
-    /** @type {any} the settings that the address tells, or need not tell */
-    this.told = null;
+    /** The settings that the address tells; those that the lab opens with it need not tell. */
+    this.told = lab.settings;
     this.timer = /** @type {any} */ (null);
     this.listener = () => this.follow();
     window.addEventListener("hashchange", this.listener);
@@ -38,7 +38,7 @@ export class Address {
       const settings = settingsIn(mine, lab.model);
       for (const each of lab.wanted(settings)) await this.refuse(each);
       if (lab.closed || window.location.hash !== hash) return;
-      lab.replace(settings);
+      lab.visit(settings);
       if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
     } catch (error) {
       if (!(error instanceof BadAddress)) return lab.fail(error);
@@ -68,9 +68,8 @@ export class Address {
     }
   }
 
-  /** Settings have come to rest: those that the lab opens with are told by no address. */
+  /** Settings have come to rest. */
   rested(settings) {
-    this.told ??= settings;
     if (settings === this.told) return;
     this.told = settings;
     this.timer ??= setTimeout(() => this.write(), SELDOM);

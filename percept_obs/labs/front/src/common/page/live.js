@@ -121,6 +121,12 @@ export class Live extends Showing {
     this.touched(true);
   }
 
+  /** Show settings that somebody sent; they are about no question that is open here. */
+  visit(settings) {
+    this.state.step({ settings, preset: null });
+    this.touched(true);
+  }
+
   reset() {
     this.time.timeline.forget();
     super.reset();
