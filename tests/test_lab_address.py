@@ -272,7 +272,7 @@ def test_a_link_opens_the_lab_as_it_was_and_a_drag_leaves_no_history(page):
     assert "#" not in shown.url
     before = shown.evaluate("history.length")
     for key in ("b1", "b2"):
-        for _ in range(15):
+        for _ in range(5):
             shown.locator(control(key)).press("ArrowRight")
     shown.check(control("observer extended_kalman"))
     shown.wait_for_function("() => location.hash.includes('extended_kalman')")
