@@ -6,6 +6,7 @@ from percept_obs.border.files import write_whole
 from percept_obs.border.kinds import Coefficients, Entries, Kind, are_numbers
 from percept_obs.border.limits import MOST_TERMS, TooMuchWork, limit
 from percept_obs.border.modules import needed
+from percept_obs.border.progress import bar, workers
 from percept_obs.border.warning import warn
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "TooMuchWork",
     "WrongKind",
     "are_numbers",
+    "bar",
     "checked",
     "derived",
     "expression",
@@ -27,5 +29,6 @@ __all__ = [
     "positive",
     "refuse_kind",
     "warn",
+    "workers",
     "write_whole",
 ]

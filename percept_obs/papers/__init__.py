@@ -12,7 +12,6 @@ misprint / derived
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -21,6 +20,7 @@ from importlib import import_module
 from itertools import chain
 from pkgutil import iter_modules
 
+from percept_obs.border import bar, workers
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
 
@@ -89,18 +89,16 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     processes : int, optional
         As many as there are cores, when left out; `FEW` entries are judged in this one.
     """
-    from tqdm.auto import tqdm
-
     wanted = [entry for ledger in ledgers for entry in ledger.entries]
-    if len(wanted) > FEW and (processes or os.cpu_count() or 1) > 1:
+    if len(wanted) > FEW and (processes or workers()) > 1:
         asked = set(wanted)
         tasks = [(g, [k for k, entry in enumerate(group) if entry in asked]) for g, group in enumerate(GROUPS)]
         with ProcessPoolExecutor(processes) as pool:
-            results = tqdm(pool.map(_found, tasks), "parts", len(tasks), delay=2, leave=False)
+            results = bar(pool.map(_found, tasks), "parts", len(tasks))
             for (g, numbers), found in zip(tasks, results, strict=True):
                 for k, values in zip(numbers, found, strict=True):
                     vars(GROUPS[g][k]).update(values)  # where cached properties keep what they found
-    return all([entry.agrees for entry in tqdm(wanted, "equations", delay=2, leave=False)])
+    return all([entry.agrees for entry in bar(wanted, "equations")])
 
 
 def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:

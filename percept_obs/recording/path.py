@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import TooMuchWork, limit
+from percept_obs.border import TooMuchWork, bar, limit
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_SQUARED_STATE
 
@@ -93,7 +93,6 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
         If the motion changes so fast that it would have to be looked at too often.
     """
     from scipy.integrate import DOP853
-    from tqdm.auto import tqdm
 
     last = float(times[-1])
     inner = np.asarray(breaks, dtype=float)
@@ -101,7 +100,7 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
     path = np.full((len(times), len(start)), np.nan)
     begin, state, looks = 0.0, start, 0
     path[times == 0] = start
-    with tqdm(total=last, desc="moving", unit="s", delay=2, leave=False) as bar, np.errstate(all="ignore"):
+    with bar(None, "moving", last, unit="s") as progress, np.errstate(all="ignore"):
         for end in ends if last else ():
             longest = min(LONGEST_LOOK, end - begin)
             solver = DOP853(rate, begin, state, end, longest, RELATIVE_ERROR, ABSOLUTE_ERROR, first_step=longest)
@@ -115,7 +114,7 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
                 between = slice(*np.searchsorted(times, [solver.t_old, solver.t], side="right"))
                 if between.start < between.stop:
                     path[between] = solver.dense_output()(times[between]).T
-                bar.update(solver.t - solver.t_old)
+                progress.update(solver.t - solver.t_old)
                 if not (solver.y**2).sum() < LARGEST_SQUARED_STATE:
                     return _bounded(path)
             begin, state, looks = end, solver.y, looks + solver.nfev

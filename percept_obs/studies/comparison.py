@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.border import checked
+from percept_obs.border import bar, checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
@@ -74,7 +74,6 @@ def compare(
         If there are no recordings or no observers, a recording has no truth, or an observer does not fit.
     """
     import pandas as pd
-    from tqdm.auto import tqdm
 
     if not isinstance(observers, Mapping):
         names = [observer.name for observer in observers]
@@ -86,10 +85,10 @@ def compare(
     language = choose(None, sum(len(recording.time) for recording in recordings))
     settings = {"language": language} | settings
     follow = {name: partial(track, observer=each, start=start, **settings) for name, each in observers.items()}
-    for run in tqdm(follow.values(), desc="compiling", delay=2, leave=False):
+    for run in bar(follow.values(), "compiling"):
         run(recordings[0])  # so that compiling is no part of the cost
     rows = []
-    for recording, label in tqdm([*product(recordings, follow)], desc="runs", delay=2, leave=False):
+    for recording, label in bar([*product(recordings, follow)], "runs"):
         (run,), cost = timed(follow[label], [recording])
         surface, found = recording.imaging_surface, run.outcome(tolerance, *coordinates)
         error = np.abs(surface.inverse(run.error))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Generator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.border import warn
+from percept_obs.border import bar, warn, workers
 from percept_obs.compile import Array
 from percept_obs.studies.part import NOT_RUN, Plan
 from percept_obs.studies.varying import Grid
@@ -85,27 +87,44 @@ def fill(plan: Plan, grid: Grid, kept: Array, chunk: int, client: Any = None, st
     Unfinished
         If it was interrupted.
     """
-    from tqdm.auto import tqdm
-
     left = kept[:, 0] == NOT_RUN
     parts = [np.arange(begin, min(begin + chunk, len(kept))) for begin in range(0, len(kept), chunk)]
-    todo = [part for part in parts if left[part].any()]
+    todo = [(int(part[0]), grid.part(part)) for part in parts if left[part].any()]
     if client is None:
         plan.prepare(grid.columns)
-    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(os.cpu_count())
-    begun: dict[Future[Array], int] = {}
-    with tqdm(total=len(kept), initial=int((~left).sum()), desc="runs", unit="run", delay=2, leave=False) as bar:
+    computed = _beside(plan, todo, client) if client or workers() > 1 else _one_by_one(plan, todo)
+    with closing(computed), bar(None, "runs", len(kept), initial=int((~left).sum()), unit="run") as progress:
         try:
-            begun |= {executor.submit(plan.compute, grid.part(part)): int(part[0]) for part in todo}
-            for future in as_completed(begun):
-                begin, found = begun.pop(future), future.result()
+            for begin, found in computed:
                 kept[begin : begin + len(found)] = found
                 if store:
                     store.keep(begin, found)
-                bar.update(len(found))
+                progress.update(len(found))
         except KeyboardInterrupt:
             warn(Unfinished(f"interrupted: {int((kept[:, 0] == NOT_RUN).sum())} of {len(kept)} runs are missing"))
-        finally:
-            for future in begun:
-                future.cancel()
-            executor.shutdown()
+
+
+Parts = Sequence[tuple[int, Mapping[str, Array]]]
+"""Where each part begins, and what its runs take."""
+
+Computed = Generator[tuple[int, Array]]
+"""Where a part begins, and what its runs gave."""
+
+
+def _one_by_one(plan: Plan, todo: Parts) -> Computed:
+    for begin, part in todo:
+        yield begin, plan.compute(part)
+
+
+def _beside(plan: Plan, todo: Parts, client: Any) -> Computed:
+    """Parts as they are done on the threads of this machine or on a cluster; what is not wanted any more is left."""
+    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
+    begun: dict[Future[Array], int] = {}
+    try:
+        begun |= {executor.submit(plan.compute, part): begin for begin, part in todo}
+        for future in as_completed(begun):
+            yield begun.pop(future), future.result()
+    finally:
+        for future in begun:
+            future.cancel()
+        executor.shutdown()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.border import checked
+from percept_obs.border import bar, checked
 from percept_obs.observability.windowed import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
@@ -93,7 +93,6 @@ def choose_and_report(
         such reference.
     """
     import pandas as pd
-    from tqdm.auto import tqdm
 
     if not len(choosing) or not len(reporting):
         raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
@@ -127,15 +126,15 @@ def choose_and_report(
             rows.append({**told, "reference": reference, "after": seconds, **numbers})
 
     runs_of = {make: len(settings) * len(choosing) + len(reporting) for make, settings in candidates.items()}
-    with tqdm(total=sum(runs_of.values()), desc="choosing gains", unit="run", delay=2, leave=False) as bar:
+    with bar(None, "choosing gains", sum(runs_of.values()), unit="run") as progress:
 
         def counted(recording: Recording, observer: Observer) -> Run:
-            bar.update()
+            progress.update()
             return follow(recording, observer)
 
         for make, settings in candidates.items():
-            bar.set_postfix_str(make.name, refresh=False)
-            goal, refusal, chosen = bar.n + runs_of[make], make.refusal(form), None
+            progress.set_postfix_str(make.name, refresh=False)
+            goal, refusal, chosen = progress.n + runs_of[make], make.refusal(form), None
             try:
                 observers = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
                 chosen = best_setting(choosing, observers, counted, after, references[0]) if observers else None
@@ -152,7 +151,7 @@ def choose_and_report(
                     ", ".join(_at_edge(values, observers)),
                     partial(_swapped, counted, chosen),
                 )
-            bar.update(goal - bar.n)
+            progress.update(goal - progress.n)
         for label, estimate in (batch or {}).items():
             answer(label, "", "", estimate)
     return pd.DataFrame(rows, columns=COLUMNS)

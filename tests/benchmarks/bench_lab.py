@@ -1,10 +1,11 @@
 """How fast labs draw while the hand drags, and open, in JupyterLab.
 
-    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
+    python tests/benchmarks/bench_lab.py [--alone | --saved | --opening] [part of a name]
 
 With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
-JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
-picture, and to the answer to the first switch, which asks for texts that nothing has needed before.
+JupyterLab, with ``--saved`` in the page that a lab saves itself into, and with ``--opening`` only how long a lab takes
+to open: from the key that runs a cell to the first picture, and to the answer to the first switch, which asks for
+texts that nothing has needed before.
 
 A configuration is dragged five times, and medians are told.  Before each drag the lab is put back to what it opened
 with and shows all of its time, so that each drag begins where the one before it did and every sample is drawn.
@@ -261,8 +262,22 @@ def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
             shutil.rmtree(place, ignore_errors=True)
 
 
-def measure_alone(wanted: dict[str, Case]) -> None:
-    """Measure configurations in a page without JupyterLab, which opens at once, and without Python."""
+def open_alone(context: Any, lab: Any) -> Any:
+    """A page without JupyterLab, and without Python but for an answer."""
+    return lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+
+
+def open_saved(context: Any, lab: Any) -> Any:
+    """The page that a lab saves itself into, opened from the disk."""
+    with tempfile.TemporaryDirectory() as folder:
+        lab.save(Path(folder) / "lab.html")
+        page = context.new_page()
+        page.goto((Path(folder) / "lab.html").as_uri())
+    return page
+
+
+def measure_alone(wanted: dict[str, Case], opened: Callable[[Any, Any], Any]) -> None:
+    """Measure configurations in pages without JupyterLab, which open at once."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -271,7 +286,7 @@ def measure_alone(wanted: dict[str, Case]) -> None:
         with reference_page(context) as reference:
             for title, case in wanted.items():
                 lab = getattr(labs, case.lab)(**case.settings)
-                page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+                page = opened(context, lab)
                 page.wait_for_function(lab_alone.DRAWN)
                 rested(page, 60)
                 measure(title, page, reference, HANDLES[case.lab])
@@ -283,8 +298,8 @@ def main(*arguments: str) -> None:
     """Measure what the arguments ask for."""
     names = [argument for argument in arguments if not argument.startswith("--")]
     wanted = {title: case for title, case in CASES.items() if all(name in title for name in names)}
-    if "--alone" in arguments:
-        measure_alone(wanted)
+    if "--alone" in arguments or "--saved" in arguments:
+        measure_alone(wanted, open_saved if "--saved" in arguments else open_alone)
     elif "--opening" in arguments:
         measure_in_jupyterlab({}, opening=True)
     else:

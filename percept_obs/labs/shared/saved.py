@@ -28,7 +28,7 @@ PAGE = """<!doctype html>
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
-<style>body {{ margin: 0 auto; max-width: 1280px; padding: 8px; color-scheme: light dark; }}</style>
+<style>:root {{ color-scheme: light dark; }} body {{ margin: 0 auto; max-width: 1280px; padding: 8px; }}</style>
 </head>
 <body>
 <main>

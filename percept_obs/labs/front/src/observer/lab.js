@@ -94,9 +94,18 @@ export class ObserverLab extends Live {
     const { outputs } = this.model.surfaces[asked.surface];
     const allowed = outputs.some((names) => same(names, asked.outputs));
     const settings = allowed ? asked : { ...asked, outputs: [...outputs[0]] };
-    if (!allowed) this.view.notice(`The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`);
+    const needed = allowed ? "" : `The ${asked.surface} surface needs ${outputs[0].join(" and ")} to be measured.`;
     const found = withoutRefused(settings, this.kernels.refused(settings), this.model.observers, ALWAYS_POSSIBLE);
-    if (found.why) this.view.notice(found.why);
-    return found.settings;
+    return { settings: found.settings, why: found.why || needed };
+  }
+
+  clash({ scenario, surface, outputs, hold, believed, motion }) {
+    const track = this.model.recordings[scenario];
+    const own = track || this.model.scenarios[scenario].track;
+    if (own && motion.trim()) return `${scenario} has a motion of its own, and none can be typed.`;
+    if (!track) return "";
+    if (surface !== track.surface) return `${scenario} was seen on the ${track.surface} surface.`;
+    if (!outputs.every((name) => track.names.includes(name))) return `${scenario} has ${track.names.join(" and ")} only.`;
+    return believed || hold === "exact" ? `${scenario} is a recording: its motion is as it was measured, and between samples nothing is known.` : "";
   }
 }

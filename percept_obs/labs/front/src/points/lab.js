@@ -87,11 +87,17 @@ export class PointsLab extends Live {
   /** With as many points as the state may have. */
   fitted(asked) {
     const { layouts } = this.model.states[asked.state];
-    if (layouts[asked.points.length - 1]) return asked;
+    if (layouts[asked.points.length - 1]) return { settings: asked, why: "" };
     const count = layouts.findIndex(Boolean) + 1;
-    this.view.notice(`Your own form has ${count} point${count === 1 ? "" : "s"}.`);
     const points = Array.from({ length: count }, (_, k) => asked.points[k] ?? placeBeside(asked.points[0], k));
-    return { ...asked, points, hidden: points.map((_, k) => asked.hidden[k] ?? null), motion: "" };
+    const settings = { ...asked, points, hidden: points.map((_, k) => asked.hidden[k] ?? null), motion: "" };
+    return { settings, why: `Your own form has ${count} point${count === 1 ? "" : "s"}.` };
+  }
+
+  clash({ points, hidden, state, motion }) {
+    if (hidden.length !== points.length) return `There are ${points.length} points, and ${hidden.length} are said to be hidden or not.`;
+    if (hidden.some((times) => times && !(times[0] < times[1]))) return "A point is hidden until after the time from which it is hidden.";
+    return state === "own" && motion.trim() ? "Your own form has a motion of its own, and none can be typed." : "";
   }
 
   removePoint(k) {

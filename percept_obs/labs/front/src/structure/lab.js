@@ -1,7 +1,7 @@
 // The lab of structure and motion: what is known, what can therefore be estimated, and how the estimates converge.
 
 import { withoutRefused } from "../common/model/kernels.js";
-import { settingsAfter as settingsOf } from "../common/model/settings.js";
+import { same, settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
@@ -48,9 +48,13 @@ export class StructureLab extends Live {
   }
 
   fitted(asked) {
-    const { settings, why } = withoutRefused(asked, this.kernels.refused(asked), this.model.observers, "ideal");
-    if (why) this.view.notice(why);
-    return settings;
+    return withoutRefused(asked, this.kernels.refused(asked), this.model.observers, "ideal");
+  }
+
+  clash({ unknown, duration, period, step }) {
+    const { mostSteps, schema } = this.model;
+    if (!same(unknown, schema.unknown.names.filter((name) => unknown.includes(name)))) return `Unknowns come in the order ${schema.unknown.names.join(", ")}.`;
+    return duration / Math.min(period, step) > mostSteps ? `A run has ${mostSteps} steps at most.` : "";
   }
 
   chosen() {

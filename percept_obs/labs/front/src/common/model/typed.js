@@ -8,7 +8,7 @@ export function typedModule({ written }, text) {
   if (!text?.trim()) return [];
   const answer = written?.[text];
   if (!answer?.source) {
-    const why = answer?.refusal ?? "only Python reads what is typed, and it has not: run the cell again";
+    const why = answer?.refusal ?? "only Python reads what is typed, and it has not: open the lab in a notebook, and run its cell";
     return [{ key: `motion ${text}`, texts: {}, refusal: `The motion "${text}" cannot be shown: ${why}` }];
   }
   const { source, columns, uses } = answer;

@@ -1,5 +1,8 @@
 // Computing beside the page: a worker, made of the bundle that the page was made of.
 
+/** What ends the bundle: a worker is made of it as a script, for browsers let a page from a disk have no other. */
+const EXPORTS = /export\s*\{[^{}]*\};?\s*$/;
+
 /**
  * Open a worker for a lab; `onReady` is called when it can be asked, `onAnswer` with each answer, and `onGone` if there is
  * none after all: where the page's content policy forbids workers from blob:, or a browser knows no workers of modules.
@@ -7,8 +10,9 @@
  * @param {{bundle: string, kind: string, texts: any, model: any}} lab
  */
 export function openBeside({ bundle, ...lab }, { onReady, onAnswer, onGone }) {
-  const address = URL.createObjectURL(new Blob([bundle], { type: "text/javascript" }));
-  const worker = new Worker(address, { type: "module" });
+  const script = bundle.replace(EXPORTS, "");
+  const address = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+  const worker = new Worker(address);
   worker.onerror = (event) => {
     event.preventDefault();
     worker.terminate();

@@ -16,12 +16,14 @@ export class Picture {
     this.paintedFor = this.font = "";
     /** @type {{width: number, height: number} | null} */
     this.size = null;
+    /** @type {number | undefined} dots for a point, where it is not the screen that shows them */
+    this.sharpness = undefined;
   }
 
   /** Fit the canvas to its figure's last known size, with a font for its letters; returns width and height in CSS pixels. */
   fit(font) {
     const { canvas, context, figure } = this;
-    const ratio = window.devicePixelRatio || 1;
+    const ratio = this.sharpness ?? (window.devicePixelRatio || 1);
     // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
     this.size ??= { width: figure.clientWidth, height: figure.clientHeight };
     const width = Math.max(120, this.size.width);

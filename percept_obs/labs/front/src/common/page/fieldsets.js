@@ -12,13 +12,16 @@ export class Fieldsets {
     this.schema = lab.schema;
     this.controls = [];
     this.shownFor = null;
+    this.computed = false;
   }
 
   /** Bring all controls to the present settings. */
   show() {
-    const { settings } = this.lab;
-    if (this.shownFor === settings) return;
-    this.shownFor = settings;
+    const { settings, shown } = this.lab;
+    // What some controls say is known only once something of the settings was computed.
+    const computed = shown?.settings === settings;
+    if (this.shownFor === settings && this.computed === computed) return;
+    Object.assign(this, { shownFor: settings, computed });
     for (const control of this.controls) control.show();
   }
 

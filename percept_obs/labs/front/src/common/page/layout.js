@@ -4,6 +4,7 @@ import { Card } from "./card.js";
 import { button, element } from "./controls.js";
 import { topic } from "./fieldsets.js";
 import { Legend } from "./legend.js";
+import { Paper } from "./paper.js";
 import { Player } from "./player.js";
 import { beside, fill, put, show } from "./put.js";
 import { Sketch } from "./sketch.js";
@@ -31,25 +32,29 @@ export function build(lab, place, presets) {
   const sketch = new Sketch(lab);
   const whatIf = lab.parts.causesOf && new WhatIf(lab);
   const card = new Card(lab, presets, sketch);
-  const code = element("pre", { class: "code", hidden: true, tabindex: 0, "aria-label": "Python code of this run" });
+  const paper = new Paper(lab, presets);
+  const code = element("pre", { class: "code", hidden: true, tabindex: 0 });
   const keep = button("Keep", () => lab.keep(), { "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" });
 
-  async function copy() {
-    code.textContent = lab.copy();
+  async function copy(text, what, then) {
+    code.textContent = text;
+    code.setAttribute("aria-label", what);
     code.hidden = false;
     try {
-      await navigator.clipboard.writeText(code.textContent);
-      view.say("Copied: paste it into a cell.");
+      await navigator.clipboard.writeText(text);
+      view.say(then);
     } catch {
       view.say("The browser does not let the lab copy; select the lines below.");
     }
   }
+  const copyLink = () => copy(lab.address.link(), "Link to this lab as it is now", window.location.protocol === "file:" ? "Copied: it opens where this file is." : "Copied: it opens the lab as it is now.");
 
   const actions = element(
     "div",
     { class: "actions" },
     ...[history.undo, history.redo, keep],
-    button("Copy as code", copy, { "data-control": "copy" }),
+    button("Copy as code", () => copy(lab.copy(), "Python code of this run", "Copied: paste it into a cell."), { "data-control": "copy" }),
+    ...(lab.address ? [button("Copy link", copyLink, { "data-control": "copy link", title: "The address of this page, with the settings of this lab" })] : []),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
   );
   const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
@@ -123,7 +128,10 @@ export function build(lab, place, presets) {
       sketch.show();
     },
     playing: () => player.playing,
-    close: () => player.close(),
+    close() {
+      player.close();
+      paper.close();
+    },
     ...functions,
     analysis: (sentences) => fill(analysis, sentences),
     answered: (answer) => analysis.classList.toggle("of-others", !answer),

@@ -5,6 +5,7 @@ import { Results } from "../model/results.js";
 import { changesInWords, same } from "../model/settings.js";
 import { readOf } from "../model/typed.js";
 import { verdict } from "../model/words.js";
+import { Address } from "./address.js";
 import { openBeside } from "./beside.js";
 import { themeOf } from "./canvas.js";
 import { build } from "./layout.js";
@@ -40,6 +41,8 @@ export class Live extends Showing {
     this.latest = new Latest(this.results, (error) => (error ? this.fail(new Error(error)) : this.schedule()));
     /** @type {Worker | null} */
     this.worker = null;
+    /** @type {Address | null} its part of the page's address, where it has one */
+    this.address = widget.get("address") ? new Address(this, widget.get("address")) : null;
     /** @type {any} */
     this.formulas = null;
     this.pictures = 0;
@@ -53,10 +56,12 @@ export class Live extends Showing {
     if (same(this.settings, this.model.standard)) this.state.open(presets[0].name);
     this.follow(build(this, place, presets));
     this.view.preset();
+    this.address?.follow();
   }
 
   close() {
     super.close();
+    this.address?.close();
     this.view.close();
     this.worker?.terminate();
   }
@@ -67,7 +72,9 @@ export class Live extends Showing {
     if (chosen) {
       this.choices += 1;
       this.view.notice("");
-      this.state.amend(this.fitted(this.settings));
+      const { settings, why } = this.fitted(this.settings);
+      if (why) this.view.notice(why);
+      this.state.amend(settings);
     }
     this.hire();
     // What is found beside the page is drawn when it comes.
@@ -114,6 +121,12 @@ export class Live extends Showing {
     this.touched(true);
   }
 
+  /** Show settings that somebody sent; they are about no question that is open here. */
+  visit(settings) {
+    this.state.step({ settings, preset: null });
+    this.touched(true);
+  }
+
   reset() {
     this.time.timeline.forget();
     super.reset();
@@ -134,9 +147,14 @@ export class Live extends Showing {
     return Promise.all(this.wanted(settings).map((s) => this.kernels.prepare(s)));
   }
 
-  /** The settings, or those that take their place where they are impossible. */
+  /** The settings, or those that take their place where they are impossible, and why. */
   fitted(settings) {
-    return settings;
+    return { settings, why: "" };
+  }
+
+  /** Why settings do not go together that the lab's own controls never let meet; empty if they do. */
+  clash(_settings) {
+    return "";
   }
 
   rest() {
@@ -169,6 +187,7 @@ export class Live extends Showing {
     Object.assign(this, { shown: this.latest.shown, ghost: this.latest.ghost });
     this.speakNow();
     this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
+    this.address?.rested(settings);
     this.describe();
     this.view.rested();
   }

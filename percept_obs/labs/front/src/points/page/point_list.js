@@ -28,7 +28,7 @@ export class PointList {
     hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
     const times = ["from", "to"].map((word, end) => this.time(k, word, end));
     const refused = warning({ least: 0, most: panel.schema.hidden.most, reason: "and the end after the beginning" });
-    const span = element("div", { class: "span" }, "not seen", ...times.map(({ node }) => node), "s", refused.node);
+    const span = element("div", { class: "span", role: "group", "aria-label": "not seen from, to, in s" }, "not seen", ...times.map(({ node }) => node), "s", refused.node);
     for (const { field } of times) for (const type of ["input", "change"]) field.addEventListener(type, () => refused.tell(!span.querySelector("[aria-invalid=true]")));
     const said = { "data-control": `remove ${k + 1}`, "aria-label": `remove point ${k + 1}` };
     const remove = button("×", () => lab.removePoint(k), { class: "remove", ...said });

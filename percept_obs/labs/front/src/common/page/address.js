@@ -1,0 +1,95 @@
+// @ts-check
+// A lab's part of the page's address, where the page opens without Python: read when the page opens or its address
+// changes, written when the hand rests, in the place of what stood there, so that "back" leads to the page before.
+
+import { BadAddress, fragmentOf, isTooLong, MOST, partsOf, settingsIn, textOf } from "../model/address.js";
+import { same } from "../model/settings.js";
+
+/** Milliseconds between changes of the address: browsers refuse more than a hundred in half a minute. */
+const SELDOM = 500;
+
+export class Address {
+  /** @param {{name: string, names: string[]}} place  the lab's name in the address, and those of all labs of the page */
+  constructor(lab, place) {
+    this.lab = lab;
+    this.name = place.name;
+    this.names = place.names;
+    /** The settings that the address tells; those that the lab opens with it need not tell. */
+    this.told = lab.settings;
+    this.timer = /** @type {any} */ (null);
+    this.listener = () => this.follow();
+    window.addEventListener("hashchange", this.listener);
+  }
+
+  /** Take what the address says of this lab; what cannot be taken leaves the lab as it is. */
+  async follow() {
+    const { lab, name, names } = this;
+    const { hash } = window.location;
+    clearTimeout(this.timer);
+    this.timer = null;
+    try {
+      const parts = partsOf(hash);
+      const mine = parts.get(name);
+      if (mine === undefined) {
+        // What no lab of the page is meant by, the first one tells.
+        if (names[0] === name) this.refuseStranger(hash, [...parts.keys()]);
+        return;
+      }
+      const settings = settingsIn(mine, lab.model);
+      for (const each of lab.wanted(settings)) await this.refuse(each);
+      if (lab.closed || window.location.hash !== hash) return;
+      lab.visit(settings);
+      if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
+    } catch (error) {
+      if (!(error instanceof BadAddress)) return lab.fail(error);
+      lab.view.notice(`The link in this page's address is not followed: ${error.message.replace(/\.$/, "")}. The lab is as it would be without the link.`);
+    }
+  }
+
+  refuseStranger(hash, found) {
+    const { names } = this;
+    if (isTooLong(hash)) throw new BadAddress(`it has ${hash.length} letters, and a lab reads ${MOST} at most`);
+    if (!found.length || found.some((name) => names.includes(name))) return;
+    throw new BadAddress(`it is about "${found[0].slice(0, 40)}", and this page has ${names.join(", ")}`);
+  }
+
+  /** Refuse settings that do not go together, or that the page has no functions for. */
+  async refuse(settings) {
+    const { lab } = this;
+    const why = lab.fitted(settings).why || lab.clash(settings);
+    if (why) throw new BadAddress(why);
+    const lacking = lab.kernels.needed(settings).find(({ refusal }) => refusal);
+    if (lacking) throw new BadAddress(lacking.refusal);
+    await lab.kernels.prepare(settings);
+    for (const [observer, gains] of Object.entries(settings.gains ?? {})) {
+      const standard = lab.model.standard.gains[observer];
+      const bad = Object.keys(gains).find((gain) => !same(gains[gain], standard[gain]) && !lab.kernels.allows(observer, gain, gains[gain]));
+      if (bad) throw new BadAddress(`"gains.${observer}.${bad}" is ${gains[bad]}, which this observer does not allow`);
+    }
+  }
+
+  /** Settings have come to rest. */
+  rested(settings) {
+    if (settings === this.told) return;
+    this.told = settings;
+    this.timer ??= setTimeout(() => this.write(), SELDOM);
+  }
+
+  write() {
+    this.timer = null;
+    const parts = [...partsOf(window.location.hash)].filter(([name]) => this.names.includes(name));
+    const told = new Map(parts).set(this.name, textOf(this.told, this.lab.model));
+    window.history.replaceState(window.history.state, "", fragmentOf(told));
+  }
+
+  /** The address of the page with this lab as it is now, and no other. */
+  link() {
+    const [page] = window.location.href.split("#");
+    return page + fragmentOf(new Map([[this.name, textOf(this.lab.settings, this.lab.model)]]));
+  }
+
+  close() {
+    clearTimeout(this.timer);
+    window.removeEventListener("hashchange", this.listener);
+  }
+}

@@ -1,0 +1,99 @@
+"""Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
+
+    python without_threads.py FOLDER
+
+builds labs and saves them in the folder, follows observers, draws, compares, judges; any warning is an error.
+"""
+
+import _thread
+import importlib.metadata
+import multiprocessing.process
+import os
+import socket
+import subprocess
+import sys
+import threading
+import warnings
+from pathlib import Path
+
+import matplotlib
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+PLATFORM = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": ""}
+
+
+def required(name="percept-obs"):
+    """Names of the packages that one requires in a browser, and of those that they require."""
+    found = {}
+
+    def add(name):
+        for text in importlib.metadata.requires(name) or ():
+            wanted = Requirement(text)
+            if (wanted.marker is None or wanted.marker.evaluate(PLATFORM)) and wanted.name not in found:
+                found[wanted.name] = wanted.specifier
+                add(wanted.name)
+
+    add(name)
+    return found
+
+
+class Among:
+    """A finder of modules that knows only some packages."""
+
+    def __init__(self, finder, absent):
+        self.finder, self.absent = finder, absent
+
+    def __getattr__(self, name):
+        return getattr(self.finder, name)
+
+    def find_spec(self, name, path=None, target=None):
+        return None if name.partition(".")[0] in self.absent else self.finder.find_spec(name, path, target)
+
+
+def refuse(*args, **kwargs):
+    raise RuntimeError("can't start what a browser does not have")
+
+
+def as_in_a_browser(more=()):
+    """Take away what a browser's Python does not have; `more` are packages that are there all the same."""
+    there = {canonicalize_name(name) for name in [*required(), "percept-obs", *more]}
+    packages = importlib.metadata.packages_distributions().items()
+    absent = {module for module, names in packages if not {canonicalize_name(name) for name in names} & there}
+    sys.meta_path[:] = [Among(finder, absent) for finder in sys.meta_path]
+    threading.Thread.start = _thread.start_new_thread = refuse
+    multiprocessing.process.BaseProcess.start = subprocess.Popen.__init__ = os.fork = os.system = refuse
+    socket.socket.connect = refuse
+    warnings.simplefilter("error")
+
+
+def work(folder):
+    """Use the package as a course does."""
+    import percept_obs as po
+    from percept_obs import figures, labs, papers
+    from percept_obs.recording import scenarios
+    from percept_obs.studies.comparison import compare
+
+    sys.platform = "emscripten"  # what asks, asks now; the packages below were made for this machine
+    assert "numba" not in sys.modules
+    scenario = scenarios.ma2005_eq35()
+    form = po.PerspectiveSystem(po.affine(), po.pinhole()).measure("y1", "y2")
+    recording = po.record(scenario, duration=3.0)
+    run = po.track(recording, po.ibo(form))
+    assert str(run.verdict()).startswith("converged")
+    figures.runs_over_time(run).figure.savefig(folder / "run.svg")
+    assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
+    assert papers.judge([papers.DE_LUCA2008])
+    assert po.check("a13 - a33 y1", "a13 - y1 a33")
+    for make in (labs.observer_lab, labs.points_lab, labs.structure_lab):
+        lab = make(duration=2.0)
+        assert lab.analyse()["sentences"]
+        lab.save(folder / f"{lab.kind}.html")
+    assert labs.derivation_desk(student="Ada").analysis["steps"]
+    assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
+
+
+if __name__ == "__main__":
+    matplotlib.use("Agg")
+    as_in_a_browser(more=["xarray"])  # which a browser's Python has, for who asks for an ensemble
+    work(Path(sys.argv[1]))
