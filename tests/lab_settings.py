@@ -62,9 +62,9 @@ SMOOTH_CASES = {
 def whole_model(lab):
     """A lab's model as the page has it: what was printed for it, and what Python hands over."""
     model = {}
-    for place, text in unpacked(lab.texts).items():
+    for place, texts in unpacked(lab.texts).items():
         group, _, name = place.partition("/")
-        model.update({group: model.get(group, {}) | {name: json.loads(text)}} if name else json.loads(text))
+        model.update({group: model.get(group, {}) | {name: texts}} if name else texts)
     return {**model, **json.loads(json.dumps({**lab.model, "written": lab.written}, allow_nan=False))}
 
 

@@ -3,11 +3,14 @@
 /** @returns {Promise<Record<string, any>>} a lab's model: what was printed for it, and what Python hands over besides */
 export async function modelOf(texts, given) {
   const unpacked = new Blob([texts]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const [shared, ...rows] = (await new Response(unpacked).text()).split("\n");
+  const lines = JSON.parse(shared);
+  const whole = (_, value) => value?.["\n"]?.map((number) => lines[number]).join("\n") ?? value;
   const model = {};
-  for (const line of (await new Response(unpacked).text()).split("\n")) {
-    const tab = line.indexOf("\t");
-    const [group, name] = line.slice(0, tab).split("/");
-    const read = () => JSON.parse(line.slice(tab + 1));
+  for (const row of rows) {
+    const tab = row.indexOf("\t");
+    const [group, name] = row.slice(0, tab).split("/");
+    const read = () => JSON.parse(row.slice(tab + 1), whole);
     if (name === undefined) Object.assign(model, read());
     else lazily((model[group] ??= {}), name, read);
   }
