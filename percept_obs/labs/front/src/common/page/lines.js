@@ -19,6 +19,7 @@ export const SOLID = [];
 export const KEPT = [1, 3];
 export const FIT = [5, 3];
 export const BOUND = [1, 5];
+export const QUIET = [4, 2];
 const NAMED = { truth: SOLID, kept: KEPT, fit: FIT, bound: BOUND, limit: BOUND };
 
 /** How a line looks by its place in the order; without one it is the truth. */
@@ -26,7 +27,7 @@ export function lookOf(theme) {
   return (order) => (order === null ? { colour: theme.ink, dash: SOLID } : { colour: theme.lines[order], dash: DASHES[order] });
 }
 
-/** A piece of a line, for legends: which is "truth", "kept", "fit", "bound", "limit" or the line's place in the order. */
+/** A piece of a line, for legends: which is one of those above or the line's place in the order. */
 export function swatch(which) {
   const space = "http://www.w3.org/2000/svg";
   const picture = document.createElementNS(space, "svg");

@@ -131,7 +131,7 @@ export class Showing extends Following {
     const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
     const { name, act } = state.preset ?? { name: "", act: -1 };
     const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
-    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held });
+    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held || shown.settings !== this.settings });
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
   }
