@@ -158,3 +158,40 @@ def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_sho
             return lab.planes[0].focusAt(lab.shown, { sample: Math.round(time / 0.01), part: 0 }).foe; }""", [time])
         assert seen == pytest.approx([np.cos(time), 0], abs=1e-9)
         assert np.isfinite(found[1:3]).all()
+
+
+LOOK = """() => { const [{ span, theme }] = window.perceptObsLabs; return [span.low, span.high, theme.picked]; }"""
+
+
+def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(show):
+    page = show()
+    undo, redo = control("undo"), control("redo")
+    first = page.evaluate(LOOK)
+    page.click(control("zoom in"))
+    page.wait_for_timeout(450)  # what follows at once is the same step
+    page.click(control("zoom in"))
+    near = page.evaluate(LOOK)
+    assert near[1] - near[0] == pytest.approx((first[1] - first[0]) / 4)
+    page.click(f'{control("line")} >> nth=1')
+    page.mouse.move(640, 700)
+    page.evaluate("() => document.activeElement.blur()")
+    assert page.evaluate(LOOK)[2] is not None
+    page.click(undo)
+    page.wait_for_function(RESTED)
+    assert page.evaluate(LOOK) == [*near[:2], None]
+    assert page.locator(f'{control("line")}[aria-pressed="true"]').count() == 0
+    page.click(undo)
+    page.click(undo)
+    page.wait_for_function(RESTED)
+    assert page.evaluate(LOOK) == first
+    for _ in range(3):
+        page.click(redo)
+    page.wait_for_function(RESTED)
+    assert page.evaluate(LOOK)[:2] == near[:2]
+    assert page.evaluate(LOOK)[2] is not None
+    page.click(control("undo"))
+    page.fill(control("noise size number"), "0.01")
+    page.keyboard.press("Tab")
+    page.click(undo)
+    page.wait_for_function(RESTED)
+    assert page.evaluate(LOOK)[:2] == near[:2]  # a setting that is undone leaves the time in sight
