@@ -1,4 +1,4 @@
-"""The reasons are in the pictures: what one output cannot tell apart, what noise adds, where the FOE is, what a mark means."""
+"""The reasons are in the pictures: what one output cannot tell apart, what noise adds, where the FOE is at a time."""
 
 import numpy as np
 import pytest
@@ -28,8 +28,9 @@ WRITTEN = """() => {
 PUT = "([time]) => { const [lab] = window.perceptObsLabs; lab.point(time); lab.paint(); }"
 SHARES = """() => {
     const [{ shown: { shares, runs } }] = window.perceptObsLabs;
-    const late = (values) => Array.from(values).slice(values.length / 2).sort((a, b) => a - b)[Math.floor(values.length / 4)];
-    return { quiet: Array.from(shares.quiet), late: late(shares.added), lateQuiet: late(shares.quiet), error: Array.from(runs[0].error) };
+    const late = (all) => Array.from(all).slice(all.length / 2).sort((a, b) => a - b)[Math.floor(all.length / 4)];
+    const [quiet, error] = [shares.quiet, runs[0].error].map((values) => Array.from(values));
+    return { quiet, error, late: late(shares.added), lateQuiet: late(quiet) };
 }"""
 
 
@@ -59,7 +60,7 @@ def names_of(page, *parts):
 
 def overlap(one, other):
     """Whether two words on the same picture cover each other."""
-    left, right = ([x - w * {"left": 0, "center": 0.5, "right": 1}[a] for _, x, _, a, w, _ in (one, other)])
+    left, right = [x - w * {"left": 0, "center": 0.5, "right": 1}[a] for _, x, _, a, w, _ in (one, other)]
     return abs(one[2] - other[2]) < 9 and left < right + other[4] and right < left + one[4]
 
 
@@ -154,8 +155,11 @@ def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_sho
     for time in (0.0, 1.0, 3.0):
         page.evaluate(PUT, [time])
         (found,) = names_of(page, "FOE now")
-        seen = page.evaluate("""([time]) => { const [lab] = window.perceptObsLabs;
-            return lab.planes[0].focusAt(lab.shown, { sample: Math.round(time / 0.01), part: 0 }).foe; }""", [time])
+        seen = page.evaluate(
+            """([time]) => { const [lab] = window.perceptObsLabs;
+            return lab.planes[0].focusAt(lab.shown, { sample: Math.round(time / 0.01), part: 0 }).foe; }""",
+            [time],
+        )
         assert seen == pytest.approx([np.cos(time), 0], abs=1e-9)
         assert np.isfinite(found[1:3]).all()
 
@@ -172,7 +176,7 @@ def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(show):
     page.click(control("zoom in"))
     near = page.evaluate(LOOK)
     assert near[1] - near[0] == pytest.approx((first[1] - first[0]) / 4)
-    page.click(f'{control("line")} >> nth=1')
+    page.click(f"{control('line')} >> nth=1")
     page.mouse.move(640, 700)
     page.evaluate("() => document.activeElement.blur()")
     assert page.evaluate(LOOK)[2] is not None
