@@ -21,7 +21,7 @@ if (typeof document === "undefined" && typeof self !== "undefined") serve((kind)
 
 export default {
   async render({ model, el }) {
-    const place = element("div", {}, element("style", {}, COLOURS, style));
+    const place = element("div", {}, element("style", {}, style, COLOURS));
     el.append(place);
     let lab;
     try {

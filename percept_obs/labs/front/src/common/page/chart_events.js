@@ -151,10 +151,8 @@ export function shows({ time, values }, { span, scale }) {
 }
 
 /** Why a chart is empty. */
-export function sayNothing(pen, place, lines, theme) {
-  const begins = Math.min(...lines.map(({ time }) => time[0]));
-  const late = begins > place.span.high;
-  const text = late ? `begins at ${readable(begins)} s` : place.scale.log ? "nothing above 0 in this time" : "no value in this time";
+export function sayNothing(pen, place, theme) {
+  const text = place.scale.log ? "nothing above 0 in this time" : "no value in this time";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
   label(pen, text, place.left + place.width / 2, place.top + place.height / 2, theme.muted, theme);

@@ -13,9 +13,9 @@ const ALIKE = 0.05;
 /** Pixels from one name to the next, across and down, from which on they can be read apart. */
 const [WIDE, APART] = [20, 12];
 export const NAMES = ["½×", "1×", "2×"];
-const MOVING = "arrows: at ½×, 1×, 2× distance";
-const STILL = "still at every distance: no arrow";
-const SAME = "the same arrow at every distance";
+const MOVING = "at ½×, 1×, 2× distance";
+const STILL = "still at every distance";
+const SAME = "the same at every distance";
 
 /** @param {{place: number[], velocities: number[][], colour: string}[]} arrows */
 export function drawVelocities(pen, frame, arrows, speed, theme) {
@@ -78,7 +78,7 @@ export function drawAlike(pen, frame, alike, speed, theme) {
     const crowded = copies.some((copy, i) => copy.own && i !== k && Math.hypot(starts[i][0] - starts[k][0], starts[i][1] - starts[k][1]) < APART);
     if (!crowded) label(pen, `${readable(distance, 2)} m`, beside[0], beside[1], own ? theme.ink : theme.warning, theme);
   });
-  caption(pen, frame, copies.map(({ place }) => place), [`to ${name} all these points are alike:`, `same ${name}, same speed along ${name}`], theme);
+  caption(pen, frame, copies.map(({ place }) => place), [`alike to ${name} alone:`, `same ${name}, same speed along it`], theme);
 }
 
 /** Seconds that an arrow stands for. */
