@@ -60,8 +60,10 @@ def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_t
     page.close()
     page = page_of(browser)
     assert "since the first sample" in page.evaluate(WRITTEN)
-    begun = page.evaluate("""() => { const [{ shown: { excitation: { begun, time, smallest } } }] = window.perceptObsLabs;
-        return [begun.time.length, begun.time[0], begun.smallest.at(-1), time[0], smallest[0]]; }""")
+    begun = page.evaluate("""() => {
+        const [{ shown: { excitation: { begun, time, smallest } } }] = window.perceptObsLabs;
+        return [begun.time.length, begun.time[0], begun.smallest.at(-1), time[0], smallest[0]];
+    }""")
     assert begun[:2] == [1001, 0]
     assert begun[2] == pytest.approx(begun[4], rel=1e-12)
     assert begun[3] == pytest.approx(10)
