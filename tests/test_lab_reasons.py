@@ -113,6 +113,11 @@ def test_a_choice_opens_the_time_where_its_story_is(show):
     page.check(control("outputs y1"))
     page.wait_for_function(RESTED)
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") == 80
+    for preset, high in (("foe", 12), ("bias", 80), ("belief", 80)):
+        page.click(control(f"preset {preset}"))
+        page.click(control(f"act {preset} 0"))
+        page.wait_for_function(RESTED)
+        assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") == high, preset
 
 
 def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(show):

@@ -148,9 +148,10 @@ export class Showing extends Following {
     const { name, act } = state.preset ?? { name: "", act: -1 };
     const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
     const { sight } = state.now;
-    const asked = sight?.question === question ? sight.span : null;
-    const held = this.held || shown.settings !== this.settings;
-    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held, asked });
+    const { timeline } = this.time;
+    // A result of other settings tells another story: the present one is opened when its result is there.
+    const now = shown.settings === this.settings ? { question, choice: this.choices, held: this.held } : { ...timeline, held: true };
+    timeline.follow(whole, this.story(), { ...now, asked: sight?.question === now.question ? sight.span : null });
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
   }

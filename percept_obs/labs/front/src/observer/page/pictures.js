@@ -83,7 +83,8 @@ function dividedOf({ shares, time }, ghost, lines, theme) {
   const added = { ...line("what noise adds", shares.time, shares.added, theme.noise, SOLID), text: "what noise adds" };
   const before = ghost?.shares && line("what noise added to the kept run", ghost.shares.time, ghost.shares.added, theme.noise, KEPT);
   const band = { time: shares.time, low: derived(shares.added, "none", () => new Float64Array(shares.added.length)), high: shares.added, colour: theme.noise };
-  return { lines: [...(before ? [{ ...before, text: "noise, kept run" }] : []), quiet, added, ...lines], band };
+  // On top, for an error with noise hides whatever lies below it.
+  return { lines: [...lines, ...(before ? [{ ...before, text: "noise, kept run" }] : []), quiet, added], band };
 }
 
 function bandOf(shown, run, c, theme) {
