@@ -24,7 +24,9 @@ export function reasons(shown, model) {
     );
   }
   if (measured.length < hiddenNames.length) {
-    found.push(`Only ${names[measured[0]]} is measured: one instant never tells both hidden coordinates, a window of time may.`);
+    const [name, drawn] = [names[measured[0]], shown.truth && !(settings.scenario in model.recordings)];
+    const others = drawn ? ` Others, with the same ${name} and the same speed along it, are drawn in the image.` : "";
+    found.push(`Only ${name} is measured: one instant never tells both hidden coordinates, a window of time may.${others}`);
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
