@@ -21,13 +21,14 @@ const SAME = "the same at every distance";
 export function drawVelocities(pen, frame, arrows, speed, theme) {
   if (!arrows.length) return;
   const seconds = secondsOf(frame, speed);
-  for (const { place, velocities, colour } of arrows) {
+  arrows.forEach(({ place, velocities, colour }, first) => {
     const from = [frame.x(place[0]), frame.y(place[1])];
     /** @type {{at: number[], name: string}[]} */
     const named = [];
     COPIES.forEach((part, k) => {
       const to = tipOf(frame, place, velocities[k], seconds);
-      if (!drawArrow(pen, from, to, part === 1 ? 1 : 0.5, colour)) return;
+      // Of many points the first one's arrows have names, and all others are alike.
+      if (!drawArrow(pen, from, to, part === 1 ? 1 : 0.5, colour) || first > 0) return;
       const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
       const at = [0, 1].map((i) => to[i] + (11 * (to[i] - from[i])) / length);
       const near = named.find((other) => Math.abs(other.at[0] - at[0]) < WIDE && Math.abs(other.at[1] - at[1]) < APART);
@@ -42,7 +43,7 @@ export function drawVelocities(pen, frame, arrows, speed, theme) {
       const cut = name.length > 3 && x < from[0] && left;
       label(pen, name, cut ? frame.box.left + 4 : x, cut ? y - 12 : y, colour, theme);
     }
-  }
+  });
   const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
   const same = arrows.every(({ velocities: [near, , far] }) => Math.hypot(near[0] - far[0], near[1] - far[1]) < ALIKE * Math.hypot(...near));
   caption(pen, frame, arrows.map(({ place }) => place), [still ? STILL : same ? SAME : MOVING], theme);
