@@ -18,7 +18,8 @@ from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
-from percept_obs.labs.printing import INTEGRATOR
+from percept_obs.figures import look
+from percept_obs.labs.printing import INTEGRATOR, LOOKS
 from percept_obs.observers import OBSERVERS, linear_approximation
 from percept_obs.points import kernel as points_kernel
 
@@ -228,9 +229,10 @@ def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same(tmp_path, monk
     assert not place.is_dir()
 
 
-def test_the_page_steps_by_the_same_method():
-    there = INTEGRATOR.read_text(encoding="utf-8")
-    assert there == integrator.for_the_page(), "run python -m percept_obs.labs.printing and build the page"
+@pytest.mark.parametrize(("file", "printed"), [(INTEGRATOR, integrator.for_the_page), (LOOKS, look.for_the_page)])
+def test_the_page_steps_by_the_same_method_and_draws_by_the_same_marks(file, printed):
+    there = file.read_text(encoding="utf-8")
+    assert there == printed(), "run python -m percept_obs.labs.printing and build the page"
 
 
 def test_the_classical_method_is_of_fourth_order():

@@ -53,13 +53,20 @@ def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(bro
         page.close()
 
 
-def test_an_empty_chart_says_why(browser):
+def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_that_so_far(browser):
     still = [[0.0] * 3] * 3
     page = page_of(browser, A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0)
     assert "nothing above 0 in this time" in page.evaluate(WRITTEN)
     page.close()
     page = page_of(browser)
-    assert "begins at 10 s" in page.evaluate(WRITTEN)
+    assert "since the first sample" in page.evaluate(WRITTEN)
+    begun = page.evaluate("""() => {
+        const [{ shown: { excitation: { begun, time, smallest } } }] = window.perceptObsLabs;
+        return [begun.time.length, begun.time[0], begun.smallest.at(-1), time[0], smallest[0]];
+    }""")
+    assert begun[:2] == [1001, 0]
+    assert begun[2] == pytest.approx(begun[4], rel=1e-12)
+    assert begun[3] == pytest.approx(10)
     page.close()
 
 

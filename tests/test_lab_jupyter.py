@@ -1,7 +1,7 @@
 """Labs in JupyterLab: they follow the hand, tell the kernel, outlive it, and stand side by side."""
 
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all
+from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
 from lab_browser import (
     OPEN,
     UNFOLD,
@@ -158,6 +158,26 @@ def test_a_restarted_kernel_leaves_the_lab_alive_and_opens_a_new_one(browser_pag
     page.wait_for_function("window.perceptObsLabs.size === 1")
     rested(page)
     assert state(page)["settings"]["gains"]["identifier_based"]["gain"] == 10
+
+
+def test_a_notebook_whose_kernel_has_ended_says_how_its_lab_comes_back(browser_page, folder):
+    page = browser_page
+    open_lab(page, folder, "ended.ipynb")
+    ended = page.locator(".percept-obs-ended")
+    ended.wait_for(state="attached")
+    assert ended.is_hidden()
+    page.keyboard.press("Control+s")
+    wait_until(lambda: "percept-obs-ended" in (folder / "ended.ipynb").read_text(), "the notebook to be saved")
+    (session,) = [s for s in page.request.get("/api/sessions").json() if s["path"] == "ended.ipynb"]
+    xsrf = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "_xsrf")
+    page.request.delete(f"/api/sessions/{session['id']}", headers={"X-XSRFToken": xsrf})
+    open_notebook(page, "ended.ipynb")
+    ended.wait_for(state="visible")
+    assert "Run its cell again" in ended.inner_text()
+    assert page.get_by_text("model not found").locator("visible=true").count() == 0
+    run_all(page)
+    page.wait_for_function("window.perceptObsLabs?.size === 1")
+    ended.wait_for(state="hidden")
 
 
 def test_the_kernel_may_be_busy_while_the_lab_is_moved(browser_page, folder):

@@ -1,6 +1,7 @@
 """An observer, a surface, a motion that somebody brings are computed by the page as by Python, or refused first."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
 from percept_obs.points import PointsForm
-from percept_obs.structure import ImpossibleChoice
+from percept_obs.structure import ImpossibleChoice, StructureAndMotion, StructureScenario
 from percept_obs.system.motion import TIME, linear
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
@@ -346,3 +347,26 @@ def test_a_recording_on_a_surface_of_ones_own_is_followed_alike(node):
     for name, run in lab.run().items():
         assert_same_recording(answer, recording)
         assert_same_run(answer["runs"][name], run, 1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(node):
+    choice = StructureAndMotion(("v_p1", "v_p3"), zero=("v_p2", "v_c2"))
+    opened = structure_lab(choice.form, duration=0.2, period=0.01)
+    assert opened.settings == structure_lab(choice, duration=0.2, period=0.01).settings
+    found = unknowns_of(opened.settings)
+    assert found.unknown == choice.unknown
+    assert set(found.zero) >= set(choice.zero)
+    moving = rigid((0.1, 0.0, 0.2), (0.2, 0.0, -0.1), (0.05, 0.0, 0.1))
+    mine = StructureScenario("mine", moving, (0.5, 0.4, 4.0), 0.3, pinhole(), scale=2.0, choice=choice)
+    lab = structure_lab(mine, period=0.01, observers=["identifier_based"])
+    (run,) = lab.run().values()
+    np.testing.assert_allclose(run.truth, mine.coordinates(run.time), rtol=1e-9, atol=1e-12)
+    (answer,) = structure_in_node(node, lab, [lab.settings])
+    found = as_array(answer["runs"]["identifier_based"]["estimate"], 5)
+    np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
+    swings = replace(mine, motion=rigid((0, 0, 0), lambda t: [0.2, 0.0, t], (0.05, 0.0, 0.1)))
+    for wrong, reason in ((swings, "varies"), (PerspectiveSystem(affine(), pinhole()).measure("y1"), "scaled inverse")):
+        with pytest.raises(ValueError, match=reason):
+            structure_lab(wrong)

@@ -14,8 +14,6 @@ from percept_obs.figures.base import Array
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.system.perspective import PerspectiveSystem
 
-CROSS: dict[str, Any] = {"marker": "x", "linestyle": "", "markersize": 9, "markeredgewidth": 2}
-
 
 def of_expansion(system: PerspectiveSystem, time: Array) -> Array:
     """Focus of expansion, shape (1, 2) if it stays, else (K, 2); not finite where there is none."""
@@ -45,7 +43,7 @@ def inside(ax: Axes, places: Array) -> Flags:
 
 
 def draw(ax: Axes, focus: Array, path: Array, time: Array) -> str:
-    """A cross, a faint path or a pointer at the edge; in words where it is and how close the point comes."""
+    """A diamond, a faint path or a pointer at the edge; in words where it is and how close the point comes."""
     distances = np.linalg.norm(path - focus, axis=1)
     if not np.isfinite(distances).any():
         ax.plot([], [], linestyle="", label="no focus of expansion")
@@ -55,11 +53,11 @@ def draw(ax: Axes, focus: Array, path: Array, time: Array) -> str:
     visible = inside(ax, focus).any()
     name = "focus of expansion" if visible else "focus of expansion (outside)"
     if len(focus) > 1:
-        ax.plot(*focus.T, **look.dots(focus, color=look.BLUE, alpha=0.4, label=name))
+        ax.plot(*focus.T, **look.dots(focus, color=look.UNSEEN, alpha=0.4, label=name))
         where = f"The focus of expansion moves: y1 {words.span(focus[:, 0])}, y2 {words.span(focus[:, 1])}; {closest}."
     else:
-        mark = CROSS if visible else _pointer(ax, focus[0])
-        ax.plot(*(focus[0] if visible else _edge(ax, focus[0])), color=look.BLUE, label=name, **mark)
+        mark = look.FOCUS | ({} if visible else _pointer(ax, focus[0]))
+        ax.plot(*(focus[0] if visible else _edge(ax, focus[0])), label=name, **mark)
         where = f"The focus of expansion is at {words.place(focus[0])}; {closest}."
     return where if visible else f"{where} It lies outside the picture."
 
@@ -75,7 +73,7 @@ def _edge(ax: Axes, place: Array) -> Array:
 def _pointer(ax: Axes, place: Array) -> dict[str, Any]:
     """A triangle that points to a place outside."""
     away = place - _edge(ax, place)
-    return {"marker": (3, 0, np.degrees(np.arctan2(away[1], away[0])) - 90), "linestyle": "", "markersize": 10}
+    return {"marker": (3, 0, np.degrees(np.arctan2(away[1], away[0])) - 90), "markersize": 10}
 
 
 def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Array) -> str:
@@ -83,7 +81,8 @@ def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Arr
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     visible = bool(np.linalg.norm(focus[0] - np.clip(focus[0], low, high)) < radius)
     name = f"{'' if visible else '_'}$|w| < {threshold:g}$"
-    ax.add_patch(Circle(focus[0], radius, facecolor=look.SKY, edgecolor=look.BLUE, alpha=0.35, label=name))
+    colours = {"facecolor": look.UNSEEN, "edgecolor": look.UNSEEN}
+    ax.add_patch(Circle(focus[0], radius, **colours, linestyle=":", alpha=0.2, label=name))
     count = int((np.linalg.norm(path - focus, axis=1) < radius).sum())
     entered = f"{count} of {len(path)} samples lie in it" if count else "the path does not enter it"
     return f"The disk |w| < {threshold:g} around it has the radius {radius:.3g}; {entered}."
@@ -105,6 +104,6 @@ def draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str:
     places = [float(place) for place in solutions if place.is_real]
     for place in places:
         line = ax.axvline if measured == "y1" else ax.axhline
-        line(place, color=look.BLUE, linewidth=1, linestyle="-.", label="$w = 0$")
+        line(place, color=look.UNSEEN, linewidth=1, linestyle="-.", label="$w = 0$")
     where = " and ".join(f"at {measured} = {place:.3g}" for place in places) or "nowhere"
     return f"Measuring {measured} alone, w vanishes {where}."

@@ -24,7 +24,7 @@ KINDS = {"truth": "True", "samples": "Measured", "estimate": "Estimated"}
 def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None = None) -> Drawing:
     """Paths in the image, and dashed what an observer makes of them.
 
-    Of one point the focus of expansion is drawn as well, a cross if the motion is constant and a faint path if it
+    Of one point the focus of expansion is drawn as well, a diamond if the motion is constant and a faint path if it
     varies.  With both outputs measured and a constant motion there is the disk |w| < threshold, with one output the
     lines on which w vanishes.  Of several points each has its colour and number, and its estimate begins at first
     sight.

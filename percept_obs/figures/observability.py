@@ -140,7 +140,7 @@ def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
         return "There is no focus of expansion in this plane."
     if len(found.measured) == 1:
         return focus.draw_blind_lines(ax, system, *found.measured)
-    ax.plot(*centre, color=look.VERMILLION, label="focus of expansion", **focus.CROSS)
+    ax.plot(*centre, label="focus of expansion", **look.FOCUS)
     radius = focus.blind_radius(system, found.measured, threshold)
     told = f"The focus of expansion is at {words.place(centre)}."
     if not np.isfinite(radius):

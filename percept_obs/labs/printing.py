@@ -4,7 +4,8 @@ import json
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from percept_obs.compile.integrator import for_the_page
+from percept_obs.compile import integrator
+from percept_obs.figures import look
 from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.points import texts as points
@@ -22,7 +23,8 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
 """For each lab, what is printed for its page."""
 
 INTEGRATOR = FRONT / "src/common/model/integrator.js"
-"""The method of the loops that the page's sources write out; from them the bundle is built."""
+LOOKS = FRONT / "src/common/page/looks.js"
+"""The method of the loops, and the marks of all pictures, in the page's sources; from them the bundle is built."""
 
 
 def changed(kind: str) -> list[str]:
@@ -34,9 +36,10 @@ def changed(kind: str) -> list[str]:
 
 
 def main() -> None:
-    """Write the files of all labs, and the integrator for the page's sources where they are at hand."""
+    """Write the files of all labs, and integrator and marks for the page's sources where they are at hand."""
     if INTEGRATOR.parent.exists():
-        INTEGRATOR.write_text(for_the_page(), encoding="utf-8")
+        INTEGRATOR.write_text(integrator.for_the_page(), encoding="utf-8")
+        LOOKS.write_text(look.for_the_page(), encoding="utf-8")
     for kind, print_texts in LABS.items():
         file = file_of(kind)
         file.write_bytes(packed(print_texts()))

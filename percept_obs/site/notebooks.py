@@ -13,7 +13,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from percept_obs.figures.base import Figure
-from percept_obs.labs.shared.saved import SHOWN, place_of
+from percept_obs.labs.shared.saved import ENDED, SHOWN, place_of
 from percept_obs.site.extension import mathml
 
 if TYPE_CHECKING:
@@ -117,7 +117,9 @@ def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.No
 
     models, labs = _models(notebook), labs_of(notebook)
     for cell in notebook.cells:
-        for k, output in enumerate(cell.get("outputs", ())):
+        outputs = cell.get("outputs", [])
+        outputs[:] = [output for output in outputs if ENDED not in output.get("data", {}).get("text/html", "")]
+        for k, output in enumerate(outputs):
             if VIEW not in output.get("data", {}):
                 continue
             name = output["data"][VIEW]["model_id"]
@@ -125,7 +127,7 @@ def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.No
                 html, script = script + place_of(labs[name]), ""
             else:
                 html = f"<p><em>{NEEDS_PYTHON}</em></p>" + "".join(_last_shown(models, name))
-            cell["outputs"][k] = new_output("display_data", {"text/html": html})
+            outputs[k] = new_output("display_data", {"text/html": html})
     notebook.metadata.pop("widgets", None)
     return notebook
 

@@ -30,7 +30,7 @@ from percept_obs.recording import Scenario, scenarios
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 HOLDS = ("zero", "first", "exact")
-PICTURES = ("outputs", "inverse", "distance", "error", "excitation")
+PICTURES = ("outputs", "innovation", "inverse", "distance", "error", "excitation")
 BOUND = ("error", "map")
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 

@@ -16,11 +16,12 @@ from typing import Any
 
 import anywidget
 import traitlets
+from IPython.display import display
 from IPython.utils.capture import capture_output
 
 from percept_obs.border import write_whole
 from percept_obs.labs.shared.printed import FRONT, file_of
-from percept_obs.labs.shared.saved import page_of
+from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import MOST as MOST_TYPED
 from percept_obs.labs.shared.typed_motion import Typed
@@ -213,6 +214,12 @@ class Lab(anywidget.AnyWidget):
         cell, _ = _running_cell()
         self._shown_in |= {cell}
         return super()._repr_mimebundle_(**options)
+
+    def _ipython_display_(self) -> None:
+        """Show the lab, and behind it what is seen in its place once its kernel has ended."""
+        data, metadata = self._repr_mimebundle_()
+        display(data | {"text/plain": self.title}, metadata=metadata, raw=True)
+        display({"text/html": ended(self.title), "text/plain": ""}, raw=True)
 
     @traitlets.observe("summary")
     def _deepen(self, change: Mapping[str, Any]) -> None:

@@ -42,6 +42,27 @@ PAGE = """<!doctype html>
 """
 
 
+ENDED = "percept-obs-ended"
+"""DOM class of what a notebook shows in the place of a lab whose kernel has ended."""
+
+_LOST = ".jp-OutputArea:not(:has(.percept-lab)):has(.jp-OutputArea-output.jupyter-widgets)"
+_IN_ITS_PLACE = f"""<div class="{ENDED}">
+<style>
+body:has(.percept-lab) .{ENDED}, .jp-OutputArea .{ENDED} {{{{ display: none; }}}}
+{_LOST} .{ENDED} {{{{ display: block; }}}}
+{_LOST}:has(.{ENDED}) .jp-OutputArea-output.jupyter-widgets:not(:has(*)) {{{{ display: none; }}}}
+</style>
+<p><strong>{{title}}</strong>: this lab was shown by a kernel that has ended. Run its cell again, and it is back.</p>
+<p>To keep labs in a notebook, so that they open without a kernel, choose in JupyterLab
+<em>Settings &gt; Save Widget State Automatically</em> before you save it.</p>
+</div>"""
+
+
+def ended(title: str) -> str:
+    """What a notebook shows in the place of a lab that it does not hold; hidden as long as the lab is there."""
+    return _IN_ITS_PLACE.format(title=escape(title))
+
+
 def page_of(state: Mapping[str, Any], title: str) -> str:
     """A page with one lab, from the lab's state."""
     return PAGE.format(

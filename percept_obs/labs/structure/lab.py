@@ -29,6 +29,7 @@ from percept_obs.labs.shared.sampling import (
 )
 from percept_obs.labs.shared.schema import Schema, Settings, gains, offering
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
+from percept_obs.labs.structure.given import Given, opening_of
 from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
@@ -65,6 +66,8 @@ class StructureLab(Lab):
 
     Parameters
     ----------
+    form : StructureAndMotion, its form, or StructureScenario, optional
+        A choice or a scenario of your own, with which the lab opens.
     observers : list, optional
         Names, and observers of your own: functions of a form, such as `percept_obs.observers.family.family` makes.
     **settings
@@ -76,7 +79,9 @@ class StructureLab(Lab):
     schema = SCHEMA
     title = "Structure and motion"
 
-    def __init__(self, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
+    def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
+        if form is not None:
+            settings = opening_of(form) | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._own = (None, {}) if observers is None else brought(observers, ours)
         if asked is not None:

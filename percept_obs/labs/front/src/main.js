@@ -7,6 +7,7 @@
 import { serve } from "./common/model/serving.js";
 import { modelOf } from "./common/model/texts.js";
 import { element } from "./common/page/controls.js";
+import { COLOURS } from "./common/page/looks.js";
 import style from "./common/page/style.css";
 import { DeskLab } from "./desk/lab.js";
 import { ObserverLab } from "./observer/lab.js";
@@ -20,7 +21,7 @@ if (typeof document === "undefined" && typeof self !== "undefined") serve((kind)
 
 export default {
   async render({ model, el }) {
-    const place = element("div", {}, element("style", {}, style));
+    const place = element("div", {}, element("style", {}, style, COLOURS));
     el.append(place);
     let lab;
     try {

@@ -34,6 +34,7 @@
  * @property {string[]} hiddenNames
  * @property {number | null} leavesAt  when the point leaves the half-space in front of the camera, in s
  * @property {number} tolerance    of the relative error
+ * @property {number} settledPart  of the run in which the error must have been in it
  * @property {string} [judged]     what it is an error of, in words
  * @property {ObserverRun[]} runs
  *
@@ -41,6 +42,12 @@
  * @property {number} window       in s
  * @property {Float64Array} time   at which windows end, in s
  * @property {Float64Array} smallest  eigenvalue of the integral of w w^T over the window
+ * @property {{time: Float64Array, smallest: Float64Array}} begun  the same since the first sample, until a window is full
+ *
+ * @typedef {object} Shares
+ * @property {Float64Array} quiet  the relative error of the same run without noise, at each sample
+ * @property {Float64Array} time   in s
+ * @property {Float64Array} added  the root mean square, about each of these times, of what noise adds
  *
  * @typedef {object} OfObserverLab
  * @property {number[] | null} foe  the focus of expansion in the image; null where it is at infinity
@@ -49,6 +56,7 @@
  * @property {number[][]} inside  when the image of the point is in it: begin and end
  * @property {Excitation | null} excitation
  * @property {Float64Array | null} bound  the least relative error that the noise leaves, at each sample
+ * @property {Shares | null} shares  what of the error of the only observer noise adds
  * @typedef {SharedResult & OfObserverLab} ObserverResult
  *
  * @typedef {object} OfStructureLab
@@ -95,6 +103,12 @@
  */
 
 /**
+ * @typedef {object} Alike         points that the only measured coordinate cannot tell apart at an instant
+ * @property {{place: number[], at: number[], velocity: number[], distance: number, own: boolean}[]} copies
+ *     each in the image, in metres before the camera, its velocity in the image, and its distance in m
+ * @property {number} measured     0 for y1, 1 for y2
+ * @property {string} name         of what is measured
+ *
  * @typedef {object} SettingSchema  what a setting may be, as a lab's schema has it by the setting's name
  * @property {"number" | "choice" | "names" | "matrix" | "list" | "group" | "several"} kind
  * @property {string} [label]      what the panel calls it
@@ -123,6 +137,7 @@
  * @property {any} values          an array of numbers
  * @property {string} colour
  * @property {number[]} dash
+ * @property {string} [text]       that stands beside it
  *
  * @typedef {object} ChartParts    one time chart, in the values and colours that it is drawn with
  * @property {string} title

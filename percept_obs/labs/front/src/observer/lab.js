@@ -35,6 +35,8 @@ export class ObserverLab extends Live {
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,
+      alikeOf: scene.alikeOf,
+      focusAt: scene.focusAt,
       name: "foe",
       label: "Focus of expansion",
       tag: "FOE",

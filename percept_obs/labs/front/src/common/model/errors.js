@@ -19,6 +19,11 @@ export function distanceError(right, found, estimate, width) {
   return error;
 }
 
+/** Whether an error has been in its tolerance for long enough, as a part of the run, to be sure of it. */
+export function settled(settling, length, part) {
+  return length - settling >= part * length;
+}
+
 /** When the error entered the tolerance for good, in seconds since the first sample. */
 export function settlingTime(time, error, tolerance) {
   let inside = 0;

@@ -1,4 +1,4 @@
-// What a lab is asked to show: settings, the preset that is open, the time at which values are read; and the way back.
+// What a lab is asked to show: settings, the preset that is open, which time is in sight and which line; and the way back.
 
 import { same } from "./settings.js";
 
@@ -11,16 +11,25 @@ import { same } from "./settings.js";
  * @property {Settings | null} of   those that the question or the act is about
  * @property {number | null} said   which answer was predicted
  * @property {(number | null)[]} [sketch]  the error curve that was predicted: decades at equal steps of time
- * @typedef {{settings: Settings, preset: Preset | null}} Moment
+ * @typedef {object} Sight         the part of the time that the hand has asked for
+ * @property {import("./timeline.js").Span} span
+ * @property {string} question     in which it has: another one shows its own
+ * @typedef {object} Moment
+ * @property {Settings} settings
+ * @property {Preset | null} preset
+ * @property {Sight | null} sight
+ * @property {string | number | null} picked  the line that stands out
  */
 
 const MOST_STEPS = 200;
+/** What is held while a zoom may go on; no setting is called so. */
+const LOOKING = "sight";
 
 /** Settings with their history: one step is what a hand does from taking hold to letting go. */
 export class State {
   constructor(settings) {
     /** @type {Moment} */
-    this.now = { settings, preset: null };
+    this.now = { settings, preset: null, sight: null, picked: null };
     /** @type {number | null} */
     this.cursor = null;
     /** @type {Moment[]} */
@@ -46,6 +55,17 @@ export class State {
     if (this.held === keys) this.now = { ...this.now, settings };
     else this.step({ settings });
     this.held = keys;
+  }
+
+  /** Take another sight of the same settings; while a wheel turns it is one step, until seen(). */
+  look(sight) {
+    if (this.held === LOOKING) this.now = { ...this.now, sight };
+    else this.step({ sight });
+    this.held = LOOKING;
+  }
+
+  seen() {
+    if (this.held === LOOKING) this.held = null;
   }
 
   /** The hand lets go; what led nowhere is no step. */
@@ -114,7 +134,7 @@ export class State {
 
   reset(settings) {
     this.cursor = null;
-    this.step({ settings, preset: null });
+    this.step({ settings, preset: null, sight: null, picked: null });
     this.release();
   }
 }

@@ -43,9 +43,14 @@ export class Timeline {
     this.choice = -1;
   }
 
-  /** Follow a run: another question shows its story, and so does another choice, unless the hand had zoomed. */
-  follow(whole, { settlings, events }, { question, choice, held }) {
+  /**
+   * Follow a run: another question shows its story, and so does another choice, unless the hand had zoomed.  What the
+   * hand had `asked` for is shown, whatever was before; null takes a zoom back.
+   */
+  follow(whole, { settlings, events }, { question, choice, held, asked = /** @type {Span | null | undefined} */ (undefined) }) {
     const story = storyOf(whole, settlings, events);
+    if (asked) [this.span, this.byHand, this.question] = [asked, true, question];
+    else if (asked === null && this.byHand) this.forget();
     const other = question !== this.question;
     if (other) this.byHand = false;
     this.whole = whole;

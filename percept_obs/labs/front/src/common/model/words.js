@@ -1,5 +1,6 @@
 // What happened, in words. Those of verdicts come from Python, so that both say the same.
 
+import { settled } from "./errors.js";
 import { readable, short } from "./scales.js";
 import { sampleAt } from "./tables.js";
 
@@ -31,7 +32,7 @@ export function verdict(run, shown, model) {
 
 /** What became of a relative error, with its last value; `settling` is infinite where it ends outside. */
 export function settledInWords({ judged, error, tolerance }, settling, length, { verdicts, settledPart, farOff }) {
-  const inside = length - settling >= settledPart * length ? "converged" : "late";
+  const inside = settled(settling, length, settledPart) ? "converged" : "late";
   const outside = Number.isNaN(error) ? "none" : error === Infinity ? "behind" : "outside";
   return filled(verdicts[settling === Infinity ? outside : inside], {
     error_of: verdicts.relative,
@@ -40,6 +41,20 @@ export function settledInWords({ judged, error, tolerance }, settling, length, {
     tolerance: percent(tolerance, 6),
     time: short(settling),
   });
+}
+
+/** The same of one observer in a few words, for those who compare. */
+export function verdictInShort({ divergedAt, settling, error }, { time, tolerance }, { settledPart, farOff }) {
+  if (divergedAt !== null) return `diverged after ${short(divergedAt - time[0])} s`;
+  if (!error) return "no truth to compare with";
+  if (settling < Infinity) {
+    const sure = settled(settling, time.at(-1) - time[0], settledPart);
+    return sure ? `converged after ${short(settling)} s` : `within ${percent(tolerance, 6)} only since ${short(settling)} s`;
+  }
+  const last = error.at(-1);
+  if (Number.isNaN(last)) return "ends without an estimate";
+  if (last === Infinity) return "ends behind the camera";
+  return `ends at ${last <= farOff ? percent(last) : `more than ${short(100 * farOff, 6)} %`}`;
 }
 
 /** A share in per cent. */

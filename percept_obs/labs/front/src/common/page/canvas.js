@@ -3,7 +3,7 @@
 import { element } from "./controls.js";
 import { DASHES } from "./lines.js";
 
-const COLOURS = ["ink", "muted", "line", "grid", "sample", "warning", "kept", "paper"];
+const COLOURS = ["ink", "muted", "line", "grid", "sample", "warning", "kept", "noise", "paper"];
 
 /** A canvas with role, label and a text that tells what it shows. */
 export class Picture {
@@ -75,7 +75,7 @@ export class Picture {
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const colour = (name) => style.getPropertyValue(`--lab-${name}`).trim();
-  const [ink, muted, line, grid, sample, warning, kept, paper] = COLOURS.map(colour);
+  const [ink, muted, line, grid, sample, warning, kept, noise, paper] = COLOURS.map(colour);
   const lines = DASHES.map((_, k) => colour(`line-${k}`));
-  return { ink, muted, line, grid, sample, warning, kept, paper, lines, font: `11px ${colour("font") || "sans-serif"}` };
+  return { ink, muted, line, grid, sample, warning, kept, noise, paper, lines, font: `11px ${colour("font") || "sans-serif"}` };
 }

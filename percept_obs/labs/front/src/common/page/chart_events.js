@@ -10,7 +10,7 @@ import { label, RESET, rimMark } from "./marks.js";
 const LETTER = 6;
 const LINE_HEIGHT = 11;
 
-/** A word where no other stands; it may move by a line or two, or stay unsaid. */
+/** A word where no other stands; it may move by a line or two, or stay unsaid. Whether it is said. */
 function put(pen, place, text, x, y, align, baseline, colour, theme) {
   const width = LETTER * text.length;
   const left = align === "left" ? x : x - width;
@@ -23,8 +23,9 @@ function put(pen, place, text, x, y, align, baseline, colour, theme) {
     pen.textAlign = align;
     pen.textBaseline = baseline;
     label(pen, text, x, at, colour, theme);
-    return;
+    return true;
   }
+  return false;
 }
 
 export function horizontal(pen, place, value, colour, dash) {
@@ -85,14 +86,14 @@ export function drawResets(pen, place, marks, theme, named) {
   });
 }
 
-/** Something that begins at a time: a short line on the level, with words; later than what is in sight an arrow at the rim. */
+/** Something that begins at a time: a short line on the level, with words; an arrow at the rim says that it is later than what is in sight. */
 export function drawEvent(pen, place, { time, text, colour }, level, theme) {
   const x = Math.round(place.x(time));
   const right = place.left + place.width;
   const y = Math.min(Math.max(place.y(level), place.top + 6), place.bottom - 6);
   if (x > right) {
     rimMark(pen, { at: [right, y], angle: 0 }, "", colour, theme);
-    put(pen, place, text, right - 14, y - 1, "right", "bottom", colour, theme);
+    put(pen, place, `later, at ${text}`, right - 14, y - 1, "right", "bottom", colour, theme);
   }
   if (x < place.left || x > right) return;
   pen.fillStyle = colour;
@@ -122,6 +123,24 @@ export function drawOutside(pen, place, { time, values, colour }, theme) {
   }
 }
 
+/** The name of a line, where it has one: beside its end in sight, or before that where others stand there. */
+export function nameLine(pen, place, { time, values, colour, text }, theme) {
+  if (!text || fading(theme, colour) < 1) return;
+  const { low, high } = place.scale;
+  const [from, to] = indicesIn(time, place.span);
+  const right = place.left + place.width - 4;
+  let before = Infinity;
+  for (let k = to; k >= from; k--) {
+    const x = place.x(time[k]);
+    if (x > right || before - x < LETTER || !(values[k] > low && values[k] < high)) continue;
+    before = x;
+    const align = x - LETTER * text.length > place.left ? "right" : "left";
+    const y = place.y(values[k]);
+    const above = y - LINE_HEIGHT - 4 > place.top;
+    if (put(pen, place, text, x, above ? y - 4 : y + 4, align, above ? "bottom" : "top", colour, theme)) return;
+  }
+}
+
 /** Whether a line has a value in sight that the scale can have. */
 export function shows({ time, values }, { span, scale }) {
   const [from, to] = indicesIn(time, span);
@@ -132,10 +151,8 @@ export function shows({ time, values }, { span, scale }) {
 }
 
 /** Why a chart is empty. */
-export function sayNothing(pen, place, lines, theme) {
-  const begins = Math.min(...lines.map(({ time }) => time[0]));
-  const late = begins > place.span.high;
-  const text = late ? `begins at ${readable(begins)} s` : place.scale.log ? "nothing above 0 in this time" : "no value in this time";
+export function sayNothing(pen, place, theme) {
+  const text = place.scale.log ? "nothing above 0 in this time" : "no value in this time";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
   label(pen, text, place.left + place.width / 2, place.top + place.height / 2, theme.muted, theme);

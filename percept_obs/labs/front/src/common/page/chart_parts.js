@@ -1,5 +1,6 @@
 // What time charts are put together from: lines, ranges, and the same in words.
 
+import { settled } from "../model/errors.js";
 import { linearScale, logScale, readable } from "../model/scales.js";
 import { DASHES, KEPT, SOLID } from "./lines.js";
 
@@ -95,10 +96,11 @@ export function marksOf({ runs }, theme) {
   });
 }
 
-/** The tolerance, and since when errors stay in it, where they come to do so. */
-export function toleranceOf({ runs, time, tolerance }, theme) {
+/** The tolerance, and since when errors stay in it, where they do so long enough to be sure of. */
+export function toleranceOf({ runs, time, tolerance, settledPart }, theme) {
+  const length = time.at(-1) - time[0];
   const events = runs
-    .filter(({ settling }) => settling > 0 && settling < Infinity)
+    .filter(({ settling }) => settling > 0 && settled(settling, length, settledPart))
     .map(({ settling, order }) => ({ time: time[0] + settling, text: `${readable(settling)} s`, colour: theme.lines[order] }));
   return { level: tolerance, events };
 }

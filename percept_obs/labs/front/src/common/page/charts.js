@@ -3,7 +3,7 @@
 import { within } from "../model/playback.js";
 import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
-import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, sayNothing, shade, shows } from "./chart_events.js";
+import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, nameLine, sayNothing, shade, shows } from "./chart_events.js";
 import { element } from "./controls.js";
 import { fading } from "./lines.js";
 import { horizontal } from "./chart_events.js";
@@ -43,7 +43,8 @@ export class TimeChart extends Picture {
     drawBars(pen, place, bars);
     for (const event of events) drawEvent(pen, place, event, level, theme);
     for (const line of lines) drawOutside(pen, place, line, theme);
-    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, lines, theme);
+    for (const line of lines) nameLine(pen, place, line, theme);
+    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, theme);
     pen.restore();
   }
 

@@ -21,10 +21,10 @@ export function showsToo({ centre, half }, wanted) {
   return apart + wanted.half <= 1.2 * half && wanted.half > 0.4 * half;
 }
 
-/** Where a square lies on a picture's canvas, which is made to fit its place. */
-export function placed(target, { centre, half }, font) {
+/** Where a square lies on a picture's canvas, which is made to fit its place, with so much more room at its right. */
+export function placed(target, { centre, half }, font, more = 0) {
   const { width, height } = target.fit(font);
-  const [across, down] = [width - ROOM.left - ROOM.right, height - ROOM.top - ROOM.bottom];
+  const [across, down] = [width - ROOM.left - ROOM.right - more, height - ROOM.top - ROOM.bottom];
   const side = Math.min(across, down);
   const box = { left: ROOM.left + (across - side) / 2, top: ROOM.top + (down - side) / 2, side };
   return frameOf(box, side / (2 * half), centre, [box.left + side / 2, box.top + side / 2], 4 * Math.max(width, height));

@@ -13,8 +13,8 @@ import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } 
 import { DASHES, fading, KEPT, SOLID } from "./lines.js";
 import { meanSpeed } from "../model/velocities.js";
 import { drawSwung } from "./swing.js";
-import { drawVelocities } from "./velocities.js";
-import { ghostMark, pointMark, rimMark } from "./marks.js";
+import { drawAlike, drawVelocities } from "./velocities.js";
+import { foeMark, ghostMark, pointMark, rimMark } from "./marks.js";
 
 /** How much is seen of the path at times that are not in sight. */
 const OTHER_TIMES = 0.2;
@@ -51,16 +51,17 @@ export class FramedImage extends Picture {
   }
 
   /** Paint inside a square, and put handles in their places. */
-  paint(squareOf, theme, inside, placesIn) {
+  paint(squareOf, theme, { inside, outside = (_pen, _frame) => {}, room = 0 }, placesIn) {
     const square = this.squareFor(squareOf());
     this.square = square;
-    const frame = { ...placed(this, square, theme.font), lineWidth: theme.width };
+    const frame = { ...placed(this, square, theme.font, room), lineWidth: theme.width };
     const pen = this.context;
-    this.underlay([square, theme], (below) => drawAxes(below, frame, square.ticks, theme));
+    this.underlay([square, theme, room], (below) => drawAxes(below, frame, square.ticks, theme));
     pen.save();
     clipTo(pen, frame.box);
     inside(pen, frame);
     pen.restore();
+    outside(pen, frame);
     const places = placesIn(square);
     this.handles.forEach((handle, k) => handle.stand(places[k], frame));
   }
@@ -74,11 +75,13 @@ export class FramedImage extends Picture {
 
 /** The image of one point; `placeOf` says of a result where the handle stands. */
 export class ImagePlane extends FramedImage {
-  constructor(lab, { name, label, tag, placeOf, towardsOf = (_shown) => null, arrowsOf, onMove }) {
+  constructor(lab, { name, label, tag, placeOf, towardsOf = (_shown) => null, arrowsOf, alikeOf = /** @type {(...of: any[]) => any} */ (() => null), focusAt = /** @type {(...of: any[]) => any} */ (() => null), onMove }) {
     const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
     super(lab, [{ name, ...said, onMove, onRest: () => lab.rest() }]);
     this.placeOf = placeOf;
     this.arrowsOf = arrowsOf;
+    this.alikeOf = alikeOf;
+    this.focusAt = focusAt;
     this.tag = tag;
     this.towardsOf = towardsOf;
     /** @type {any} the film behind the track, if there is one */
@@ -96,7 +99,8 @@ export class ImagePlane extends FramedImage {
     };
     const towards = this.towardsOf(shown);
     const placesIn = ({ centre, half }) => [place ?? (towards && centre.map((value, c) => value + 1.5 * half * towards[c]))];
-    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, inside, placesIn);
+    const outside = (pen, frame) => this.map?.drawKey(pen, frame, theme);
+    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, { inside, outside, room: this.map?.roomFor(shown) }, placesIn);
     const tag = place || !towards ? this.tag : `${this.tag} at infinity`;
     if (this.handles[0].node.dataset.tag !== tag) this.handles[0].node.dataset.tag = tag;
   }
@@ -120,8 +124,14 @@ export class ImagePlane extends FramedImage {
     if (cursor === null) return;
     if (shown.truth?.length) {
       const speed = meanSpeed(shown.time, shown.truth, width, 0, [from, to]);
-      drawVelocities(pen, frame, this.arrowsOf(shown, between(shown.time, cursor), theme), speed, theme);
+      const at = between(shown.time, cursor);
+      const alike = this.alikeOf(shown, at, this.square);
+      if (alike) drawAlike(pen, frame, alike, speed, theme);
+      else drawVelocities(pen, frame, this.arrowsOf(shown, at, theme), speed, theme);
     }
+    const focus = this.focusAt(shown, between(shown.time, cursor));
+    if (focus?.circle) drawCircle(pen, focus.circle, frame, theme);
+    if (focus) foeMark(pen, frame.x(focus.foe[0]), frame.y(focus.foe[1]), "FOE now", theme);
     drawAt(pen, shown, cursor, frame, theme);
     this.swing(pen, frame, shown, cursor, theme);
   }
@@ -175,7 +185,6 @@ function drawAt(pen, shown, cursor, frame, theme) {
   const at = between(shown.time, cursor);
   /** @type {(rows: Float64Array) => [number, number]} */
   const place = (rows) => [x(valueBetween(rows, shown.width, 0, at)), y(valueBetween(rows, shown.width, 1, at))];
-  if (shown.truth) pointMark(pen, ...place(shown.truth), theme.ink, theme);
   const { box } = frame;
   const corners = [[box.left + 1, box.top + 1], [box.left + box.side - 1, box.top + box.side - 1]];
   const middle = [box.left + box.side / 2, box.top + box.side / 2];
@@ -185,4 +194,5 @@ function drawAt(pen, shown, cursor, frame, theme) {
     if (rim) rimMark(pen, rim, "", theme.lines[order], theme);
     else ghostMark(pen, ...there, theme.lines[order]);
   }
+  if (shown.truth) pointMark(pen, ...place(shown.truth), theme.ink, theme);
 }

@@ -8,21 +8,31 @@ export class Legend {
     this.lab = lab;
     this.body = element("ul", { class: "legend", "aria-label": "Lines" });
     this.key = "";
-    /** @type {string | number | null} */
-    this.kept = null;
+    /** @type {[string | number, string][]} */
+    this.entries = [];
+    /** @type {string | number | null} the line that stands out in the pictures, as far as they are drawn */
+    this.said = null;
+  }
+
+  /** The line that was chosen to stand out, if it is there. */
+  get kept() {
+    const { picked } = this.lab.state.now;
+    return this.entries.some(([which]) => which === picked) ? picked : null;
   }
 
   show(entries) {
     const key = JSON.stringify(entries);
-    if (key === this.key) return;
-    this.key = key;
-    if (!entries.some(([which]) => which === this.kept)) this.keep(null);
-    this.body.replaceChildren(...entries.map(([which, text]) => element("li", {}, this.entry(which, text))));
+    if (key !== this.key) {
+      this.key = key;
+      this.entries = entries;
+      this.body.replaceChildren(...entries.map(([which, text]) => element("li", {}, this.entry(which, text))));
+    }
+    if (this.said !== this.kept) this.say();
   }
 
   entry(which, text) {
     const said = { class: "line-name", "data-control": "line", title: "Let this line stand out", "aria-pressed": String(which === this.kept) };
-    const press = button("", () => this.keep(which === this.kept ? null : which), said);
+    const press = button("", () => this.keep(which), said);
     press.append(swatch(which), element("span", {}, text));
     press.dataset.line = which;
     for (const type of ["pointerenter", "focus"]) press.addEventListener(type, () => this.pick(which));
@@ -31,9 +41,15 @@ export class Legend {
   }
 
   keep(which) {
-    this.kept = which;
-    for (const press of this.body.querySelectorAll("button")) press.setAttribute("aria-pressed", String(press.dataset.line === String(which)));
-    this.pick(which);
+    this.lab.choose(which === this.kept ? null : which);
+    this.say();
+  }
+
+  /** Bring the buttons and the pictures to what was chosen. */
+  say() {
+    this.said = this.kept;
+    for (const press of this.body.querySelectorAll("button")) press.setAttribute("aria-pressed", String(press.dataset.line === String(this.kept)));
+    this.pick(this.kept);
   }
 
   pick(which) {

@@ -1,6 +1,8 @@
 // The one language of marks: what the start, the end, the present, an estimate, a reset look like in every picture.
 
 const HALO = 3;
+/** Radius of a ghost, which leaves room for the point inside of it. */
+const GHOST = 9;
 
 /** Length of a reset's tick, which hangs from the top of a chart. */
 export const RESET = 6;
@@ -26,7 +28,22 @@ export function pointMark(pen, x, y, colour, theme) {
 
 /** Where an observer thinks it is: a ring in the observer's colour, its ghost. */
 export function ghostMark(pen, x, y, colour) {
-  ring(pen, x, y, 6, colour, 2);
+  ring(pen, x, y, GHOST, colour, 1.5);
+}
+
+/** Where the translation points: an open diamond, as its handle is where the motion is constant. */
+export function foeMark(pen, x, y, text, theme) {
+  if (Number.isNaN(x + y)) return;
+  pen.setLineDash([]);
+  pen.strokeStyle = theme.warning;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  for (const [across, down] of [[0, -9], [9, 0], [0, 9], [-9, 0]]) pen.lineTo(x + across, y + down);
+  pen.closePath();
+  pen.stroke();
+  pen.textAlign = "left";
+  pen.textBaseline = "middle";
+  label(pen, text, x + 13, y, theme.warning, theme);
 }
 
 /** What lies outside: an arrow at the rim, with its value inside of it. */

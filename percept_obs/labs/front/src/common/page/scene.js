@@ -23,13 +23,14 @@ const HOW = "Scene in metres: turn it with the arrow keys or by dragging, plus a
 
 /** What a lab shows in it: `tracksOf(shown, ghost, theme)` and `wordsOf(shown)`; `image` is the image plane beside it. */
 export class Scene extends Picture {
-  constructor(lab, { image, tracksOf, wordsOf, unseenOf }) {
+  constructor(lab, { image, tracksOf, wordsOf, unseenOf, copiesOf = /** @type {(...of: any[]) => any[]} */ (() => []) }) {
     super("scene", "Scene, seen from the side");
     this.lab = lab;
     this.image = image;
     this.tracksOf = tracksOf;
     this.wordsOf = wordsOf;
     this.unseenOf = unseenOf;
+    this.copiesOf = copiesOf;
     this.swing = new Swing(lab);
     image.scene = this;
     this.look = OPENING_LOOK;
@@ -126,6 +127,7 @@ export class Scene extends Picture {
     for (const { track, positions } of paths) path(drawing, positions, track);
     if (cursor === null) return;
     const at = between(shown.time, cursor);
+    copies(drawing, this.copiesOf(shown, at, this.image.square));
     for (const track of scene.tracks) if (!track.of && !track.kept) this.point(drawing, track, at);
     for (const track of scene.tracks) if (track.of && !track.kept) estimate(drawing, track, at);
     const swung = this.swung(shown, cursor, theme);
@@ -272,6 +274,21 @@ function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.stroke();
   pen.lineWidth = 1;
   pen.globalAlpha = 1;
+}
+
+/** Other places where a point would look alike, or else: those whose arrows are in the image, in the same words. */
+function copies({ pen, frame, theme }, found) {
+  for (const { place, text, alike } of found) {
+    const [x, y] = on(frame, place);
+    const colour = alike ? theme.warning : theme.muted;
+    pen.fillStyle = colour;
+    pen.beginPath();
+    pen.arc(x, y, 3, 0, 2 * Math.PI);
+    pen.fill();
+    pen.textAlign = "left";
+    pen.textBaseline = "top";
+    label(pen, text, x + 5, y + 3, colour, theme);
+  }
 }
 
 /** An estimate as a ghost on its ray, with the distances that it claims, and how far it is from the truth. */

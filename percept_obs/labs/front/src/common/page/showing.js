@@ -9,6 +9,8 @@ import { TimeCharts } from "./time_charts.js";
 /** @typedef {import("../../types.js").Settings} Settings */
 
 const BETWEEN_READINGS = 250;
+/** Milliseconds after which a zoom that goes on is another step. */
+const LOOK = 400;
 
 /** Pictures of what was computed.  Another time, another look, or another part of the time computes nothing again. */
 export class Showing extends Following {
@@ -27,6 +29,8 @@ export class Showing extends Following {
     /** @type {Settings | null} those at which the hand took hold */
     this.taken = null;
     this.read = 0;
+    /** @type {any} the timer that runs while a zoom may go on */
+    this.looking = null;
     this.down = false;
     this.stale = true;
   }
@@ -65,10 +69,22 @@ export class Showing extends Following {
 
   /** Show another part of the time. */
   zoom(change) {
-    change(this.time.timeline);
+    const { timeline } = this.time;
+    const before = timeline.span;
+    change(timeline);
+    if (timeline.span !== before) this.state.look({ span: timeline.span, question: timeline.question });
+    clearTimeout(this.looking);
+    this.looking = setTimeout(() => this.state.seen(), LOOK);
+    this.view.steps(this.state);
     this.choices += 1;
     this.peeked = null;
     this.schedule();
+  }
+
+  /** Let a line stand out until another one is chosen: a step of its own. */
+  choose(picked) {
+    this.state.step({ picked });
+    this.view.steps(this.state);
   }
 
   /** Let the line of a colour stand out, or all of them. */
@@ -131,7 +147,11 @@ export class Showing extends Following {
     const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
     const { name, act } = state.preset ?? { name: "", act: -1 };
     const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
-    this.time.timeline.follow(whole, this.story(), { question, choice: this.choices, held: this.held });
+    const { sight } = state.now;
+    const { timeline } = this.time;
+    // A result of other settings tells another story: the present one is opened when its result is there.
+    const now = shown.settings === this.settings ? { question, choice: this.choices, held: this.held } : { ...timeline, held: true };
+    timeline.follow(whole, this.story(), { ...now, asked: sight?.question === now.question ? sight.span : null });
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
   }

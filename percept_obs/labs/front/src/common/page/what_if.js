@@ -1,16 +1,17 @@
-// What if: the same run with one cause switched off at a time, computed while its part of the page is open.
+// What if: the same run with one cause switched off at a time, each with its error drawn, computed while somebody looks.
 
-import { verdict } from "../model/words.js";
+import { verdictInShort } from "../model/words.js";
 import { element } from "./controls.js";
 import { topic } from "./fieldsets.js";
-import { fill } from "./put.js";
+import { spark } from "./spark.js";
+
+const MEANING = "The same run, with one thing changed at a time. Drawn is its error over time, thin the error now, dotted the tolerance.";
 
 export class WhatIf {
   constructor(lab) {
     this.lab = lab;
     this.list = element("ul", { class: "causes" });
-    const said = element("p", { class: "meaning" }, "The same run, with one thing changed at a time:");
-    this.body = topic("causes", "What if? One cause at a time", said, this.list);
+    this.body = topic("causes", "What if? One cause at a time", element("p", { class: "meaning" }, MEANING), this.list);
     /** @type {any} the settings that are told of */
     this.told = null;
     this.body.addEventListener("toggle", () => this.show());
@@ -23,6 +24,7 @@ export class WhatIf {
     if (!this.body.open || this.told === settings) return;
     this.told = settings;
     const engine = lab.makeEngine();
+    const now = engine.run(settings, lab.kernels.of(settings)).runs;
     const lines = [];
     for (const cause of lab.parts.causesOf(settings, model)) {
       const refused = Object.keys(lab.kernels.refused(cause.settings));
@@ -31,8 +33,12 @@ export class WhatIf {
       if (this.told !== lab.settings || lab.closed) return;
       const shown = engine.run(cause.settings, lab.kernels.of(cause.settings));
       const many = shown.runs.length > 1;
-      lines.push(...(shown.runs ?? []).map((run) => `${cause.words}${many ? `, ${run.title}` : ""}: ${verdict(run, shown, model)}`));
+      for (const run of shown.runs) {
+        const before = now.find(({ name }) => name === run.name)?.error ?? null;
+        const text = `${cause.words}${many ? `, ${run.title}` : ""}: ${verdictInShort(run, shown, model)}`;
+        lines.push(element("li", {}, spark([["spark-now", before], ["spark-then", run.error]], shown.tolerance), element("span", {}, text)));
+      }
     }
-    fill(list, lines.length ? lines : ["There is nothing that the lab could switch off."]);
+    list.replaceChildren(...(lines.length ? lines : [element("li", {}, "There is nothing that the lab could switch off.")]));
   }
 }

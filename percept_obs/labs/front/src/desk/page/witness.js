@@ -49,7 +49,7 @@ export class Witness extends FramedImage {
       if (mine) arrow(pen, frame, point, mine, scale, theme.lines[MINE], DASHES[MINE]);
       pointMark(pen, frame.x(point[0]), frame.y(point[1]), theme.ink, theme);
     };
-    this.paint(() => SQUARE, theme, inside, () => [point.slice(0, 2)]);
+    this.paint(() => SQUARE, theme, { inside }, () => [point.slice(0, 2)]);
     if (!found) return;
     const told = inWords(found, point);
     put(this.words, told);

@@ -10,6 +10,7 @@ import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { spansInside, windowed } from "./measures.js";
+import { divides, sharesOf, withoutNoise } from "./shares.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
 const INFINITY = 1e6;
@@ -20,6 +21,8 @@ export class Engine extends Runner {
   constructor(model) {
     super(model);
     this.camera = new Camera(model, this.memory);
+    /** @type {Engine | null} for the same run without noise: what it keeps, the run itself does not drive out */
+    this.other = null;
   }
 
   /** @returns {import("../../types.js").ObserverResult} what is shown of settings: whole, or as far as is drawn */
@@ -33,9 +36,11 @@ export class Engine extends Runner {
       ...this.geometry(settings, functions, form),
       ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
       tolerance: this.model.tolerance,
+      settledPart: this.model.settledPart,
       judged: this.model.judged,
       runs: [],
       bound: null,
+      shares: null,
       excitation: null,
       inside: [],
       whole: false,
@@ -51,6 +56,10 @@ export class Engine extends Runner {
       return this.unlessKept(name, settings, follow);
     });
     result.bound = this.bound(settings, result, inputs, functions);
+    if (divides(settings, this.model)) {
+      this.other ??= new Engine(this.model);
+      result.shares = sharesOf(result, this.other.run(withoutNoise(settings), functions, false));
+    }
     return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
   }
 
@@ -99,7 +108,7 @@ export class Engine extends Runner {
 
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {
     const window = Math.min(settings.window, time[time.length - 1] - time[0]);
-    if (!functions.w) return { window, time: NONE, smallest: NONE };
+    if (!functions.w) return { window, time: NONE, smallest: NONE, begun: { time: NONE, smallest: NONE } };
     const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
     const { motion, shape } = this.camera.motion(settings, functions);
     const table = knownAt(motion, shape, time);
@@ -137,7 +146,12 @@ function parametersOf(settings) {
 /** The focus of expansion in the image; null where it is at infinity, or the motion varies. */
 export function focusOf(settings, functions, model) {
   if (varies(settings, model)) return null;
-  const foe = Array.from(functions.foe(parametersOf(settings), [0, 0]));
+  return inImage(functions, parametersOf(settings));
+}
+
+/** Where the translation of a motion's numbers points in the image; null where that is at infinity, or nothing translates. */
+export function inImage(functions, numbers) {
+  const foe = Array.from(functions.foe(numbers, [0, 0]));
   return foe.every((v) => Math.abs(v) < INFINITY) ? foe : null;
 }
 

@@ -12,7 +12,7 @@ export function smallestEigenvalue(matrix) {
   return mean > 0 ? (a * d - b * b) / (mean + root) : mean - root;
 }
 
-/** Smallest eigenvalue of the integral of w w^T over the window that ends at each sample, from one window on. */
+/** Smallest eigenvalue of the integral of w w^T over the window that ends at each sample, from one window on; before that since the first. */
 export function windowed(time, w, hidden, measured, window) {
   const samples = time.length;
   const size = hidden * hidden;
@@ -51,7 +51,9 @@ export function windowed(time, w, hidden, measured, window) {
     }
     smallest[k] = smallestEigenvalue(inside);
   }
-  return { time: ends, smallest };
+  const earlier = time.subarray(0, first < 0 ? samples : first + 1);
+  const since = Float64Array.from(earlier, (_, k) => smallestEigenvalue(gathered.subarray(k * size, (k + 1) * size)));
+  return { time: ends, smallest, begun: { time: earlier, smallest: since } };
 }
 
 /** Spans of time in which rows of y1, y2 and a third number are inside a circle of y1, y2 and radius. */

@@ -56,7 +56,9 @@ export const PRESETS = presetsOf([
     acts: [
       {
         changes: { noise: NOISE, gains: { identifier_based: { gain: 60 } }, pictures: ["inverse", "distance", "error"] },
-        answer: "It is faster, and it follows the noise: the error settles about ten times higher. Move the gain and find the best.",
+        answer:
+          "It is faster, and it follows the noise: the error settles about ten times higher. In the chart of the error the " +
+          "dashed line is the same run without noise, and what noise adds is filled. Move the gain: one falls, the other rises.",
       },
     ],
   },
@@ -69,13 +71,14 @@ export const PRESETS = presetsOf([
     answers: ["No, it is pushed away from the truth", "Yes, it scatters about the truth"],
     right: 0,
     changes: {
-      outputs: ["y1"], noise: NOISE, start: { mode: "zero", values: [0, 0, 0] }, seed: 1, pictures: ["inverse", "error", "excitation"],
+      outputs: ["y1"], noise: NOISE, start: { mode: "zero", values: [0, 0, 0] }, seed: 1, pictures: ["innovation", "inverse", "error"],
     },
     acts: [
       {
         answer:
           "No. The same noise is in w and in the innovation, and the mean of their product is not 0. It pushes the estimate " +
-          "to the bound, where it is reset again and again.",
+          "to the bound, where it is reset again and again. Look at the innovation: most of it is no larger than the noise, " +
+          "so the observer cannot see that it is wrong.",
       },
       {
         button: "Show the cure",

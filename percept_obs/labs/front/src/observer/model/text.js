@@ -4,6 +4,7 @@ import { readable } from "../../common/model/scales.js";
 import { leavingInWords, percent } from "../../common/model/words.js";
 import { noBound } from "./bound.js";
 import { varies } from "./camera.js";
+import { lateNoise } from "./shares.js";
 
 const UNEXCITED = 1e-4;
 
@@ -23,14 +24,16 @@ export function reasons(shown, model) {
     );
   }
   if (measured.length < hiddenNames.length) {
-    found.push(`Only ${names[measured[0]]} is measured: one instant never tells both hidden coordinates, a window of time may.`);
+    const [name, drawn] = [names[measured[0]], shown.truth && !(settings.scenario in model.recordings)];
+    const others = drawn ? ` Others, with the same ${name} and the same speed along it, are drawn in the image.` : "";
+    found.push(`Only ${name} is measured: one instant never tells both hidden coordinates, a window of time may.${others}`);
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
   }
   const constant = !varies(settings, model);
   if (!constant && !(settings.scenario in model.recordings)) {
-    found.push("The motion varies over time, and so the focus of expansion moves: it is not drawn.");
+    found.push("The motion varies over time, and so the focus of expansion moves: it is drawn where it is at the time shown.");
   }
   if (constant && settings.b.every((value) => value === 0)) {
     found.push("Nothing translates, b = 0: there is no focus of expansion, and images do not tell any distance.");
@@ -44,7 +47,7 @@ export function reasons(shown, model) {
   }
   if (settings.believed) found.push("The observers believe another motion than the true one.");
   if (settings.noise.size > 0) {
-    found.push("Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.");
+    found.push(noiseInWords(shown));
   }
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
@@ -58,6 +61,16 @@ export function reasons(shown, model) {
     found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the estimate, it pushes it.");
   }
   return found;
+}
+
+/** What noise does to the error, in the chart's own parts where they are drawn. */
+function noiseInWords({ shares }) {
+  const added = shares && lateNoise(shares);
+  if (!(added > 0)) return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
+  return (
+    `Noise adds ${percent(added, 2)} to the error in the second half (filled in its chart). Without noise the error would follow the thin ` +
+    "dashed line. More gain lets that line fall faster, and lifts what noise adds."
+  );
 }
 
 /** What the bound is, and what it comes to. */

@@ -11,7 +11,8 @@ const FINE = 144;
 /** Half decades of the relative error from 0.01 % to 100 %, each in a shade of its own. */
 const [LEAST, SHADES] = [-4, 8];
 const DARKEST = 0.6;
-const KEY = { height: 8, width: 22 };
+/** The key beside the picture: how wide it is, and with its numbers. */
+const KEY = { width: 8, room: 40 };
 
 /** The shade of a relative error, from 0 on; the last one for all above. */
 function shadeOf(value) {
@@ -50,7 +51,7 @@ export class MapPicture {
     return this.found;
   }
 
-  draw(pen, { x, y, box }, square, shown, theme) {
+  draw(pen, { x, y }, square, shown, theme) {
     if (!this.wanted(shown)) {
       this.found = null;
       this.known = "";
@@ -63,7 +64,34 @@ export class MapPicture {
     const cell = (x(y1[1]) - x(y1[0])) / (resolution - 1);
     // The places are the middles of the picture's dots, the first row of which is the highest.
     pen.drawImage(this.canvas, x(y1[0]) - cell / 2, y(y2[1]) - cell / 2, cell * resolution, cell * resolution);
-    drawKey(pen, box, found, theme);
+  }
+
+  /** Room that the key needs beside the picture. */
+  roomFor(shown) {
+    return this.wanted(shown) ? KEY.room : 0;
+  }
+
+  /** What the shades mean, beside the picture, where it covers nothing. */
+  drawKey(pen, { box: { left, top, side } }, theme) {
+    if (!this.found) return;
+    const x = left + side + 6;
+    const y = (shade) => top + side * (1 - shade / SHADES);
+    for (let shade = 0; shade < SHADES; shade++) {
+      pen.fillStyle = theme.warning;
+      pen.globalAlpha = opacityOf(shade);
+      pen.fillRect(x, y(shade + 1), KEY.width, side / SHADES);
+    }
+    pen.globalAlpha = 1;
+    pen.setLineDash([]);
+    pen.strokeStyle = theme.line;
+    pen.strokeRect(x + 0.5, top + 0.5, KEY.width, side);
+    pen.fillStyle = theme.ink;
+    pen.textAlign = "left";
+    pen.textBaseline = "middle";
+    for (let shade = 0; shade <= SHADES; shade += 2) pen.fillText(readable(100 * 10 ** (LEAST + shade / 2)), x + KEY.width + 4, y(shade));
+    pen.textBaseline = "alphabetic";
+    const { seconds, distance } = this.found;
+    pen.fillText(`least error in % after ${readable(seconds)} s, at ${readable(distance)} m`, left + 20, top - 8);
   }
 
   /** Paint a dot for each place; where a point comes behind the camera there is none. */
@@ -106,32 +134,5 @@ export class MapPicture {
     told("the focus of expansion", foe);
     told("the point's first image", truth && [truth[0], truth[1]]);
     return `${begun}: ${parts.join("; ")}.`;
-  }
-}
-
-/** What the shades mean, in the picture's lower left corner. */
-function drawKey(pen, { left, top, side, height = side }, { seconds, distance }, theme) {
-  const [x, y] = [left + 14, top + height - 20];
-  pen.fillStyle = theme.paper;
-  pen.globalAlpha = 0.8;
-  pen.fillRect(left + 1, y - 18, SHADES * KEY.width + 30, 37);
-  pen.globalAlpha = 1;
-  pen.textAlign = "left";
-  pen.textBaseline = "alphabetic";
-  pen.fillStyle = theme.ink;
-  pen.fillText(`least error in % after ${readable(seconds)} s, at ${readable(distance)} m`, x - 8, y - 6);
-  for (let shade = 0; shade < SHADES; shade++) {
-    pen.fillStyle = theme.warning;
-    pen.globalAlpha = opacityOf(shade);
-    pen.fillRect(x + shade * KEY.width, y, KEY.width, KEY.height);
-  }
-  pen.globalAlpha = 1;
-  pen.setLineDash([]);
-  pen.strokeStyle = theme.line;
-  pen.strokeRect(x + 0.5, y + 0.5, SHADES * KEY.width, KEY.height);
-  pen.fillStyle = theme.ink;
-  pen.textAlign = "center";
-  for (let shade = 0; shade <= SHADES; shade += 2) {
-    pen.fillText(readable(100 * 10 ** (LEAST + shade / 2)), x + shade * KEY.width, y + KEY.height + 10);
   }
 }

@@ -1,15 +1,18 @@
 // What each time chart shows of a run: lines, scale, marks, and the same in words.
 
 import { columnOf, derived, distancesOf } from "../../common/model/derived.js";
-import { readable } from "../../common/model/scales.js";
+import { linearScale, readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
-import { BOUND, SOLID } from "../../common/page/lines.js";
+import { BOUND, KEPT, QUIET, SOLID } from "../../common/page/lines.js";
 import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
+
+import { innovationOf } from "../model/shares.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range", unified: "Distance Z + ξR" };
 
 export const LABELS = {
   outputs: "Image coordinates over time",
+  innovation: "Innovation over time",
   inverse: "Inverse distance over time",
   distance: "Distance over time",
   error: "Relative error of the distance over time",
@@ -33,6 +36,16 @@ const BUILD = {
     }
     return { title: "Image coordinates y1, y2", lines, scale: around(lines, shown), marks: marksOf(shown, theme) };
   },
+  innovation(shown, ghost, theme) {
+    const { measured, names, settings } = shown;
+    const lines = measured.flatMap((c) => runLines(shown, ghost, theme, `innovation of ${names[c]}`, (result, run) => innovationOf(result, run, c)));
+    const { kind, size } = settings.noise;
+    const [reach, words] = kind === "uniform" ? [size, "bound of the noise"] : [2 * size, "2σ of the noise"];
+    const ends = [shown.time[0], shown.time.at(-1)];
+    if (size > 0) for (const side of [-reach, reach]) lines.push(line("noise", ends, [side, side], theme.noise, SOLID));
+    const title = `Innovation, ${measured.map((c) => `${names[c]} − ŷ${c + 1}`).join(", ")}${size > 0 ? `, and the ${words}, ±${readable(reach)}` : ""}`;
+    return { title, lines, scale: () => linearScale(...(size > 0 ? [-2 * reach, 2 * reach] : [-0.01, 0.01]), 3), marks: marksOf(shown, theme) };
+  },
   inverse(shown, ghost, theme) {
     const c = shown.width - 1;
     const lines = linesOf(shown, ghost, theme, shown.names[c], ({ width }, rows) => columnOf(rows, width, c));
@@ -51,14 +64,28 @@ const BUILD = {
     const lines = runLines(own ?? { runs: [] }, kept, theme, "error", (_, run) => run.error);
     if (shown.bound) lines.push(line("bound", shown.time, shown.bound, theme.warning, BOUND));
     const title = `Relative error of ${shown.judged}; tolerance ${percent(shown.tolerance, 6)}`;
-    return { title, lines, scale: decades(lines, 1e-6, 1e2, shown.tolerance), ...toleranceOf(shown, theme), marks: marksOf(shown, theme) };
+    const scale = decades(lines, 1e-6, 1e2, shown.tolerance);
+    return { title, scale, ...dividedOf(shown, ghost, lines, theme), ...toleranceOf(shown, theme), marks: marksOf(shown, theme) };
   },
   excitation(shown, ghost, theme) {
-    const lines = withKept("excitation", shown, ghost, theme, ({ excitation: { time, smallest } }) => [time, smallest]);
+    const { begun } = shown.excitation;
+    const growing = begun.time.length ? [{ ...line("since the first sample", begun.time, begun.smallest, theme.muted, QUIET), text: "since the first sample" }] : [];
+    const lines = [...growing, ...withKept("excitation", shown, ghost, theme, ({ excitation: { time, smallest } }) => [time, smallest])];
     const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(shown.excitation.window)} s`;
     return { title, lines, scale: decades(lines, 1e-12, 1e4) };
   },
 };
+
+/** Lines of an error with its parts, where it is divided: below what noise adds, and the same run without noise. */
+function dividedOf({ shares, time }, ghost, lines, theme) {
+  if (!shares) return { lines };
+  const quiet = { ...line("without noise", time, shares.quiet, theme.muted, QUIET), text: "without noise" };
+  const added = { ...line("what noise adds", shares.time, shares.added, theme.noise, SOLID), text: "what noise adds" };
+  const before = ghost?.shares && line("what noise added to the kept run", ghost.shares.time, ghost.shares.added, theme.noise, KEPT);
+  const band = { time: shares.time, low: derived(shares.added, "none", () => new Float64Array(shares.added.length)), high: shares.added, colour: theme.noise };
+  // On top, for an error with noise hides whatever lies below it.
+  return { lines: [...lines, ...(before ? [{ ...before, text: "noise, kept run" }] : []), quiet, added], band };
+}
 
 function bandOf(shown, run, c, theme) {
   const middle = columnOf(run.estimate, shown.width, c);

@@ -27,7 +27,7 @@ export class ImagePlane extends FramedImage {
 
   draw(shown, ghost, cursor, theme) {
     const inside = (pen, frame) => this.trace(pen, frame, shown, ghost, cursor, theme);
-    this.paint(() => squareOf(shown), theme, inside, () => this.handles.map((_, k) => startOf(shown, k)));
+    this.paint(() => squareOf(shown), theme, { inside }, () => this.handles.map((_, k) => startOf(shown, k)));
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {

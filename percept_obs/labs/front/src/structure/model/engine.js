@@ -22,7 +22,8 @@ export class StructureEngine extends Runner {
     const { scale, tolerance } = settings;
     const recording = this.camera.record(settings, functions);
     const image = recording.truth;
-    const seen = { settings, ...recording, image, sampled: 3, scale, tolerance, refusal, measured: [0, 1, 2] };
+    const { settledPart } = this.model;
+    const seen = { settings, ...recording, image, sampled: 3, scale, tolerance, settledPart, refusal, measured: [0, 1, 2] };
     if (recording.problem || refusal) {
       const nothing = { hidden: [], hiddenNames: [], runs: [], choice: null, guard: null, limits: [], whole: true };
       return { ...seen, ...nothing, width: 3, names: OUTPUTS };

@@ -2,7 +2,7 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { percent } from "../../common/model/words.js";
-import { DASHES, SOLID } from "../../common/page/lines.js";
+import { BOUND, SOLID } from "../../common/page/lines.js";
 import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
 
@@ -81,7 +81,7 @@ const BUILD = {
     if (guarded) {
       const largest = shown.settings.gains[guarded.name].largest_amplification;
       const least = shown.guard.sizes.map((value) => value / largest);
-      lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, DASHES[1]));
+      lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, BOUND));
     }
     const title = `|det ${shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)"}|${guarded ? "; dotted: least for an estimate" : ""}`;
     return { title, lines, scale: decades(lines, 1e-16, 1e6) };
