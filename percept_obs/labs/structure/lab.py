@@ -92,8 +92,7 @@ class StructureLab(Lab):
         standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
         named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(
-            SCHEMA
-            | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
+            SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
         )
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(

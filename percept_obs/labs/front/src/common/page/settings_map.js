@@ -20,7 +20,8 @@ const SLICE = 5;
 
 export class SettingsMap extends Picture {
   constructor(lab, axesOf) {
-    super("settings-map off", "Map over two settings");
+    super("settings-map", "Map over two settings");
+    this.figure.hidden = true;
     this.lab = lab;
     this.axesOf = axesOf;
     this.sweep = new Sweep(lab.model, axesOf, () => this.come());
@@ -83,15 +84,20 @@ export class SettingsMap extends Picture {
     return functions && plan ? sharesOf(plan, shown.settings, functions) : null;
   }
 
+  /** The cell at shares of the way along both axes, and the settings there; null as long as it is not filled. */
+  at(shares) {
+    const { lab, sweep: { found } } = this;
+    const cell = found && cellAtShares(found, shares);
+    const functions = lab.kernels.of(lab.settings);
+    if (!cell || !functions) return null;
+    return { cell, observer: found.plan.observer, settings: cell.kind === IMPOSSIBLE ? null : settingsAt(lab.settings, found.plan, cell.place, functions) };
+  }
+
   /** Take the settings of the place under the cursor: a step that can be undone. */
   go() {
-    const { lab, aim, sweep: { found } } = this;
-    const cell = aim && found && cellAtShares(found, aim);
-    if (!cell) return;
-    const functions = lab.kernels.of(lab.settings);
-    const settings = functions && cell.kind !== IMPOSSIBLE && settingsAt(lab.settings, found.plan, cell.place, functions);
-    if (settings) lab.change(settings, true);
-    else lab.say("There is no run at this place.");
+    const there = this.aim && this.at(this.aim);
+    if (there?.settings) this.lab.change(there.settings, true);
+    else if (there) this.lab.say("There is no run at this place.");
   }
 
   /** Something of the map has come. */
@@ -135,7 +141,7 @@ export class SettingsMap extends Picture {
   draw(shown, _ghost, _cursor, theme) {
     const { figure, lab, sweep } = this;
     const off = shown.settings.over.shows === "nothing";
-    if (off !== figure.classList.contains("off")) figure.classList.toggle("off", off);
+    if (off !== figure.hidden) figure.hidden = off;
     const functions = lab.kernels.of(shown.settings);
     if (off) return this.close();
     if (!functions) return undefined;
@@ -167,6 +173,7 @@ export class SettingsMap extends Picture {
     const cell = aim && found && cellAtShares(found, aim);
     const text = cell ? `${placeInWords(found.plan, cell.place)}: ${cellInWords(cell)}` : stateInWords(sweep);
     put(this.line, text);
+    this.pad.setAttribute("aria-valuenow", String(Math.round(100 * (aim?.[0] ?? 0))));
     if (this.pad.getAttribute("aria-valuetext") !== text) this.pad.setAttribute("aria-valuetext", text);
   }
 
