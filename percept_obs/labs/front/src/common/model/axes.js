@@ -20,11 +20,19 @@ import { changeAt, switchOf, valueAt } from "./settings.js";
 const DECADE = 10;
 const DIGITS = 4;
 
+/** Schemas of models, which a hand that moves would read anew for every axis. */
+const schemas = new WeakMap();
+
+function schemaFor(model) {
+  if (!schemas.has(model)) schemas.set(model, schemaOf(model.schema, {}));
+  return schemas.get(model);
+}
+
 const withUnit = (label, unit) => (unit && unit !== "1" ? `${label} in ${unit.replaceAll("^2", "²")}` : label);
 
 /** An axis of a setting that is a number; `meant` says where it has a meaning. */
 export function axisAt(model, place, label, meant = (_settings) => true) {
-  const { low, high, log, unit } = /** @type {any} */ (schemaAt(schemaOf(model.schema, {}), place));
+  const { low, high, log, unit } = /** @type {any} */ (schemaAt(schemaFor(model), place));
   return {
     ...{ place, label: withUnit(label, unit), low, high, log, records: !/^(start|believed)/.test(place) },
     get: (settings) => (meant(settings) ? valueAt(settings, place) : undefined),

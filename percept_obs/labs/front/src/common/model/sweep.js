@@ -32,6 +32,8 @@ export class Sweep {
     this.found = null;
     /** @type {Map<number, Found>} maps that were asked for, by their numbers */
     this.sent = new Map();
+    /** @type {any} the settings whose map was asked for last */
+    this.settings = null;
     this.key = "";
     this.id = 0;
     this.cost = SLOW;
@@ -41,11 +43,14 @@ export class Sweep {
   /** Let something else fill maps from now on. */
   fill(filler) {
     this.filler = filler;
+    this.settings = null;
     this.key = "";
   }
 
   /** Ask for the map of settings, unless it is there or on its way. */
   want(settings, functions, tolerance) {
+    if (settings === this.settings) return;
+    this.settings = settings;
     const plan = planOf(settings, this.model, this.axesOf, functions);
     const { observer, across, up } = plan;
     const base = across && up ? baseOf(settings, plan, functions) : null;
@@ -102,6 +107,7 @@ export class Sweep {
   close() {
     this.filler = this.found = null;
     this.sent.clear();
+    this.settings = null;
     this.key = "";
   }
 }

@@ -15,8 +15,8 @@ import { boxOf, drawAim, drawMap } from "./settings_map_drawing.js";
 const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const LEAP = 8;
 const HOW = "Map over two settings: move the cursor with the arrow keys, Enter goes there";
-/** Milliseconds of a frame that maps may take where there is no worker. */
-const SLICE = 5;
+/** Milliseconds at a time that maps may take of the page's own, until there is a worker and where there is none. */
+const SLICE = 8;
 
 export class SettingsMap extends Picture {
   constructor(lab, axesOf) {
@@ -112,7 +112,7 @@ export class SettingsMap extends Picture {
     if (this.here || this.worker) return;
     const { lab, sweep } = this;
     const { CellEngine, axesOf } = lab.constructor.computing;
-    const pause = () => new Promise((resolve) => setTimeout(resolve, SLICE));
+    const pause = () => new Promise((resolve) => setTimeout(resolve));
     const here = new Filling({ model: lab.model, kernels: lab.kernels, engine: new CellEngine(lab.model), axesOf }, (part) => sweep.take(part), { slice: SLICE, pause });
     this.here = here;
     sweep.fill({ ask: (task) => here.take(task).catch((error) => lab.fail(error)) });
