@@ -5,7 +5,7 @@ import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, NOT_YET } from "../model/cel
 import { linearScale, readable } from "../model/scales.js";
 import { drawAxes, stroke } from "./image_frame.js";
 
-const MARGIN = { left: 46, top: 34, right: 88, bottom: 54 };
+const MARGIN = { left: 46, top: 34, right: 88, bottom: 62 };
 const SHADES = 8;
 const [FAINTEST, STRONGEST] = [0.08, 0.92];
 /** The least error of a shade of its own: half decades from 0.01 % on. */
