@@ -93,8 +93,21 @@ test("a hand that moves on gets the first picture of each map, and no finer one 
   assert.deepEqual(seen.slice(0, 3).map(([id]) => id), [1, 2, 3]);
   assert.ok(seen.filter(([id]) => id < 4).every(([, cells]) => cells <= 16));
   assert.ok(sweep.whole);
-  assert.equal(sweep.found.id, 4);
   assert.equal(sweep.sent.size, 1);
+});
+
+test("another filler goes on with the map that is there", async () => {
+  const { sweep, whole, filling } = filled((the, { cells }) => cells > 16 && filling.stop());
+  sweep.want(SETTINGS, {}, 5);
+  await whole();
+  const before = cellAtShares(sweep.found, [0.5, 0.25]).cells;
+  const asked = [];
+  sweep.fill({ ask: (task) => asked.push(task) });
+  sweep.want(SETTINGS, {}, 5);
+  assert.ok(sweep.present);
+  const values = new Float64Array(EACH_CELL * 16).fill(FOLLOWED);
+  sweep.take({ id: asked[0].id, cells: 4, from: 0, values, cost: 1 });
+  assert.equal(cellAtShares(sweep.found, [0.5, 0.25]).cells, before);
 });
 
 test("who stops is left in peace, and other axes take the old map away at once", async () => {

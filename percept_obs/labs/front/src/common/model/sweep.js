@@ -11,7 +11,7 @@ const SLOW = 4;
 /**
  * @typedef {ReturnType<typeof planOf>} Plan
  * @typedef {{cells: number, values: Float64Array, done: number}} Level  rows of cells, with how many are filled
- * @typedef {{id: number, plan: Plan, base: any, tolerance: number, duration: number, levels: Level[], version: number}} Found
+ * @typedef {{key: string, plan: Plan, base: any, tolerance: number, duration: number, levels: Level[]}} Found
  */
 
 export class Sweep {
@@ -65,14 +65,16 @@ export class Sweep {
     this.key = key;
     this.id += 1;
     if (!base) return;
-    this.sent.set(this.id, { id: this.id, plan, base, tolerance, duration: settings.duration, levels: [], version: 0 });
+    // What fills maps may have changed, while the map is the same.
+    const levels = found?.key === key ? found.levels : [];
+    this.sent.set(this.id, { key, plan, base, tolerance, duration: settings.duration, levels });
     const first = FIRST.findLast((cells) => cells * cells * this.cost < SOON) ?? FIRST[0];
     this.filler.ask({ id: this.id, settings, base, first });
   }
 
   /** Whether what is shown is of the present settings. */
   get present() {
-    return this.found?.id === this.id;
+    return this.found?.key === this.key;
   }
 
   /** Whether all of it is there. */
@@ -93,14 +95,18 @@ export class Sweep {
     this.cost = cost;
     this.found = found;
     let level = found.levels.find((each) => each.cells === cells);
-    if (!level) found.levels.push((level = { cells, values: new Float64Array(EACH_CELL * cells * cells), done: 0 }));
+    if (!level) {
+      level = { cells, values: new Float64Array(EACH_CELL * cells * cells), done: 0 };
+      found.levels.push(level);
+      found.levels.sort((one, other) => one.cells - other.cells);
+    }
     const order = orderOf(found.plan, cells);
     for (let k = 0; EACH_CELL * k < values.length; k++) {
       const [i, j] = order(from + k);
       level.values.set(values.subarray(EACH_CELL * k, EACH_CELL * (k + 1)), EACH_CELL * (j * cells + i));
     }
     level.done = from + values.length / EACH_CELL;
-    found.version = ++this.version;
+    this.version += 1;
     this.onFound();
   }
 

@@ -104,7 +104,8 @@ export class SettingsMap extends Picture {
   come() {
     const { lab } = this;
     lab.redraw();
-    if (!lab.held && lab.shown) this.describe(lab.shown);
+    const finest = this.sweep.found?.levels.at(-1);
+    if (finest && finest.done === finest.cells ** 2 && !lab.held && lab.shown) this.describe(lab.shown);
   }
 
   /** What fills maps: a worker as soon as it is open, and until then, or without one, slices of the page's own time. */
