@@ -104,6 +104,7 @@ def test_a_map_is_shown_pointed_at_gone_to_and_undone_by_keys_and_by_hand(browse
     assert not page.is_visible(MAP)
     assert page.evaluate("[...window.perceptObsLabs][0].planes[2].worker") is None
     page.click("summary:has-text('Map over two settings')")
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].worker !== null")
     page.focus(control("map shows"))
     page.keyboard.press("ArrowDown")
     page.wait_for_function(WHOLE)
@@ -155,14 +156,13 @@ def test_a_map_follows_the_hand_beside_the_page_and_in_it(browser, where):
         const [lab] = window.perceptObsLabs;
         const { sweep } = lab.planes[2];
         const maps = new Set();
-        const began = performance.now();
         for (let k = 0; k < 60; k++) {
             lab.change({ w: [0, 0, 0.01 * k] });
             await new Promise((resolve) => requestAnimationFrame(resolve));
-            if (sweep.found) maps.add(sweep.found.id);
+            if (sweep.found) maps.add(sweep.found);
         }
-        return { maps: maps.size, seconds: (performance.now() - began) / 1000 };
+        return maps.size;
     }""")
-    assert found["maps"] > 2 * found["seconds"]
+    assert found > 3
     page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.present")
     page.close()

@@ -108,7 +108,7 @@ export class SettingsMap extends Picture {
     if (finest && finest.done === finest.cells ** 2 && !lab.held && lab.shown) this.describe(lab.shown);
   }
 
-  /** What fills maps: a worker as soon as it is open, and until then, or without one, slices of the page's own time. */
+  /** What fills maps: a worker as soon as it is open, and until then, or without one, slices of the page's own time; hired when somebody opens its controls, so that the first map need not wait for it. */
   hire() {
     if (this.here || this.worker) return;
     const { lab, sweep } = this;
@@ -142,10 +142,12 @@ export class SettingsMap extends Picture {
   draw(shown, _ghost, _cursor, theme) {
     const { figure, lab, sweep } = this;
     const off = shown.settings.over.shows === "nothing";
-    if (off !== figure.hidden) figure.hidden = off;
+    if (off !== figure.hidden) {
+      figure.hidden = off;
+      if (off) this.close();
+    }
     const functions = lab.kernels.of(shown.settings);
-    if (off) return this.close();
-    if (!functions) return undefined;
+    if (off || !functions) return undefined;
     this.hire();
     sweep.want(shown.settings, functions, shown.tolerance);
     const size = this.fit(theme.font);

@@ -25,7 +25,9 @@ export function mapTopic(panel, axesOf) {
   const axes = ["across", "up"].map((part) => axisChoice({ name: `map ${part}`, label: part, set: set(part) }, part, plan));
   const rows = [observer, ...axes].map((control) => panel.add(control));
   const more = element("div", {}, ...rows, element("p", { class: "meaning" }, "Each place is a whole run with all other settings as they are; noise has the same seed everywhere."));
-  return topic("over", "Map over two settings", panel.add(shows), panel.onlyIf(({ over }) => over.shows !== "nothing", more));
+  const body = topic("over", "Map over two settings", panel.add(shows), panel.onlyIf(({ over }) => over.shows !== "nothing", more));
+  body.addEventListener("toggle", () => body.open && lab.planes.find((plane) => plane.sweep).hire());
+  return body;
 }
 
 /** A choice among the axes that have a meaning at present, besides that of the other side. */
