@@ -46,6 +46,7 @@ function filled(onPart = undefined) {
 test("a share of an axis and its value lead to each other, in decades where it is logarithmic", () => {
   assert.equal(valueOn(AXES[0], 0.5), 10);
   for (const each of AXES) for (const share of [0, 0.25, 0.9]) assert.ok(Math.abs(shareOf(each, valueOn(each, share)) - share) < 1e-4);
+  assert.equal(shareOf(AXES[0], -1), -Infinity);
   assert.deepEqual([0, 0.49, 0.5, 1, -1, 2].map((share) => cellAt(share, 2)), [0, 0, 1, 1, 0, 1]);
   assert.deepEqual(ticksOn(AXES[0], () => []), [1, 3, 10, 30, 100]);
   assert.deepEqual(ticksOn({ low: 1, high: 30, log: true }, () => []), [1, 2, 5, 10, 20].filter((tick) => tick <= 30));

@@ -59,9 +59,9 @@ export function valueOn({ low, high, log }, share) {
   return Number(value.toPrecision(DIGITS));
 }
 
-/** The share of the way at which a value lies. */
+/** The share of the way at which a value lies; what is not positive is infinitely far below a logarithmic axis. */
 export function shareOf({ low, high, log }, value) {
-  return log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+  return log ? Math.log(Math.max(value, 0) / low) / Math.log(high / low) : (value - low) / (high - low);
 }
 
 /** The value in the middle of one of so many cells. */

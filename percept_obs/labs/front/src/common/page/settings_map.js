@@ -41,7 +41,7 @@ export class SettingsMap extends Picture {
   }
 
   listen() {
-    const { pad, lab } = this;
+    const { pad } = this;
     const shares = ({ clientX, clientY }) => {
       const { left, top, width, height } = pad.getBoundingClientRect();
       const [x, y] = [(clientX - left) / width, 1 - (clientY - top) / height];
@@ -49,7 +49,7 @@ export class SettingsMap extends Picture {
     };
     const point = (aim) => {
       this.aim = aim;
-      lab.redraw();
+      this.again();
     };
     pad.addEventListener("pointermove", (event) => point(shares(event)));
     pad.addEventListener("pointerleave", () => point(null));
@@ -73,7 +73,13 @@ export class SettingsMap extends Picture {
     const cells = THEN[THEN.length - 1];
     const from = this.aim ?? this.standing() ?? [0.5, 0.5];
     this.aim = from.map((share, c) => (cellAt(cellAt(share, cells) / cells + (direction[c] * size + 0.5) / cells, cells) + 0.5) / cells);
-    this.lab.redraw();
+    this.again();
+  }
+
+  /** Draw once more what has changed here, and nothing else, unless the whole lab is about to be drawn. */
+  again() {
+    const { lab } = this;
+    if (lab.shown && lab.theme && !lab.pending) this.draw(lab.shown, null, null, lab.theme);
   }
 
   /** Where the shown settings are; null while that is not known. */
@@ -103,7 +109,7 @@ export class SettingsMap extends Picture {
   /** Something of the map has come. */
   come() {
     const { lab } = this;
-    lab.redraw();
+    this.again();
     const finest = this.sweep.found?.levels.at(-1);
     if (finest && finest.done === finest.cells ** 2 && !lab.held && lab.shown) this.describe(lab.shown);
   }
@@ -124,7 +130,7 @@ export class SettingsMap extends Picture {
       onReady: ({ ask }) => {
         here.stop();
         sweep.fill({ ask: (task) => ask({ ...task, written: readOf(task.settings, lab.model) }) });
-        lab.redraw();
+        this.again();
       },
       onAnswer: (answer) => (answer.error ? lab.fail(new Error(answer.error)) : sweep.take(answer)),
       onGone: () => {},
