@@ -14,17 +14,17 @@ export function distanceError(right, found, estimate, width) {
   return error;
 }
 
-/** Whether an error has been in its tolerance for long enough, as a part of the run, to be sure of it. */
-export function settled(settling, length, part) {
-  return length - settling >= part * length;
-}
-
 /** The same of one estimate, whose coordinates begin at a place. */
 export function errorOfOne(right, found, estimate, begin, width) {
   let sum = 0;
   for (let at = begin; at < begin + width; at++) sum += estimate[at] - estimate[at];
   if (sum !== 0) return NaN;
   return found > 0 ? Math.abs(right / found - 1) : Infinity;
+}
+
+/** Whether an error has been in its tolerance for long enough, as a part of the run, to be sure of it. */
+export function settled(settling, length, part) {
+  return length - settling >= part * length;
 }
 
 /** When the error entered the tolerance for good, in seconds since the first sample. */
