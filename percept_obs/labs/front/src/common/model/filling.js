@@ -7,6 +7,8 @@ import { modelOf } from "./texts.js";
 
 /** Milliseconds between two parts of a map that are told. */
 const BETWEEN_PARTS = 90;
+/** Milliseconds after a first picture in which a hand that moves asks for the next map: nothing finer is begun, and the page has its turn. */
+const REST = 25;
 
 /**
  * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first picture has
@@ -76,7 +78,7 @@ export class Filling {
           [from, since] = [k + 1, now];
         }
         if (now - began < this.slice && !whole) continue;
-        await this.pause();
+        await (whole && cells === first ? new Promise((resolve) => setTimeout(resolve, REST)) : this.pause());
         if (this.stopped || (this.next && (cells > first || whole))) return;
         began = performance.now();
       }
