@@ -54,6 +54,13 @@ async ([seed, count, most = 20000, wanted = []]) => {
             for (let k = 0; k < 3; k++) tellPointer("pointermove", 14 + 60 * (random() - 0.5), 14 + 60 * (random() - 0.5));
             return tellPointer("pointerup", 14, 14);
         }
+        if (control.dataset.control === "map place") {
+            if (random() < 0.4) return press(control, pick(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Enter", "Escape"]));
+            const { left, top, width, height } = control.getBoundingClientRect();
+            const place = { clientX: left + random() * width, clientY: top + random() * height, bubbles: true };
+            control.dispatchEvent(new PointerEvent("pointermove", place));
+            return random() < 0.5 && control.dispatchEvent(new MouseEvent("click", place));
+        }
         if (control.tagName === "SELECT") {
             control.value = pick([...control.options].filter((o) => !o.disabled)).value;
             return tell(control, "change");
@@ -116,6 +123,13 @@ async ([seed, count, most = 20000, wanted = []]) => {
             });
         }
         lab.shown = before;
+        const map = lab.planes.find((plane) => plane.sweep?.present);
+        const there = map?.at([random(), random()]);
+        if (there?.settings) {
+            const { settling, error } = fresh({ ...there.settings, observers: [there.observer] }).runs[0];
+            const [one, other] = [[settling, error.at(-1)], [there.cell.settling, there.cell.error]].map(String);
+            if (one !== other) note(`event ${when}: a place of the map has ${other} instead of ${one}`);
+        }
         return undefined;
     }
 

@@ -153,4 +153,9 @@ MISTAKES = {
         "too-slow": ["a", "c", "d"],
         "quiet": [6, 10, 30],
     },
+    "14_a_million_runs": {
+        "enough": ["p (1 - p) - N s", "p - N s^2", "p (1 - p) N - s^2"],
+        "four": ["a", "c", "d"],
+        "tail-gain": [8, 10, 16],
+    },
 }

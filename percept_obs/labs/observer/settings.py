@@ -23,6 +23,7 @@ from percept_obs.labs.shared.schema import (
     gains,
     noise,
     offering,
+    over,
     vector,
 )
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -32,6 +33,12 @@ SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.m
 HOLDS = ("zero", "first", "exact")
 PICTURES = ("outputs", "innovation", "inverse", "distance", "error", "excitation")
 BOUND = ("error", "map")
+MAPPED = (
+    *("noise.size", "dropout", "foe.0", "foe.1", "b.0", "b.1", "b.2", "seen.0", "seen.1", "seen.2"),
+    *("X0.0", "X0.1", "X0.2", "believed.b.0", "believed.b.1", "believed.b.2"),
+    *("start.values.0", "start.values.1", "start.values.2", "xi"),
+)
+"""What a map may go over besides gains: settings, and what several say together (front/src/observer/model/axes.js)."""
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 
@@ -110,6 +117,7 @@ SCHEMA = Schema(
         },
         about="of the points of the map of the bound, the seconds that they are seen and their distance at first",
     ),
+    over=over({"identifier_based": ["gain"]}, MAPPED),
     kept=KEPT,
 )
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
@@ -125,6 +133,7 @@ def schema_of(offer: Offer, scenarios_and_recordings: Mapping[str, Any]) -> Sche
             "surface": offering(SCHEMA["surface"], offer.surfaces),
             "observers": offering(SCHEMA["observers"], offer.observers),
             "gains": gains(_gains_of(offer), offer.with_every_gain),
+            "over": over(_gains_of(offer), MAPPED),
             "switches": Group({n: Choice(way, offer.observers[n].switches) for n, way in own.items()}, partial=True),
         }
     )

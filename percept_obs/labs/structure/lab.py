@@ -27,10 +27,10 @@ from percept_obs.labs.shared.sampling import (
     too_short,
     within_reach,
 )
-from percept_obs.labs.shared.schema import Schema, Settings, gains, offering
+from percept_obs.labs.shared.schema import Schema, Settings, gains, offering, over
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.given import Given, opening_of
-from percept_obs.labs.structure.settings import PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
+from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.observers import Observer
@@ -91,7 +91,9 @@ class StructureLab(Lab):
         standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
         standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
         named = offering(SCHEMA["observers"], printed)
-        self.schema = Schema(SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of)})
+        self.schema = Schema(
+            SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
+        )
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(
             "structure_lab",

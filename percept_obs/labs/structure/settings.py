@@ -12,6 +12,7 @@ from percept_obs.labs.shared.schema import (
     Schema,
     Settings,
     noise,
+    over,
     vector,
 )
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -20,6 +21,12 @@ from percept_obs.structure import QUANTITIES
 from percept_obs.tracking.verdict import TOLERANCE
 
 PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
+MAPPED = (
+    *("noise.size", "noise.depth", "bias", "drift", "ybar.0", "ybar.1", "ybar.2", "scale"),
+    *(f"{vector}.{k}" for vector in ("v_c", "v_p", "w") for k in range(3)),
+)
+"""What a map may go over besides gains."""
+
 VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
 STANDARD_GAINS: dict[str, dict[str, float]] = {
     "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
@@ -68,6 +75,7 @@ SCHEMA = Schema(
     start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),
     tolerance=Number(TOLERANCE, 1e-6, 10, (1e-4, 1), about="the relative error that counts as settled"),
     pictures=Names(["unknowns", "error", "determinant"], PICTURES, label="Time charts", about="those that are shown"),
+    over=over({"ideal": ["feedback"]}, MAPPED),
     kept=KEPT,
 )
 

@@ -4,6 +4,7 @@
 // class that extends Live (common/page/live.js) and draws them; name it below, as its Python side names it in `kind`.
 // What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
 
+import { serveMaps } from "./common/model/filling.js";
 import { serve } from "./common/model/serving.js";
 import { modelOf } from "./common/model/texts.js";
 import { element } from "./common/page/controls.js";
@@ -17,7 +18,7 @@ import { StructureLab } from "./structure/lab.js";
 const LABS = { desk_lab: DeskLab, observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 // A worker is made of this bundle as well, and computes what a page draws.
-if (typeof document === "undefined" && typeof self !== "undefined") serve((kind) => LABS[kind].computing, self);
+if (typeof document === "undefined" && typeof self !== "undefined") (self.name === "maps" ? serveMaps : serve)((kind) => LABS[kind].computing, self);
 
 export default {
   async render({ model, el }) {

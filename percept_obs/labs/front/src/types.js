@@ -157,6 +157,7 @@
  * @property {{width: number, height: number} | null} size
  * @property {(shown: any, ghost: any, cursor: number | null, theme: any) => void} draw
  * @property {(shown: any) => void} describe
+ * @property {() => void} [close]  ends what it does beside the page
  */
 
 export {};

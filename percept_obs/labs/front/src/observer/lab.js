@@ -7,7 +7,10 @@ import { Frames } from "../common/page/frames.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
+import { SettingsMap } from "../common/page/settings_map.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
+import { axesOf } from "./model/axes.js";
+import { CellEngine } from "./model/cell_engine.js";
 import { noBound } from "./model/bound.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, focusOf, translationTowards } from "./model/engine.js";
@@ -24,7 +27,7 @@ import { sceneOf } from "./page/scene.js";
 const ALWAYS_POSSIBLE = "identifier_based";
 
 export class ObserverLab extends Live {
-  static computing = { Kernels, Engine };
+  static computing = { Kernels, Engine, CellEngine, axesOf };
 
   constructor(widget, place, model) {
     super(widget, model, {
@@ -46,7 +49,7 @@ export class ObserverLab extends Live {
     });
     plane.frames = new Frames(this);
     this.map = plane.map = new MapPicture(this);
-    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
+    this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What is measured and what is hidden", model.forms[keyOf(settings)].formulas],
       numbersOf: ({ A, b, normal, xi }) => ({ ...lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }), xi }),

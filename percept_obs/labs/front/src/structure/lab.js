@@ -6,7 +6,9 @@ import { summaryOf } from "../common/model/words.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
+import { SettingsMap } from "../common/page/settings_map.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
+import { axesOf } from "./model/axes.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { keyOf, StructureKernels } from "./model/kernels.js";
@@ -19,7 +21,7 @@ import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
 export class StructureLab extends Live {
-  static computing = { Kernels: StructureKernels, Engine: StructureEngine };
+  static computing = { Kernels: StructureKernels, Engine: StructureEngine, CellEngine: StructureEngine, axesOf };
 
   constructor(widget, place, model) {
     const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
@@ -33,7 +35,7 @@ export class StructureLab extends Live {
       placeOf: (shown) => shown.settings.ybar.slice(0, 2),
       onMove: (point) => this.moveStart(point),
     });
-    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
+    this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
       numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),

@@ -10,13 +10,16 @@
  */
 export function distanceError(right, found, estimate, width) {
   const error = new Float64Array(right.length);
-  for (let k = 0; k < error.length; k++) {
-    let sum = 0;
-    for (let at = k * width; at < (k + 1) * width; at++) sum += estimate[at] - estimate[at];
-    if (sum !== 0) error[k] = NaN;
-    else error[k] = found[k] > 0 ? Math.abs(right[k] / found[k] - 1) : Infinity;
-  }
+  for (let k = 0; k < error.length; k++) error[k] = errorOfOne(right[k], found[k], estimate, k * width, width);
   return error;
+}
+
+/** The same of one estimate, whose coordinates begin at a place. */
+export function errorOfOne(right, found, estimate, begin, width) {
+  let sum = 0;
+  for (let at = begin; at < begin + width; at++) sum += estimate[at] - estimate[at];
+  if (sum !== 0) return NaN;
+  return found > 0 ? Math.abs(right / found - 1) : Infinity;
 }
 
 /** Whether an error has been in its tolerance for long enough, as a part of the run, to be sure of it. */
@@ -26,8 +29,13 @@ export function settled(settling, length, part) {
 
 /** When the error entered the tolerance for good, in seconds since the first sample. */
 export function settlingTime(time, error, tolerance) {
-  let inside = 0;
-  for (let k = 0; k < error.length; k++) if (!(error[k] < tolerance)) inside = k + 1;
-  if (inside === error.length) return Infinity;
+  return settlingFrom(time, (k) => error[k], tolerance);
+}
+
+/** The same of errors that are asked for from the last one back, as far as need be. */
+export function settlingFrom(time, errorAt, tolerance) {
+  let inside = time.length;
+  while (inside > 0 && errorAt(inside - 1) < tolerance) inside--;
+  if (inside === time.length) return Infinity;
   return inside === 0 ? 0 : time[inside] - time[0];
 }

@@ -44,7 +44,7 @@ export class Runner {
 
   /** The run of an observer, made anew if settings have changed that it depends on; those of other observers have not. */
   unlessKept(name, settings, make) {
-    const { gains, switches, observers: _observers, pictures: _pictures, window: _window, threshold: _threshold, kept: _kept, bound: _bound, map: _map, ...seen } = settings;
+    const { gains, switches, observers: _observers, pictures: _pictures, window: _window, threshold: _threshold, kept: _kept, bound: _bound, map: _map, over: _over, ...seen } = settings;
     return this.memory.once(`run of ${name}`, [seen, gains[name], switches?.[name]], make);
   }
 
@@ -87,7 +87,7 @@ export class Runner {
  * The state at the first sample, from it, from what is known there, from the estimates that are asked for, and from
  * whether those of the outputs are the sample itself.
  */
-function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
+export function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
   const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked, ...columns.map(() => (own ? 1 : 0))];
   return functions.start(inputs, new Float64Array(kernel.states));

@@ -8,11 +8,13 @@ const EXPORTS = /export\s*\{[^{}]*\};?\s*$/;
  * none after all: where the page's content policy forbids workers from blob:, or a browser knows no workers of modules.
  *
  * @param {{bundle: string, kind: string, texts: any, model: any}} lab
+ * @param {{onReady: (worker: {ask: (task: any) => void}) => void, onAnswer: (answer: any) => void, onGone: () => void}} heard
+ * @param {string} [name]  of what it is for: "maps", or the lab's results
  */
-export function openBeside({ bundle, ...lab }, { onReady, onAnswer, onGone }) {
+export function openBeside({ bundle, ...lab }, { onReady, onAnswer, onGone }, name = "results") {
   const script = bundle.replace(EXPORTS, "");
   const address = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-  const worker = new Worker(address);
+  const worker = new Worker(address, { name });
   worker.onerror = (event) => {
     event.preventDefault();
     worker.terminate();

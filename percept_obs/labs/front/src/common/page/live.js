@@ -64,6 +64,7 @@ export class Live extends Showing {
     this.address?.close();
     this.view.close();
     this.worker?.terminate();
+    for (const plane of this.planes) plane.close?.();
   }
 
   // What the hand does.

@@ -1,9 +1,11 @@
 // The controls of the observer lab: each reads from the settings and changes them.
 
 import { HOLD, NOISE } from "../../common/model/schema.js";
+import { axesOf } from "../model/axes.js";
 import { checkbox, element, slider } from "../../common/page/controls.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
+import { mapTopic } from "../../common/page/settings_map_panel.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
 /** What the page calls the settings. */
@@ -31,7 +33,7 @@ export const NAMES = {
   motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A", b: "the translation b", X0: "where the point starts", surface: "the imaging surface",
   normal: "the normal", outputs: "what is measured", observers: "the observers", gains: "gains", switches: "how an observer switches",
   believed: "the motion that is believed", noise: "noise", dropout: "lost samples", hold: "what is held between samples",
-  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts", bound: "where the bound is drawn", map: "what the map is of",
+  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts", bound: "where the bound is drawn", map: "what the map is of", over: "the map over two settings",
 };
 
 export class Panel extends Fieldsets {
@@ -54,6 +56,7 @@ export class Panel extends Fieldsets {
       ),
       topic("start", "Start and belief", ...this.belief()),
       topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...["map.seconds", "map.distance"].map((place) => this.numberIf(place, ({ bound }) => bound.includes("map"))), ...this.numbers("window", "threshold")),
+      mapTopic(this, axesOf),
     ];
     this.body = element("div", { class: "panel" }, ...body);
   }

@@ -2,9 +2,11 @@
 
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
+import { axesOf } from "../model/axes.js";
 import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
+import { mapTopic } from "../../common/page/settings_map_panel.js";
 import { ObserverList } from "../../common/page/observer_list.js";
 
 /** What the page calls the settings. */
@@ -31,7 +33,7 @@ export const NAMES = {
   motion: "the motion that is typed", unknown: "what is unknown", earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
   scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity", v_c_swing: "how the camera's velocity swings",
   v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3", drift: "the drift of ȳ3",
-  hold: "what is held between samples", step: "the longest step", start: "where the estimate starts", pictures: "the charts",
+  hold: "what is held between samples", step: "the longest step", start: "where the estimate starts", pictures: "the charts", over: "the map over two settings",
 };
 
 export class StructurePanel extends Fieldsets {
@@ -54,6 +56,7 @@ export class StructurePanel extends Fieldsets {
       ),
       topic("run", "How the observers run", ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")]),
       topic("pictures", "Charts", this.pictures()),
+      mapTopic(this, axesOf),
     ];
     this.body = element("div", { class: "panel" }, ...body);
   }

@@ -1,0 +1,168 @@
+"""A map over two settings holds at every place what Python computes there, follows the hand, and leads to the place."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+from lab_alone import DRAWN, opened, stated_policy
+from lab_browser import control, serious_violations
+from lab_settings import FRONT, NOISY, whole_model
+
+from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, scenarios
+from percept_obs.labs import observer_lab, structure_lab
+from percept_obs.labs.observer.lab import runs
+
+FOLLOWED, DIVERGED, IMPOSSIBLE = 1, 2, 3
+GAIN = "gains.identifier_based.gain"
+PLACES = 25
+PAIRS = {
+    "gain and noise": {"over": {"across": GAIN, "up": "noise.size"}},
+    "two gains": {"over": {"across": GAIN, "up": "gains.identifier_based.lyapunov"}},
+    "a filter's gain and the focus of expansion": {
+        "over": {"across": "gains.extended_kalman.noise_variance", "up": "foe.0"},
+        "observers": ["extended_kalman"],
+    },
+    "where the point starts": {"over": {"across": "seen.0", "up": "seen.2"}, "surface": "sphere"},
+}
+
+
+@pytest.fixture(scope="module")
+def of_pairs(node):
+    """Settings at random places of maps, with what the page says became of their runs."""
+    lab, rng = observer_lab(), np.random.default_rng(0)
+    tasks = []
+    for changes in PAIRS.values():
+        observer = changes.get("observers", ["identifier_based"])[0]
+        shared = {"noise": NOISY, "seed": 3, "duration": 10.0, "dropout": 0.1}
+        settings = observer_lab(**{**shared, **changes, "over": {"observer": observer, **changes["over"]}}).settings
+        tasks.append({"settings": settings, "shares": rng.random((PLACES, 2)).tolist()})
+    task = json.dumps({"model": whole_model(lab), "tasks": tasks})
+    script = FRONT / "tests/run_cells.js"
+    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    return dict(zip(PAIRS, json.loads(answer.stdout), strict=True))
+
+
+@pytest.mark.node
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", PAIRS)
+def test_100_random_places_are_what_python_tracks(of_pairs, pair):
+    found = of_pairs[pair]
+    assert (found["across"], found["up"]) == tuple(PAIRS[pair]["over"].values())
+    followed = 0
+    for cell in found["cells"]:
+        (run,) = runs(cell["settings"]).values()
+        assert cell["kind"] == (FOLLOWED if run.diverged_at is None else DIVERGED)
+        if run.diverged_at is None:
+            followed += 1
+            outcome = run.outcome()
+            assert float(cell["settling"]) == pytest.approx(outcome.settled, rel=1e-9)
+            assert float(cell["error"]) == pytest.approx(outcome.final, rel=1e-9, nan_ok=True)
+    assert followed > PLACES / 2
+    assert len({cell["settling"] for cell in found["cells"]}) > 3
+
+
+@pytest.mark.node
+@pytest.mark.slow
+def test_an_ensemble_computes_the_same_map(of_pairs):
+    import xarray as xr
+
+    cells = of_pairs["gain and noise"]["cells"]
+    gains, noises = (
+        xr.DataArray(list(column), dims="place") for column in zip(*(c["place"] for c in cells), strict=True)
+    )
+    observer = ibo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"))
+    camera = Camera(noise=Uniform(0.01), dropout=0.1)
+    over = {"gain": gains, "noise": noises}
+    found = ensemble(scenarios.ma2005_eq35(), observer, over, seeds=[3], duration=10.0, camera=camera)
+    settling = np.array([float(cell["settling"]) for cell in cells])
+    settling[settling > 9.0] = np.inf  # an ensemble counts what stays inside for less than a tenth as not converged
+    np.testing.assert_allclose(settling, found.settling_time.values.ravel(), rtol=1e-9)
+    np.testing.assert_allclose([float(c["error"]) for c in cells], found.judged.values.ravel(), rtol=1e-9)
+
+
+WHOLE = "() => [...window.perceptObsLabs][0].planes[2].sweep.whole"
+MAP = ".settings-map canvas"
+PLACE = control("map place")
+
+
+def page_of(browser, lab, **options):
+    page = opened(browser, lab, viewport={"width": 1280, "height": 800}, answers=lambda told: {}, **options)
+    page.wait_for_function(DRAWN)
+    return page
+
+
+def settings_of(page):
+    return page.evaluate("[...window.perceptObsLabs][0].settings")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_map_is_shown_pointed_at_gone_to_and_undone_by_keys_and_by_hand(browser):
+    page = page_of(browser, observer_lab(noise=NOISY, duration=2.0))
+    assert not page.is_visible(MAP)
+    assert page.evaluate("[...window.perceptObsLabs][0].planes[2].worker") is None
+    page.click("summary:has-text('Map over two settings')")
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].worker !== null")
+    page.focus(control("map shows"))
+    page.keyboard.press("ArrowDown")
+    page.wait_for_function(WHOLE)
+    label = page.get_attribute(MAP, "aria-label")
+    assert "Settling time, identifier-based over gain in 1/s from 1 to 30 and noise, bound or σ from 0 to 0.05" in label
+    assert "64 by 64 places" in label
+    assert "the same seed everywhere" in page.inner_text(".run-there")
+    before = settings_of(page)
+    page.focus(PLACE)
+    page.keyboard.press("Shift+ArrowRight")
+    told = page.wait_for_function(
+        "() => { const t = document.querySelector('.aim').ariaValueText; return /gain in/.test(t) && t; }"
+    ).json_value()
+    page.keyboard.press("Enter")
+    page.wait_for_function(DRAWN)
+    there = settings_of(page)
+    gain = there["gains"]["identifier_based"]["gain"]
+    assert told.startswith(f"gain in 1/s {gain}, noise, bound or σ {there['noise']['size']}: ")
+    verdict = page.inner_text(".verdicts")
+    assert (told.split("after ")[1].split(" s")[0] if "after" in told else "outside") in verdict
+    assert gain > before["gains"]["identifier_based"]["gain"]
+    page.keyboard.press("Control+z")
+    assert settings_of(page) == before
+    box = page.locator(PLACE).bounding_box()
+    page.mouse.click(box["x"] + 0.25 * box["width"], box["y"] + 0.75 * box["height"])
+    page.wait_for_function(DRAWN)
+    assert settings_of(page)["noise"]["size"] == pytest.approx(0.0125, abs=0.0005)
+    assert page.evaluate("[...window.perceptObsLabs][0].planes[2].sweep.whole")  # it is the same map
+    page.select_option(control("map up"), "foe.0")
+    page.select_option(control("map shows"), "error")
+    page.wait_for_function(WHOLE)
+    assert "Error at the end" in page.get_attribute(MAP, "aria-label")
+    assert serious_violations(page, ("",)) == []
+    page.select_option(control("map shows"), "nothing")
+    assert not page.is_visible(MAP)
+    assert page.evaluate("[...window.perceptObsLabs][0].planes[2].worker") is None
+    page.close()
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.parametrize("where", ["worker", "page"])
+def test_a_map_follows_the_hand_beside_the_page_and_in_it(browser, where):
+    policy = None if where == "worker" else f"{stated_policy()}; worker-src 'none'"
+    lab = structure_lab(duration=1.0, period=0.02, step=0.02, over={"shows": "settling"})
+    page = page_of(browser, lab, policy=policy)
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.found")
+    found = page.evaluate("""async () => {
+        const [lab] = window.perceptObsLabs;
+        const { sweep } = lab.planes[2];
+        const maps = new Set();
+        for (let k = 0; k < 60; k++) {
+            lab.change({ w: [0, 0, 0.01 * k] });
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+            if (sweep.found) maps.add(sweep.found);
+        }
+        return maps.size;
+    }""")
+    assert found > 3
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.present")
+    page.close()
