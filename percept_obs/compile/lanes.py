@@ -153,6 +153,15 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
             text.formulas(block, "n")
             replace("there", "n")
 
+    def look_whether_off() -> None:
+        """Whether a reset is due in one of the lanes, or a state is no longer finite."""
+        if equations.reset:
+            text.copy("x", "s", n)
+            text.assign("off", f"off | {text.print(formulas.condition)}")
+        text.assign("size", formulas.size)
+        text.assign("lost", f"where(size < {LARGEST_SQUARED_STATE!r}, False, {rows['alive']} > 0.0)")
+        text.assign("off", "off | lost")
+
     def reset() -> None:
         """The reset where it is due, and whether the state is still finite."""
         text.assign("alive", rows["alive"])
@@ -281,12 +290,13 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
                                 text.store(rows[f"y_{place}_{j}"], f"held[i, k, {place}, {j}]")
                         if varying:
                             gather_known(f"p_{place}_", f"{EACH}*k + {place}")
+            text.assign("off", "False")
             with lanes():
                 load("s", n)
                 inputs()
                 formulas.step(look)
                 if not equations.update:
-                    reset()
+                    look_whether_off()
                 keep("s", n)
             if equations.update:
                 with text.block("if", "c >= 0"):
@@ -302,8 +312,12 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
                 with lanes():
                     load("s", n)
                     inputs()
-                    reset()
-                    keep("s", n)
+                    look_whether_off()
+            with text.block("if", "some(off)"), lanes():  # resets are rare, and dear
+                load("s", n)
+                inputs()
+                reset()
+                keep("s", n)
             with text.block("if", "c >= 0"):
                 if not equations.update:
                     arrive("c")
@@ -319,7 +333,8 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
 
 _HEADS = {
     "numba": "import math\n\nimport numpy as np\n\n\ndef where(condition, this, that):\n"
-    "    return this if condition else that\n\n\n",
+    "    return this if condition else that\n\n\n"
+    "def some(condition):\n    return condition\n\n\n",
     "numpy": "",
 }
 
