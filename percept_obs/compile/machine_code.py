@@ -44,7 +44,7 @@ def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[
     exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
     *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
     for name in others:
-        setattr(module, name, numba.njit(**options)(getattr(module, name)))
+        setattr(module, name, numba.njit(forceinline=True, **options)(getattr(module, name)))
     compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
     return compiled
 
