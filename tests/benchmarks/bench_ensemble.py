@@ -58,7 +58,7 @@ The ensemble also makes the samples of the camera, holds each one until the next
 times. All others integrate point and observer as one system and stop at the last state; the last column shows how far
 their estimates agree. C is sympy's print of the same expressions, by `gcc -O3 -march=native -ffast-math -fopenmp-simd`.
 C, numpy and numba take the classical Runge-Kutta method with the step of the camera, diffrax takes a method of order 5
-with the same step, and the others choose their steps for a relative error of 1e-8.  scipy, python-control and JiTCODE
+with the same step, and the others choose their steps for a relative error of 1e-8. scipy, python-control and JiTCODE
 made one run, heyoka as many as a vector holds; their times are multiplied.
 
 To repeat it, install what is to be compared, and write this page anew:
