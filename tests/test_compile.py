@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 import percept_obs.tracking.following as tracking
 from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
-from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source
+from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source, vector_functions
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
 from percept_obs.figures import look
@@ -210,6 +210,15 @@ def test_another_process_compiles_nothing():
     environment = os.environ | {"PYTHONHASHSEED": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
     program = [sys.executable, "-c", f"{LOOPS}print(compiled)"]
     assert subprocess.check_output(program, env=environment, text=True) == "[0, 0]\n"
+
+
+def test_functions_for_vector_instructions_are_those_of_the_library():
+    sizes = np.geomspace(1e-12, 700, 400)
+    for name in ("exp", "tanh"):
+        own, library = getattr(vector_functions, name), getattr(np, name)
+        np.testing.assert_allclose([own(x) for x in (*sizes, *-sizes)], library([*sizes, *-sizes]), rtol=1e-15)
+        found = [own(np.float64(x)) for x in (0.0, np.inf, -np.inf, np.nan)]
+        np.testing.assert_array_equal(found, library([0.0, np.inf, -np.inf, np.nan]))
 
 
 def test_a_loop_is_kept_as_a_file_that_holds_its_text(tmp_path, monkeypatch):

@@ -17,6 +17,7 @@ from percept_obs import (
     ekf,
     ensemble,
     ibo,
+    ismo,
     pinhole,
     record,
     scenarios,
@@ -79,12 +80,12 @@ def test_a_run_is_that_of_track(make):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("make", [ibo, ekf], ids=lambda make: make.key)
-def test_machine_code_says_the_same(make):
+@pytest.mark.parametrize("observer", [ibo(ONE), ekf(ONE), ismo(BOTH)], ids=lambda observer: observer.name)
+def test_machine_code_says_the_same(observer):
     pytest.importorskip("numba")
     over = {"b1": [0.4, 0.5], "noise": [0.0, 0.01], "believed_b2": [0.25, 0.2]}
     fast, slow = (
-        ensemble(EQ35, make(ONE), over, 5, 10, LOSSY, {"y1": 0.0}, after=5, language=language)
+        ensemble(EQ35, observer, over, 5, 10, LOSSY, {"y1": 0.0}, after=5, language=language)
         for language in ("numba", "python")
     )
     xr.testing.assert_allclose(fast, slow, rtol=1e-10)

@@ -132,8 +132,8 @@ def solve(
         states, resets = np.full(size * count, np.nan), np.zeros(count)
         diverged = _compiled(equations)(*inputs, varying, states, resets)
     return Trace(
-        np.array(states).reshape(count, size),
-        np.array(resets) != 0,
+        np.asarray(states).reshape(count, size),
+        np.asarray(resets) != 0,
         None if diverged < 0 else int(diverged),
     )
 

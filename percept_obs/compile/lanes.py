@@ -7,15 +7,17 @@ is counted on the way, so that no trajectory is kept.
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
 import sympy as sp
 
+from percept_obs.compile import vector_functions
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, PLACES
-from percept_obs.compile.loop import Formulas
+from percept_obs.compile.loop import Formulas, take_out
 from percept_obs.compile.text import Text, refuse_what_differs
 from percept_obs.compile.watched import Watched
 
@@ -153,6 +155,15 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
             text.formulas(block, "n")
             replace("there", "n")
 
+    def look_whether_off() -> None:
+        """Whether a reset is due in one of the lanes, or a state is no longer finite."""
+        if equations.reset:
+            text.copy("x", "s", n)
+            text.assign("off", f"off | {text.print(formulas.condition)}")
+        text.assign("size", formulas.size)
+        text.assign("lost", f"where(size < {LARGEST_SQUARED_STATE!r}, False, {rows['alive']} > 0.0)")
+        text.assign("off", "off | lost")
+
     def reset() -> None:
         """The reset where it is due, and whether the state is still finite."""
         text.assign("alive", rows["alive"])
@@ -234,8 +245,9 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
             if watched.begun:
                 if sample == "0":
                     text.formulas(watch.first, "b")
-                    keep("b", len(watched.begun))
-                load("b", len(watched.begun))
+                    for expression, symbol in watch.fixed.items():
+                        text.store(rows[symbol.name], text.print(expression))
+                load("r", len(watch.fixed))
             text.assign("alive", rows["alive"])
             watch.count(rows, sample)
 
@@ -281,12 +293,13 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
                                 text.store(rows[f"y_{place}_{j}"], f"held[i, k, {place}, {j}]")
                         if varying:
                             gather_known(f"p_{place}_", f"{EACH}*k + {place}")
+            text.assign("off", "False")
             with lanes():
                 load("s", n)
                 inputs()
                 formulas.step(look)
                 if not equations.update:
-                    reset()
+                    look_whether_off()
                 keep("s", n)
             if equations.update:
                 with text.block("if", "c >= 0"):
@@ -302,8 +315,12 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
                 with lanes():
                     load("s", n)
                     inputs()
-                    reset()
-                    keep("s", n)
+                    look_whether_off()
+            with text.block("if", "some(off)"), lanes():  # resets are rare, and dear
+                load("s", n)
+                inputs()
+                reset()
+                keep("s", n)
             with text.block("if", "c >= 0"):
                 if not equations.update:
                     arrive("c")
@@ -314,14 +331,7 @@ def lanes_source(loop: LanesLoop, language: Literal["numba", "numpy"]) -> str:
                 text.store(f"result[i, {k}]", rows[name])
     width = str(LANES) if numba else "len(start)"
     text.lines.insert(head, f"    work = np.empty(({len(rows.places)}, {width}))")
-    return _HEADS[language] + str(text)
-
-
-_HEADS = {
-    "numba": "import math\n\nimport numpy as np\n\n\ndef where(condition, this, that):\n"
-    "    return this if condition else that\n\n\n",
-    "numpy": "",
-}
+    return f"{inspect.getsource(vector_functions)}\n\n{text}" if numba else str(text)
 
 
 class _Watch:
@@ -340,9 +350,11 @@ class _Watch:
             refuse_what_differs(found)
             return found
 
+        lasting = {names[symbol] for symbol in (*watched.begun, *formulas.groups["g"])}
+        self.fixed: dict[sp.Expr, sp.Symbol] = {}
         self.first = renamed(watched.first)
-        self.values = renamed((watched.error, *watched.means, *watched.judged))
-        self.hidden, self.behind = renamed((watched.hidden, watched.behind))
+        looked_at = renamed((watched.error, *watched.means, *watched.judged, watched.hidden, watched.behind))
+        self.values = [take_out(each, lasting, self.fixed, "r") for each in looked_at]
         if moving is not None:
             places = {s: sp.Symbol(f"m{k}", real=True) for k, s in enumerate(moving.point)}
             places |= {s: sp.Symbol(f"w{k}", real=True) for k, s in enumerate(moving.shape)}
@@ -353,14 +365,15 @@ class _Watch:
         text, watched = self.text, self.watched
         text.formulas(self.values, "e")
         text.assign("seen", "alive > 0.0")
-        if watched.hidden != sp.false:
-            text.assign("seen", f"where({text.print(self.hidden)}, False, seen)")
         first = 1 + len(watched.means)
+        hidden = first + len(watched.judged)
+        if watched.hidden != sp.false:
+            text.assign("seen", f"where(e{hidden}, False, seen)")
         text.assign("largest", f"e{first}")
-        for k in range(first + 1, len(self.values)):
+        for k in range(first + 1, hidden):
             text.assign("largest", f"where(e{k} > largest, e{k}, largest)")
         if watched.behind != sp.false:
-            text.assign("largest", f"where({text.print(self.behind)}, math.inf, largest)")
+            text.assign("largest", f"where(e{hidden + 1}, math.inf, largest)")
         text.assign("largest", "where(seen, largest, math.nan)")
         text.assign("error", "where(seen, e0, math.nan)")
         text.store(rows["outside"], f"where(largest < tolerance, {rows['outside']}, {sample} + 0.0)")

@@ -126,7 +126,7 @@ class Formulas:
         refuse_what_differs(renamed)
         variables = tuple(self.names[symbol] for letter in "xy" for symbol in self.groups[letter])
         gains = {self.names[symbol] for symbol in self.groups["g"]}
-        return [_take_out(_nested(e, variables), gains, self.fixed) for e in renamed]
+        return [take_out(_nested(e, variables), gains, self.fixed) for e in renamed]
 
     def step(self, look: Callable[[int], None]) -> None:
         """A step of the length h, with what loads the known signals at one of its instants."""
@@ -188,16 +188,21 @@ def _nested(expression: sp.Basic, variables: tuple[sp.Symbol, ...]) -> sp.Basic:
     return shared * _nested(inside, variables) + _nested(outside, variables)
 
 
-def _take_out(expression: sp.Basic, gains: set[sp.Symbol], fixed: dict[sp.Expr, sp.Symbol]) -> sp.Basic:
-    """Replace the parts that depend on gains only by names, which `fixed` collects."""
+def take_out(
+    expression: sp.Basic, gains: set[sp.Symbol], fixed: dict[sp.Expr, sp.Symbol], letter: str = "f"
+) -> sp.Basic:
+    """Replace the parts that depend on gains only by names with a letter, which `fixed` collects."""
+
+    def named(part: sp.Expr) -> sp.Symbol:
+        return fixed.setdefault(part, sp.Symbol(f"{letter}{len(fixed)}", real=True))
+
     if not expression.args or not expression.free_symbols & gains:
         return expression
     if isinstance(expression, sp.Expr) and expression.free_symbols <= gains:
-        return fixed.setdefault(expression, sp.Symbol(f"f{len(fixed)}", real=True))
+        return named(expression)
     if isinstance(expression, sp.Mul | sp.Add):
         fixed_parts = [e for e in expression.args if e.free_symbols and e.free_symbols <= gains]
         if len(fixed_parts) > 1:
-            together = expression.func(*fixed_parts)
             rest = [e for e in expression.args if e not in fixed_parts]
-            expression = expression.func(fixed.setdefault(together, sp.Symbol(f"f{len(fixed)}", real=True)), *rest)
-    return expression.func(*(_take_out(e, gains, fixed) for e in expression.args))
+            expression = expression.func(named(expression.func(*fixed_parts)), *rest)
+    return expression.func(*(take_out(e, gains, fixed, letter) for e in expression.args))

@@ -43,8 +43,8 @@ def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[
     module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks when it takes the code from the file
     exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
     *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-    for name in others:
-        setattr(module, name, numba.njit(**options)(getattr(module, name)))
+    for name in others:  # inside a loop over lanes, for a call stops vector instructions
+        setattr(module, name, numba.njit(forceinline=of_lanes, **options)(getattr(module, name)))
     compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
     return compiled
 

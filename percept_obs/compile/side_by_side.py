@@ -155,7 +155,7 @@ def function_of(loop: LanesLoop, language: Language) -> Callable[..., None]:
 def _function_of(loop: LanesLoop, language: Language) -> Callable[..., None]:
     if language == "python":
         text = lanes_source(loop, "numpy")
-        return executed(text, math=np, np=np, where=np.where)
+        return executed(text, math=np, np=np, where=np.where, some=np.any, exp=np.exp, tanh=np.tanh)
     one, two, three, four = (f"float64[{':, ' * further}::1]" for further in range(4))
     index, indices = "intp[::1]", "intp[:, ::1]"
     own, shared = ", ".join([two] * 4), ", ".join([three] * 3)

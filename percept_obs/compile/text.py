@@ -83,7 +83,9 @@ class _Printer(PythonCodePrinter):
     _print_Pi = _print_Exp1 = _print_NumberSymbol
 
     def _print_Function(self, expr: sp.Function) -> str:
-        return f"{self.words['math']}.{expr.func.__name__}({', '.join(map(self._print, expr.args))})"
+        name = expr.func.__name__
+        called = self.words.get(name, f"{self.words['math']}.{name}")
+        return f"{called}({', '.join(map(self._print, expr.args))})"
 
     def _print_Abs(self, expr: sp.Abs) -> str:
         return f"{self.words['abs']}({self._print(expr.args[0])})"
@@ -120,7 +122,8 @@ for _function in FUNCTIONS:
 
 _WORDS = {
     "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
-    "lanes": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"},
+    "lanes": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
+    | {"exp": "exp", "tanh": "tanh"},
     "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
 }
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.path import REACH, TERMS
+from percept_obs.recording.path import REACH, exponential
 from percept_obs.recording.simulation import Scenario
 from percept_obs.system.signal import Signal
 from percept_obs.system.surfaces import POINT
@@ -56,10 +56,8 @@ def transitions(A: Array, b: Array, length: float) -> Array:
     whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
     fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))
     halvings = max(0, int(np.ceil(np.log2(max(fastest / REACH, 1.0)))))
-    across = np.broadcast_to(np.eye(4), whole.shape)
     with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(TERMS, 0, -1):
-            across = np.eye(4) + (whole / 2**halvings) @ across / k
+        across = exponential(whole / 2**halvings)
         for _ in range(halvings):
             across = across @ across
     return np.ascontiguousarray(across[:, :3])

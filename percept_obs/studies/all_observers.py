@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from percept_obs.border import checked
-from percept_obs.observers import Observer
+from percept_obs.compile import choose
+from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.studies.least_squares import moving_window_least_squares
@@ -156,14 +157,16 @@ def all_observers(
         distances = np.concatenate([each.reference(references[0]) for each in choosing])
         start = {inverse: 1 / (2 * float(np.nanmedian(distances)))}
 
+    tried = {make: make.candidates for make in OBSERVERS} if candidates is None else candidates
+    steps = sum(len(each.time) for each in choosing) * max(map(len, tried.values()), default=0)
+    settings = {"language": choose(None, steps)} | settings
+
     def follow(recording: Recording, observer: Observer) -> Run:
         return track(recording, observer, start, **settings)
 
     whole = first.names == tuple(symbol.name for symbol in first.imaging_surface.image_coordinates)
     batch = {LEAST_SQUARES: moving_window_least_squares} if whole else {}
-    table = choose_and_report(
-        choosing, reporting, form, follow, candidates, batch, after=lasting, references=references
-    )
+    table = choose_and_report(choosing, reporting, form, follow, tried, batch, after=lasting, references=references)
     parts = tuple(choosing), tuple(reporting)
     return AllObservers(table, *parts, MappingProxyType(left_out), MappingProxyType(dict(start)))
 

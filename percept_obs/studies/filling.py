@@ -119,12 +119,18 @@ def _one_by_one(plan: Plan, todo: Parts) -> Computed:
 def _beside(plan: Plan, todo: Parts, client: Any) -> Computed:
     """Parts as they are done on the threads of this machine or on a cluster; what is not wanted any more is left."""
     executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
+    # a task's result goes to each worker once, and is found again when a worker dies
+    there = client.submit(_itself, plan, pure=False) if client else plan
     begun: dict[Future[Array], int] = {}
     try:
-        begun |= {executor.submit(plan.compute, part): begin for begin, part in todo}
+        begun |= {executor.submit(Plan.compute, there, part): begin for begin, part in todo}
         for future in as_completed(begun):
             yield begun.pop(future), future.result()
     finally:
         for future in begun:
             future.cancel()
         executor.shutdown()
+
+
+def _itself(plan: Plan) -> Plan:
+    return plan

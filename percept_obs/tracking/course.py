@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -63,27 +64,30 @@ class Course:
         recording, time = self.recording, self.recording.time
         outputs = _bridged(recording, self.hold) if filled else recording.outputs
         interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
-        before, after = outputs[interval], outputs[interval + 1]
+        before = outputs[interval][:, None]
         if self.hold == "zero":
-            held = np.repeat(before[:, None], EACH + 1, axis=1)
+            held = np.repeat(before, EACH + 1, axis=1)
         elif self.hold == "first":
             begin, length = time[interval], np.diff(time)[interval]
             share = (by_step(self.instants) - begin[:, None]) / length[:, None]
             share = share.reshape(*share.shape, *(1,) * (outputs.ndim - 1))
-            held = (1 - share) * before[:, None] + share * after[:, None]
+            held = (1 - share) * before + share * outputs[interval + 1][:, None]
         else:
             assert recording.signal is not None
             held = by_step(recording.signal(self.instants))
-            held = np.where(np.isnan(before[:, None]), np.nan, held)
-        since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
-        held[since >= self.longest_hold] = np.nan
+            held = np.where(np.isnan(before), np.nan, held)
+        if self.longest_hold < math.inf:
+            since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
+            held[since >= self.longest_hold] = np.nan
         return np.asarray(held)
 
 
 def last_samples(columns: Array) -> Array:
     """Each sample of columns of shape (K, m), or where it was lost the last one before it."""
-    numbers = np.arange(len(columns))[:, None]
-    last = np.maximum.accumulate(np.where(np.isfinite(columns), numbers, 0))
+    there = np.isfinite(columns)
+    if there.all():
+        return columns
+    last = np.maximum.accumulate(np.where(there, np.arange(len(columns))[:, None], 0))
     return np.take_along_axis(columns, last, axis=0)
 
 

@@ -264,6 +264,6 @@ def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates
 
 def _known(along: Course, believed: Motion) -> Array:
     """Parameters of motion and view at the instants of the steps."""
-    rows, view = believed.known(along.instants), along.recording.view
+    rows, view = believed.known(along.grid[:1] if believed.values else along.instants), along.recording.view
     shape = [view.values[symbol] for symbol in view.parameters]
     return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])

@@ -90,7 +90,7 @@ class ImagingSurface(OnePoint):
         same = (self.image, self.distance, self.ray) == (other.image, other.distance, other.ray)
         return same and (not self.values or self.values == other.values)
 
-    @property
+    @cached_property
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
         """Symbols y1, y2, ... of the image coordinates."""
         return sp.symbols(f"y1:{len(self.image) + 1}", real=True)
@@ -105,7 +105,7 @@ class ImagingSurface(OnePoint):
         """Image coordinates and then the inverse distance."""
         return (*self.image_coordinates, self.inverse_distance)
 
-    @property
+    @cached_property
     def parameters(self) -> tuple[sp.Symbol, ...]:
         """Symbols that shape the surface, by name."""
         used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
