@@ -1,4 +1,4 @@
-"""Two labs in marimo: pip install marimo, then: marimo run marimo_lab.py."""
+"""Two labs in marimo.  Get it with: python -m pip install marimo.  Open it with: marimo run marimo_lab.py."""
 
 import marimo
 
@@ -17,34 +17,24 @@ def _():
 @app.cell
 def _(mo):
     mo.md("""
-    # A lab in marimo
+    # Two labs in marimo
 
-    Drag the focus of expansion. What stands below the labs follows, because marimo runs each cell again whose values
-    have changed.
+    Drag the focus of expansion. What stands below follows, because marimo runs each cell again whose values changed.
     """)
-    return
 
 
 @app.cell
 def _(mo, observer_lab):
-    lab = mo.ui.anywidget(observer_lab())
-    lab
-    return (lab,)
+    both = mo.ui.anywidget(observer_lab())
+    one = mo.ui.anywidget(observer_lab(outputs=["y1"]))
+    mo.vstack([both, one])
+    return both, one
 
 
 @app.cell
-def _(mo, observer_lab):
-    with_one_output = mo.ui.anywidget(observer_lab(outputs=["y1"]))
-    with_one_output
-    return (with_one_output,)
-
-
-@app.cell
-def _(lab, mo, observer_lab, with_one_output):
-    both = {"first": lab, "second": with_one_output}
-    runs = {name: observer_lab(**each.value["settings"]).run() for name, each in both.items()}
-    mo.md("\n".join(f"- The {name} lab, in Python: {run.verdict()}." for name, each in runs.items() for run in each.values()))
-    return
+def _(both, mo, observer_lab, one):
+    runs = [run for lab in (both, one) for run in observer_lab(**lab.value["settings"]).run().values()]
+    mo.md("\n".join(f"- {run.observer.name}, in Python: {run.verdict()}." for run in runs))
 
 
 if __name__ == "__main__":

@@ -10,9 +10,9 @@ import pytest
 from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_notebook, in_voila, marimo
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
-from lab_settings import FRONT
 
-from percept_obs.site.front_ends import BROWSERS, FRONT_ENDS, POLICY, TRIED
+from percept_obs.labs.shared.lab import BUNDLE
+from percept_obs.site.front_ends import BROWSERS, FRONT_ENDS, POLICY, RULES, TRIED, page
 
 OPEN = {
     "JupyterLab": (in_jupyterlab, "jupyterlab", "jupyter"),
@@ -93,3 +93,21 @@ def shown(request, browsers, tmp_path_factory):
 @pytest.mark.parametrize("what", TRIED)
 def test_a_lab_is_alive(shown, what):
     TRIALS[what](shown)
+
+
+def test_the_table_says_what_is_tried():
+    assert {end.name for end in FRONT_ENDS if any(end.cell(what) == "test" for what in TRIED)} == {*OPEN, "this site"}
+    assert {end.cell(what) for end in FRONT_ENDS for what in TRIED} == {"test", *RULES}
+    assert list(TRIALS) == list(TRIED)
+    assert {row.count("|") for row in page().splitlines() if row.startswith("|")} == {len(TRIED) + 2}
+
+
+def test_the_bundle_keeps_the_rules():
+    text = BUNDLE.read_text()
+    assert len(re.findall(r"\bimport\s*[({*]", text)) == len(re.findall(r"createObjectURL\(", text)) - 1 == 1
+    evaluates, fetches = r"\beval\s*\(|\bFunction\s*\(", r"\bfetch\(|XMLHttpRequest|WebSocket|importScripts"
+    assert not re.search(f"{evaluates}|{fetches}|msg:custom", text)
+
+
+def test_the_policy_is_that_of_readme():
+    assert stated_policy() == POLICY

@@ -23,9 +23,9 @@ POLICY = "default-src 'none'; script-src 'self' blob:; style-src 'unsafe-inline'
 BY_ANYWIDGET = "by rule 1"
 BY_KIND = "by rule 2"
 RULES = {
-    BY_ANYWIDGET: "The front end shows widgets by anywidget's rules, and the labs keep them: one module without imports of "
-    "others, nothing fetched from an address, no text evaluated, state in traits only. The equations are imported as "
-    "modules from `blob:`, as anywidget imports the lab itself, so a page that can open a lab can also run it.",
+    BY_ANYWIDGET: "The front end shows widgets by anywidget's rules, and the labs keep them: one module that imports "
+    "no other, nothing fetched from an address, no text evaluated, state in traits only. The equations become modules "
+    "from `blob:`, as the lab itself does in anywidget, so a page that can open a lab can also run it.",
     BY_KIND: "A saved file holds one lab.",
 }
 """Why a lab works where nobody has tried it; tests hold what the rules say of the labs."""
