@@ -1,4 +1,7 @@
-"""Two labs are alive in every front end: they draw, follow mouse and keys, and outlive Python."""
+"""Two labs are alive in every front end: they draw, follow mouse and keys, and outlive Python.
+
+JupyterLab and the site are tried in all runs, by tests of their own; ALL_SAMPLES=1 tries every front end that is there.
+"""
 
 import re
 import shutil
@@ -10,6 +13,7 @@ import pytest
 from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_notebook, in_voila, marimo
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
+from sample_sizes import sampled
 
 from percept_obs.labs.shared.lab import BUNDLE
 from percept_obs.site.front_ends import BROWSERS, FRONT_ENDS, POLICY, RULES, TRIED, page
@@ -22,6 +26,7 @@ OPEN = {
     "saved file": (in_a_saved_file, "percept_obs", "folder"),
 }
 """How each is opened, the module that it needs, and the fixture that it is opened with."""
+EVERYWHERE = [f"{end} in {browser}" for browser in BROWSERS for end in OPEN]
 GET = {end.name: end.get for end in FRONT_ENDS}
 
 
@@ -47,6 +52,7 @@ def browsers(request, playwright):
         own = shutil.which("firefox-esr") or shutil.which("firefox")
         if not own:
             pytest.skip("Firefox is missing; get it with: python -m playwright install firefox")
+        # Spoken to by WebDriver BiDi, of which Playwright asks for as much as the Firefox of its day knows.
         return playwright.firefox.launch(channel="moz-firefox", executable_path=own)
 
     opened = {}
@@ -74,7 +80,7 @@ def marimo_apps(tmp_path_factory):
         yield lambda: servers.enter_context(marimo(tmp_path_factory.mktemp("marimo")))
 
 
-@pytest.fixture(scope="module", params=[f"{end} in {browser}" for browser in BROWSERS for end in OPEN])
+@pytest.fixture(scope="module", params=sampled(["saved file in Chromium"], EVERYWHERE))
 def shown(request, browsers, tmp_path_factory):
     """Labs in a front end, in a browser."""
     name, _, browser = request.param.partition(" in ")
