@@ -21,6 +21,10 @@ SETTLED = """(count) => {
         && lab.resting === null && (!lab.widget.save_changes
             || (lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings)));
 }"""
+ORDER = """() => {
+    const tops = [...window.perceptObsLabs].map((lab) => lab.view.root.getBoundingClientRect().top);
+    return tops.map((_, k) => k).sort((a, b) => tops[a] - tops[b]);
+}"""
 UNFOLDED = """() => [...window.perceptObsLabs].forEach(
     (lab) => lab.view.root.querySelectorAll("details").forEach((topic) => (topic.open = true)))"""
 
@@ -47,7 +51,11 @@ class Shown:
     def first(self):
         """What the first lab shows when it has come to rest."""
         self.settle()
-        return state(self.page)
+        return self.state(0)
+
+    def state(self, place):
+        """What the lab at a place shows, counted from above: which opens first is the front end's affair."""
+        return state(self.page, self.page.evaluate(ORDER)[place])
 
 
 # What is tried, by the names of the table.
@@ -56,7 +64,7 @@ class Shown:
 def _draws(shown):
     shown.settle()
     for which in range(shown.labs):
-        assert_equals_python(state(shown.page, which))
+        assert_equals_python(shown.state(which))
     assert shown.page.locator("[data-percept-obs-error]:visible, .problem:visible, .silence:visible").count() == 0
 
 
@@ -98,11 +106,11 @@ def _are_two(shown):
     if shown.labs == 1:  # the rule of a saved file
         assert shown.page.locator("[data-percept-obs]").count() == 1
         return
-    other = state(shown.page, 1)
+    other = shown.state(1)
     shown.page.locator(control("seed number")).nth(1).fill("9")
     shown.settle()
-    assert state(shown.page, 0) == before
-    assert state(shown.page, 1)["settings"] == {**other["settings"], "seed": 9}
+    assert shown.state(0) == before
+    assert shown.state(1)["settings"] == {**other["settings"], "seed": 9}
 
 
 def _outlives_python(shown):
@@ -114,9 +122,10 @@ def _outlives_python(shown):
         shown.page.locator(".silence:visible").first.wait_for()
     shown.page.check(control("outputs y1"))
     shown.page.wait_for_function(
-        "() => { const [lab] = window.perceptObsLabs; return lab.shown.settings.outputs.length === 1 && !lab.pending; }"
+        """() => [...window.perceptObsLabs].some(({ shown: { settings }, pending }) =>
+            settings.outputs.length === 1 && settings.gains.identifier_based.gain === 4 && !pending)"""
     )
-    after = state(shown.page)
+    after = shown.state(0)
     assert after["silent"] == bool(shown.end_python)
     assert after["settings"]["gains"]["identifier_based"]["gain"] == 4
     assert_equals_python(after)
