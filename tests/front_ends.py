@@ -62,7 +62,7 @@ class Shown:
 
 
 def _draws(shown):
-    shown.settle()
+    shown.settle(patience=120)  # Python begins here
     for which in range(shown.labs):
         assert_equals_python(shown.state(which))
     assert shown.page.locator("[data-percept-obs-error]:visible, .problem:visible, .silence:visible").count() == 0
