@@ -81,6 +81,7 @@ def _follows_keys(shown):
     drag_by_keys(shown.page, FOE)
     for key in ("d", "d", "x", "b"):  # JupyterLab's own: delete, cut, add
         shown.page.keyboard.press(key)
+    assert shown.page.locator(FOE).first.evaluate("(foe) => foe.getRootNode().activeElement === foe")
     _has_moved(shown, before)
 
 
