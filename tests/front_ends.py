@@ -46,6 +46,8 @@ class Shown:
         self.settle()
         self.page.evaluate(UNFOLDED)
         self.page.click(control("reset"))
+        self.settle()
+        self.page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
         return self.first()
 
     def first(self):
