@@ -284,8 +284,8 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     with log.open("w") as file:
         process = subprocess.Popen(command, env=environment, stdout=file, stderr=file)
     try:
-        status = f"{server.url}/api/status?token={server.token}"
-        wait_until(lambda: is_up(status, process, log), f"JupyterLab, which writes to {log}")
+        address = f"{server.url}/api/status?token={server.token}"
+        wait_until(lambda: is_up(address, process, log), "JupyterLab")
         yield server
     finally:
         process.send_signal(signal.SIGTERM)  # it ends its kernels first
@@ -370,8 +370,7 @@ LOG = """() => {
 
 def free_port() -> int:
     """A port that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
+    with socket.create_server(("127.0.0.1", 0)) as probe:
         return probe.getsockname()[1]
 
 
