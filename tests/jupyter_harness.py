@@ -254,6 +254,7 @@ class Server:
 
     url: str
     token: str
+    folder: Path
 
 
 @contextmanager
@@ -270,7 +271,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
         "JUPYTERLAB_SETTINGS_DIR": "settings",
         "JUPYTERLAB_WORKSPACES_DIR": "workspaces",
     }
-    server = Server(f"http://127.0.0.1:{_free_port()}", secrets.token_hex(16))
+    server = Server(f"http://127.0.0.1:{free_port()}", secrets.token_hex(16), folder)
     command = [
         *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"),
         f"--ServerApp.port={server.url.rpartition(':')[2]}",
@@ -283,7 +284,8 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     with log.open("w") as file:
         process = subprocess.Popen(command, env=environment, stdout=file, stderr=file)
     try:
-        wait_until(lambda: _is_up(server, process, log), f"JupyterLab, which writes to {log}")
+        address = f"{server.url}/api/status?token={server.token}"
+        wait_until(lambda: is_up(address, process, log), "JupyterLab")
         yield server
     finally:
         process.send_signal(signal.SIGTERM)  # it ends its kernels first
@@ -321,10 +323,11 @@ def open_notebook(page, name: str) -> None:
     page.goto(f"/lab/tree/{name}?reset")
     page.wait_for_selector(IDLE, timeout=60_000)
     # The page says idle too while it knows no kernel yet, and would ask for one; so ask the server.
-    wait_until(lambda: _kernel_is_ready(page, name), "the kernel to be ready")
+    wait_until(lambda: kernel_is_ready(page, name), "the kernel to be ready")
 
 
-def _kernel_is_ready(page, name: str) -> bool:
+def kernel_is_ready(page, name: str) -> bool:
+    """Whether the kernel of a notebook of the server waits for code."""
     kernels = [s["kernel"] for s in page.request.get("/api/sessions").json() if s["path"] == name]
     return any(kernel["connections"] and kernel["execution_state"] == "idle" for kernel in kernels)
 
@@ -365,9 +368,9 @@ LOG = """() => {
 }"""
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
+def free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
         return probe.getsockname()[1]
 
 
@@ -386,11 +389,12 @@ def wait_until(holds: Callable[[], object], what: str, patience: float = 60) -> 
         time.sleep(0.05)
 
 
-def _is_up(server: Server, process: subprocess.Popen, log: Path) -> bool:
+def is_up(address: str, process: subprocess.Popen, log: Path) -> bool:
+    """Whether a server answers at an address."""
     if process.poll() is not None:
-        raise RuntimeError(f"JupyterLab did not start:\n{log.read_text()}")
+        raise RuntimeError(f"it did not start:\n{log.read_text()}")
     try:
-        with urllib.request.urlopen(f"{server.url}/api/status?token={server.token}", timeout=5):
+        with urllib.request.urlopen(address, timeout=5):
             return True
     except OSError:
         return False

@@ -2,6 +2,7 @@
 
 import json
 import re
+import subprocess
 import warnings
 from html.parser import HTMLParser
 from pathlib import Path
@@ -9,6 +10,8 @@ from urllib.parse import unquote, urldefrag
 
 import matplotlib.figure
 import pytest
+from conftest import missing
+from front_ends import TRIALS, Shown
 from jupyter_harness import NOTEBOOKS
 from lab_alone import DRAWN
 from lab_settings import FRONT
@@ -21,6 +24,7 @@ from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
 from percept_obs.site.extension import mathml
+from percept_obs.site.front_ends import TRIED
 from percept_obs.site.notebooks import drawing
 from percept_obs.site.pages import ledger_addresses, reference
 
@@ -48,6 +52,7 @@ def pages(tmp_path_factory):
     target = tmp_path_factory.mktemp("site")
     names = sampled([NOTEBOOK], sorted(path.name for path in NOTEBOOKS.glob("*.ipynb")))
     copies = {name: COPIES["teachers"](json.loads((NOTEBOOKS / name).read_bytes())) for name in names}
+    _add_a_second_lab(copies[NOTEBOOK])
     if names == [NOTEBOOK]:  # its links to the others lead nowhere
         copies = {
             name: json.loads(re.sub(r"\]\((?!00)[^)]*\.ipynb\)", "]", json.dumps(c))) for name, c in copies.items()
@@ -56,6 +61,13 @@ def pages(tmp_path_factory):
         warnings.simplefilter("ignore")  # the generator's own
         site.build(target, copies, sampled({PAPER: NAMED[PAPER]}, NAMED), tell=lambda text: None)
     return target
+
+
+def _add_a_second_lab(notebook):
+    code = {"cell_type": "code", "id": "second", "metadata": {}, "execution_count": None, "outputs": []}
+    notebook["cells"].append(
+        code | {"source": "from percept_obs.labs import observer_lab\nobserver_lab(outputs=['y1'])"}
+    )
 
 
 @pytest.mark.slow
@@ -95,6 +107,54 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
         assert complaints + serious == [], path
     assert labs
     page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_the_first_lab_draws_within_a_second_and_a_half_of_computing(pages, browser):
+    page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri(), wait_until="commit")
+    page.wait_for_function(DRAWN)
+    told = {metric["name"]: metric["value"] for metric in session.send("Performance.getMetrics")["metrics"]}
+    print(f"first lab: {told['ProcessTime']:.2f} s of computing, {page.evaluate('performance.now()') / 1000:.2f} s")
+    assert told["ProcessTime"] < 1.5
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def shown(pages, browser):
+    """Two labs in a page of the site, without a network."""
+    page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
+    page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri())
+    yield Shown(page, 2)
+    page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+@pytest.mark.parametrize("what", TRIED)
+def test_a_lab_of_the_site_is_alive(shown, what):
+    TRIALS[what](shown)
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+@pytest.mark.node
+def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
+    """A page of each kind; with ALL_SAMPLES all of them, which takes a while."""
+    modules = FRONT / "node_modules"
+    if not (modules / "lighthouse").exists():
+        missing(f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
+    names = [path.relative_to(pages).as_posix() for path in sorted(pages.rglob("*.html"))]
+    kinds = {re.sub(r"[^/]*$", "", name): name for name in reversed(names)}.values()
+    command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *sampled(kinds, names)]
+    told = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    found = [json.loads(line) for line in told]
+    least = min(found, key=lambda page: page["mark"])
+    print(f"{len(found)} pages; the least mark is {least}")
+    assert least["mark"] >= 95, least
 
 
 def test_an_address_of_its_own_for_every_equation():

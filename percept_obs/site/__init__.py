@@ -15,6 +15,7 @@ from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
+from percept_obs.site import front_ends
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
@@ -106,7 +107,8 @@ def _notebooks(
 
 
 def _texts() -> Pages:
-    """Texts that are written by hand."""
+    """Texts that are written by hand, and the table of front ends."""
+    yield "front_ends.md", front_ends.page()
     for text in TEXTS.iterdir():
         folder = "_static/" if text.name.endswith(".css") else ""
         yield folder + text.name, text.read_text("utf-8")

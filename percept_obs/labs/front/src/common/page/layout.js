@@ -75,7 +75,7 @@ export function build(lab, place, presets) {
   const eyes = element("div", { class: "eyes" }, tabs("Picture", views), ...planes.map((plane) => plane.figure));
   const root = element(
     "div",
-    { class: "percept-lab", "data-lm-suppress-shortcuts": "true" },
+    { class: "percept-lab" },
     ...[problem, pythonError, notice],
     element(
       "div",
@@ -149,8 +149,10 @@ function symbols(entries) {
   return topic("symbols", "Symbols and words", element("table", { class: "symbols" }, ...rows));
 }
 
-/** The keys of undo and redo; JupyterLab would take arrows, letters and Enter for commands of its own. */
+/** The keys of undo and redo; Jupyter would take arrows, letters and Enter for commands of its own. */
 export function keys(root, lab) {
+  // It looks for commands from the focus outwards up to this attribute, and finds some at the focus itself.
+  root.addEventListener("focusin", ({ target }) => target.setAttribute("data-lm-suppress-shortcuts", "true"));
   root.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
     event.preventDefault();

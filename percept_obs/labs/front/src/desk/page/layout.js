@@ -24,7 +24,7 @@ export function build(lab, place) {
   );
   const root = element(
     "div",
-    { class: "percept-lab desk", "data-lm-suppress-shortcuts": "true" },
+    { class: "percept-lab desk" },
     element("div", { class: "bar" }, panel.body, actions),
     ...[problem, pythonError, notice, silence, live],
     element(

@@ -122,7 +122,7 @@ export class ChoiceOfUnknowns {
     numbers.append(this.value);
     this.told.replaceChildren(
       element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice)}`),
-      element("div", { class: "determinant" }, theta, element("div", {}, letters, numbers)),
+      element("div", { class: "determinant", role: "group", "aria-label": "Determinant", tabindex: 0 }, theta, element("div", {}, letters, numbers)),
       element("p", { class: "where" }, `Not observable ${choice.zeroSet}.`),
     );
   }
