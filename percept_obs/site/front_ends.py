@@ -43,15 +43,18 @@ class FrontEnd:
         What installs it; empty for what comes with the package.
     by_rule : mapping of str to str
         Cells of the table that no test fills, and the rule that does.
+    browsers : tuple of str
+        Those in which a test tries the others.
     """
 
     name: str
     get: str = ""
     by_rule: Mapping[str, str] = field(default_factory=dict)
+    browsers: tuple[str, ...] = BROWSERS
 
     def cell(self, what: str) -> str:
         """How it is known that the labs can do something here."""
-        return self.by_rule.get(what, "test")
+        return self.by_rule.get(what, ", ".join(self.browsers))
 
 
 FRONT_ENDS = (
@@ -60,7 +63,7 @@ FRONT_ENDS = (
     FrontEnd("Voila", "python -m pip install voila"),
     FrontEnd("marimo", "python -m pip install marimo"),
     FrontEnd("saved file", by_rule={"two labs": BY_KIND}),
-    FrontEnd("this site"),
+    FrontEnd("this site", browsers=("Chromium",)),
     FrontEnd("VS Code", by_rule=dict.fromkeys(TRIED, BY_ANYWIDGET)),
     FrontEnd("Colab", by_rule=dict.fromkeys(TRIED, BY_ANYWIDGET)),
 )
@@ -71,15 +74,15 @@ def page() -> str:
 
     Examples
     --------
-    >>> print(next(line for line in page().splitlines() if "saved file" in line))
-    | saved file | test | test | test | test | by rule 2 | test |
+    >>> print(next(line for line in page().splitlines() if "this site" in line))
+    | this site | Chromium | Chromium | Chromium | Chromium | Chromium | Chromium |
     """
     return "\n".join(_lines())
 
 
 def _lines() -> Iterator[str]:
     yield from ("# Where the labs work", "")
-    yield f"Each cell says how it is known: by a test in {' and in '.join(BROWSERS)}, or by a rule."
+    yield "Each cell says how it is known: by a test in a browser, or by a rule."
     yield from ("", _row("", *TRIED), _row(*["---"] * (1 + len(TRIED))))
     yield from (_row(end.name, *map(end.cell, TRIED)) for end in FRONT_ENDS)
     yield from ("", "What is tried:", "")
@@ -91,7 +94,3 @@ def _lines() -> Iterator[str]:
 
 def _row(*cells: str) -> str:
     return f"| {' | '.join(cells)} |"
-
-
-if __name__ == "__main__":
-    print(page())
