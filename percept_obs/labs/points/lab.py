@@ -23,10 +23,11 @@ from percept_obs.labs.points.texts import (
     typed_velocities,
 )
 from percept_obs.labs.points.words import in_words
+from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
-from percept_obs.labs.shared.schema import Schema, Settings, offering
+from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.observability.windows import UNSEEN

@@ -1,22 +1,8 @@
 """What may be set in the lab of many points."""
 
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
-from percept_obs.labs.shared.schema import (
-    DROPOUT,
-    KEPT,
-    SEED,
-    Choice,
-    Names,
-    Number,
-    Optional,
-    Row,
-    Schema,
-    Settings,
-    Several,
-    Text,
-    noise,
-    vector,
-)
+from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, noise
+from percept_obs.labs.shared.schema import Choice, Names, Number, Optional, Row, Schema, Settings, Several, Text, vector
 from percept_obs.labs.shared.typed_motion import MOST, typed_setting
 
 PICTURES = ("error", "depth", "points", "gramian")

@@ -16,6 +16,7 @@ from percept_obs.border import TooMuchWork
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
+from percept_obs.labs.shared.common_settings import gains, offering, over
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import (
@@ -27,7 +28,7 @@ from percept_obs.labs.shared.sampling import (
     too_short,
     within_reach,
 )
-from percept_obs.labs.shared.schema import Schema, Settings, gains, offering, over
+from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.given import Given, opening_of
 from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS

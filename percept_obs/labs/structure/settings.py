@@ -1,20 +1,7 @@
 """What may be set in the lab of structure and motion."""
 
-from percept_obs.labs.shared.schema import (
-    KEPT,
-    SEED,
-    Choice,
-    Flag,
-    Group,
-    Names,
-    Number,
-    Row,
-    Schema,
-    Settings,
-    noise,
-    over,
-    vector,
-)
+from percept_obs.labs.shared.common_settings import KEPT, SEED, noise, over
+from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES

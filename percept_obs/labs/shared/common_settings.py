@@ -1,0 +1,67 @@
+"""Settings that several labs have: gains of their observers, noise, a map over two settings, a seed, a kept run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+from percept_obs.labs.shared.printed import part
+from percept_obs.labs.shared.schema import Choice, GainsOf, Group, Kind, Names, Number, Optional, Whole
+from percept_obs.observers import Observer
+
+
+def offering(kind: Kind, names: Iterable[str]) -> Kind:
+    """A choice of one or of several names, of other ones."""
+    assert isinstance(kind, Choice | Names)
+    return replace(kind, names=tuple(names))
+
+
+def gains(standard: Mapping[str, Mapping[str, float]], observer_of: Callable[[str], Observer]) -> Group:
+    """Gains by the observers' names and their own, with the values that they open with."""
+    groups = {
+        name: GainsOf(
+            {gain: Number(value, -1e300, 1e300) for gain, value in values.items()},
+            partial=True,
+            observer=partial(observer_of, name),
+        )
+        for name, values in standard.items()
+    }
+    return Group(groups, partial=True, about="for each observer, its gains by name")
+
+
+def standard_gains(kind: str) -> dict[str, dict[str, float]]:
+    """The gains that the observers of a lab have of their own, as they were printed for its page."""
+    printed = part(kind)["observers"].items()
+    return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
+
+
+def noise(**sizes: Number) -> Group:
+    """The noise of a camera: its kind, and its sizes by their names."""
+    kind = Choice("uniform", ("uniform", "gaussian"), label="Noise")
+    return Group({"kind": kind, **sizes}, about=f"of the camera: a mapping of kind, {', '.join(sizes)}")
+
+
+def over(gains: Mapping[str, Iterable[str]], places: Sequence[str]) -> Group:
+    """A map over two settings: what it shows, of which observer, and the places of both.
+
+    Parameters
+    ----------
+    gains : mapping of observers' names to names of gains
+    places : sequence of str
+        What else it may go over; it opens with the first gain and the first of these.
+    """
+    axes = [f"gains.{name}.{gain}" for name, names in gains.items() for gain in names]
+    shown = {
+        "shows": Choice(SHOWS[0], SHOWS, label="shows"),
+        "observer": Choice(next(iter(gains)), tuple(gains), label="observer"),
+        "across": Choice(axes[0], (*axes, *places), label="across"),
+        "up": Choice(places[0], (*axes, *places), label="up"),
+    }
+    return Group(shown, partial=True, about=f"a map over two settings: a mapping of {', '.join(shown)}")
+
+
+SHOWS = ("nothing", "settling", "error")
+SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random")
+DROPOUT = Number(0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost")
+KEPT = Optional(Whole(), about="None, or the settings of the run that is kept to compare with")
