@@ -11,7 +11,7 @@
  * @property {number} order        its place among all observers, which gives its line a colour and dashes
  * @property {Float64Array} estimate  rows of `width` coordinates
  * @property {Float64Array | null} deviation  the standard deviations that it claims, in the same rows
- * @property {number[]} resets     times, in s
+ * @property {Float64Array} resets  times, in s
  * @property {[begin: number, end: number, reason: number][]} gaps  when hidden coordinates have no estimate
  * @property {string[]} gapReasons  for the numbers of gaps, from 1 on
  * @property {number | null} divergedAt  in s

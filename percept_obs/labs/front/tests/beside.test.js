@@ -7,6 +7,7 @@ import { moduleText } from "../src/common/model/modules.js";
 import { constantPath } from "../src/common/model/path.js";
 import { Runner } from "../src/common/model/runner.js";
 import { serve } from "../src/common/model/serving.js";
+import { packed } from "../src/common/model/packing.js";
 import { partIn } from "../src/common/model/space.js";
 import { entriesOf, textsOfP } from "../src/points/model/sparse.js";
 import { loadHere } from "./load_here.js";
@@ -16,8 +17,9 @@ function asking() {
   const [tasks, told] = [[], []];
   const results = { of: (settings, whole) => ({ shown: { settings, whole, here: true }, ghost: null }) };
   const latest = new Latest(results, (error) => told.push(error));
-  latest.beside = { ask: (task) => tasks.push(task) };
-  return { latest, tasks, told };
+  const spares = [];
+  latest.beside = { ask: ({ spare, ...task }) => [tasks.push(task), spares.push(spare)] };
+  return { latest, tasks, told, spares };
 }
 
 test("while one task is under way only the latest of the others waits", () => {
@@ -37,6 +39,34 @@ test("while one task is under way only the latest of the others waits", () => {
   assert.deepEqual(tasks[2], { settings: third, whole: true });
   assert.equal(latest.want(third, false), true);
   assert.deepEqual(told, [undefined, undefined]);
+});
+
+test("a result's buffer goes back when a later result is in the pictures, and not before", () => {
+  const { latest, spares } = asking();
+  const rooms = [1, 2, 3].map((size) => new ArrayBuffer(size));
+  const answer = (k) => latest.want({ gain: k }, false) || latest.take({ shown: { whole: false }, room: rooms[k] });
+  answer(0);
+  latest.drawn();
+  answer(1);
+  answer(2);
+  assert.deepEqual(spares, [[], [], []]);
+  latest.drawn();
+  latest.want({ gain: 3 }, false);
+  assert.deepEqual(spares[3], rooms.slice(0, 2));
+});
+
+test("a packed result is the same one in one buffer, which is used again if it is large enough", () => {
+  const time = Float64Array.of(0, 1, 2);
+  const result = { time, runs: [{ name: "one", error: Float64Array.of(NaN), at: Int32Array.of(7), bound: null, gaps: [[0, 1]] }], again: time };
+  const first = packed(result, []);
+  assert.deepEqual(first.data, result);
+  assert.equal(first.data.time, first.data.again);
+  for (const array of [first.data.time, first.data.runs[0].error, first.data.runs[0].at]) assert.equal(array.buffer, first.room);
+  const small = new ArrayBuffer(8);
+  const second = packed({ time: time.map((value) => -value) }, [small, first.room]);
+  assert.equal(second.room, first.room);
+  assert.deepEqual([...second.data.time], [-0, -1, -2]);
+  assert.notEqual(packed({ time }, [small]).room, small);
 });
 
 test("a ghost stays until another one comes, and an error ends the waiting for an answer", async () => {
@@ -70,7 +100,13 @@ test("when nobody is left beside the page, it computes by itself and nobody wait
 /** A worker's side that is spoken to as a page would, with copies; it gives all that it has answered. */
 async function served(messages) {
   const answers = [];
-  const scope = { postMessage: (answer) => answers.push(structuredClone(answer)) };
+  const scope = {
+    postMessage(answer, transfer) {
+      const { room, ...told } = structuredClone(answer, { transfer });
+      assert.equal(room instanceof ArrayBuffer, "shown" in told);
+      answers.push(told);
+    },
+  };
   const runs = [];
   class Engine {
     run(settings, functions, whole) {

@@ -8,6 +8,7 @@ import { Runner } from "../src/common/model/runner.js";
 import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
 import { translationTowards } from "../src/observer/model/engine.js";
+import { drawResets } from "../src/common/page/chart_events.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
@@ -38,6 +39,31 @@ test("a Gramian weighs each direction by what the images would show of it", () =
     const right = (0.5 * (shown(v, 0) + shown(v, 1)) + 1.5 * (shown(v, 1) + shown(v, 2))) / 2;
     assert.ok(Math.abs(found - right) < 1e-14, `${v}: ${found} instead of ${right}`);
   }
+});
+
+test("while a hand moves fewer windows are looked at, and each tells what it tells at rest", () => {
+  const [count, n] = [801, 3];
+  const time = Float64Array.from({ length: count }, (_, k) => 0.05 * k);
+  const images = Float64Array.from({ length: 2 * count }, (_, k) => Math.sin(0.01 * k + (k % 2)));
+  const still = new Float64Array(ENTRIES * count);
+  const back = new Float64Array(9 * count);
+  for (let k = 0; k < count; k++) for (let i = 0; i < 3; i++) still[ENTRIES * k + 5 * i] = back[9 * k + 4 * i] = 1;
+  const model = { block: { N: [[1, 0, 0], [0, 1, 0]], l: [0, 0, 1] }, unseen: 1e-9 };
+  const given = { layout: apart(1), model, n, time, images, kindOf: [0], flows: [still], back: [back], window: 1 };
+  const [moving, resting] = [false, true].map((whole) => windowsOf({ ...given, memory: new Memory(), whole }));
+  assert.ok(moving.time.length < resting.time.length);
+  const at = (found, when) => [found.smallest, found.largest].map((values) => values[found.time.indexOf(when)]);
+  for (const when of moving.time) assert.deepEqual(at(moving, when), at(resting, when));
+});
+
+test("resets have one tick in each column of pixels, however many there are", () => {
+  const place = { left: 10, width: 50, top: 0, words: [], x: (time) => 10 + 5 * (time - 2), timeAt: (x) => 2 + (x - 10) / 5 };
+  const ticks = [];
+  const pen = { fillRect: (x) => ticks.push(x) };
+  const times = Float64Array.from({ length: 3000 }, (_, k) => 0.01 * k - 5).filter((time) => time < 4 || time > 6);
+  drawResets(pen, place, [{ times, colour: "black", text: "" }], { picked: null }, false);
+  const wanted = new Set(Array.from(times, (time) => Math.round(place.x(time))).filter((x) => x >= 10 && x <= 60));
+  assert.deepEqual(ticks, [...wanted]);
 });
 
 test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {

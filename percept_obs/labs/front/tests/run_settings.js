@@ -30,7 +30,7 @@ for (const settings of tasks) {
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [
         run.name,
-        { estimate: numbers(run.estimate), deviation: numbers(run.deviation), resets: run.resets, divergedAt: run.divergedAt },
+        { estimate: numbers(run.estimate), deviation: numbers(run.deviation), resets: numbers(run.resets), divergedAt: run.divergedAt },
       ]),
     );
   }

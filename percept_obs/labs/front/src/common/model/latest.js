@@ -1,7 +1,7 @@
 // @ts-check
 // The latest result of settings that a hand moves: found here, or beside the page, where one task at a time is under way.
 
-/** @typedef {{settings: any, whole: boolean}} Task  settings of which all is wanted, or only what is drawn */
+/** @typedef {{settings: any, whole: boolean, spare?: ArrayBuffer[]}} Task  settings of which all is wanted, or only what is drawn, and buffers for their result */
 
 /** What was found last.  Once there is something beside the page to ask, of all tasks that wait only the latest is sent. */
 export class Latest {
@@ -20,6 +20,10 @@ export class Latest {
     this.waiting = null;
     /** @type {((answer: {error?: string}) => void)[]} */
     this.listeners = [];
+    /** @type {ArrayBuffer[]} of results that may still be in a picture; the last is that of the latest */
+    this.rooms = [];
+    /** @type {ArrayBuffer[]} of results that nobody needs */
+    this.spare = [];
   }
 
   /** Whether what was found is of these settings. */
@@ -46,19 +50,25 @@ export class Latest {
   send() {
     if (this.asked || !this.waiting || !this.beside) return;
     [this.asked, this.waiting] = [this.waiting, null];
-    this.beside.ask(this.asked);
+    this.beside.ask({ ...this.asked, spare: this.spare.splice(0) });
+  }
+
+  /** The latest result is in all pictures, so that those before it are needed no more. */
+  drawn() {
+    this.spare.push(...this.rooms.splice(0, this.rooms.length - 1));
   }
 
   /**
    * Take an answer from beside the page; without a new ghost the last one stays.
    *
-   * @param {{error?: string, shown?: any, ghost?: any}} answer
+   * @param {{error?: string, shown?: any, room?: ArrayBuffer, ghost?: any}} answer
    */
-  take({ error, shown, ...more }) {
+  take({ error, shown, room, ...more }) {
     if (!this.asked) return;
     const { settings } = this.asked;
     this.asked = null;
     if (shown) this.shown = { ...shown, settings };
+    if (room) this.rooms.push(room);
     if ("ghost" in more) this.ghost = more.ghost && { ...more.ghost, settings: settings.kept };
     if (this.waiting && this.has(this.waiting)) this.waiting = null;
     this.send();

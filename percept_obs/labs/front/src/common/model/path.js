@@ -24,10 +24,11 @@ export function constantPath(start, rates, grid, index, points) {
     // Equal intervals differ by the rounding of their ends, and lead alike.
     if (!(Math.abs(time - step.time) <= 4 * Number.EPSILON * end)) step = stepOf(time, size, rates, term);
     const m = step.rows;
-    const [a, b, c] = [x, y, z];
-    x += m[0] * a + m[1] * b + m[2] * c + m[3];
-    y += m[4] * a + m[5] * b + m[6] * c + m[7];
-    z += m[8] * a + m[9] * b + m[10] * c + m[11];
+    const dx = m[0] * x + m[1] * y + m[2] * z + m[3];
+    const dy = m[4] * x + m[5] * y + m[6] * z + m[7];
+    z += m[8] * x + m[9] * y + m[10] * z + m[11];
+    x += dx;
+    y += dy;
     if (!(x * x + y * y + z * z < LARGEST_SQUARED_STATE)) break;
     points[3 * k - 3] = x;
     points[3 * k - 2] = y;

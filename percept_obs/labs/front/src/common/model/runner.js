@@ -147,7 +147,9 @@ function readDeviations(functions, kernel, states, { index }, width) {
 }
 
 function timesOf(resets, grid) {
-  const found = [];
-  for (let k = 0; k < resets.length; k++) if (resets[k]) found.push(grid[k]);
+  let count = 0;
+  for (let k = 0; k < resets.length; k++) if (resets[k]) count++;
+  const found = new Float64Array(count);
+  for (let k = 0, at = 0; at < count; k++) if (resets[k]) found[at++] = grid[k];
   return found;
 }

@@ -1,6 +1,7 @@
 // @ts-check
 // The worker's side of computing beside the page: the same engines, and an answer to each message.
 
+import { packed } from "./packing.js";
 import { Results } from "./results.js";
 import { same } from "./settings.js";
 import { modelOf } from "./texts.js";
@@ -10,6 +11,8 @@ export function serve(computing, scope) {
   const opened = { model: /** @type {any} */ (null), kernels: /** @type {any} */ (null), results: /** @type {any} */ (null) };
   /** @type {{settings: any, kept: any, ghost: any}} */
   const last = { settings: null, kept: null, ghost: null };
+  /** @type {ArrayBuffer[]} those that came back */
+  const rooms = [];
 
   async function open({ kind, texts, model: given }) {
     const { Kernels, Engine } = computing(kind);
@@ -19,7 +22,8 @@ export function serve(computing, scope) {
     scope.postMessage({ ready: true });
   }
 
-  async function answer({ settings: copy, whole, written }) {
+  async function answer({ settings: copy, whole, written, spare = [] }) {
+    rooms.push(...spare);
     Object.assign((opened.model.written ??= {}), written);
     // Messages are copies; what is known already is found by the very object.
     const settings = same(copy, last.settings) ? last.settings : copy;
@@ -27,7 +31,8 @@ export function serve(computing, scope) {
     Object.assign(last, { settings, kept: settings.kept });
     await Promise.all([settings, settings.kept].filter(Boolean).map((each) => opened.kernels.prepare(each)));
     const { shown, ghost } = opened.results.of(settings, whole);
-    scope.postMessage({ shown: { ...shown, settings: null }, ...(ghost !== last.ghost && { ghost }) });
+    const { data, room } = packed({ ...shown, settings: null }, rooms);
+    scope.postMessage({ shown: data, room, ...(ghost !== last.ghost && { ghost }) }, [room]);
     last.ghost = ghost;
   }
 

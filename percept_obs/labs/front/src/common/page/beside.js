@@ -23,7 +23,7 @@ export function openBeside({ bundle, ...lab }, { onReady, onAnswer, onGone }, na
   worker.onmessage = ({ data }) => {
     if (!data.ready) return onAnswer(data);
     URL.revokeObjectURL(address);
-    return onReady({ ask: (task) => worker.postMessage(task) });
+    return onReady({ ask: (task) => worker.postMessage(task, task.spare) });
   };
   worker.postMessage(lab);
   return worker;

@@ -64,20 +64,31 @@ export function shade(pen, place, { begin, end, text }, theme, named) {
   put(pen, place, text, room ? left + 3 : left - 3, place.bottom - 2, room ? "left" : "right", "bottom", theme.warning, theme);
 }
 
+/** Which of increasing times is the first that is not before one. */
+function firstFrom(times, when, low = 0) {
+  let high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < when) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
 /** Ticks from the top down, one for each column of pixels in which there are resets; how many, once a lab. */
 export function drawResets(pen, place, marks, theme, named) {
   const right = place.left + place.width;
   marks.forEach(({ times, colour, text }, row) => {
     pen.fillStyle = colour;
     pen.globalAlpha = fading(theme, colour);
-    let before = -1;
     let first = NaN;
-    for (let k = 0; k < times.length; k++) {
+    // From each tick on to the first reset of another column: there may be thousands in one.
+    for (let k = firstFrom(times, place.timeAt(place.left - 0.5)); k < times.length; ) {
       const x = Math.round(place.x(times[k]));
-      if (x === before || x < place.left || x > right) continue;
-      before = x;
+      if (x > right) break;
       if (Number.isNaN(first)) first = x;
       pen.fillRect(x, place.top, 1, RESET);
+      k = Math.max(k + 1, firstFrom(times, place.timeAt(x + 0.5), k));
     }
     pen.globalAlpha = 1;
     if (!named || Number.isNaN(first)) return;

@@ -123,6 +123,10 @@ class Place {
     return this.left + (time - this.span.low) * this.perSecond;
   }
 
+  timeAt(x) {
+    return this.span.low + (x - this.left) / this.perSecond;
+  }
+
   y(value) {
     const height = this.scale.log ? Math.log10(Math.max(value, 1e-30)) : value;
     // Outside is outside: a canvas would cut what is further away into dashes too, thousands of them.

@@ -234,6 +234,7 @@ export class Live extends Showing {
       const speaking = this.speaking && shown.whole;
       this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
+      this.latest.drawn();
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {

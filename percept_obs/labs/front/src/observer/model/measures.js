@@ -61,7 +61,8 @@ export function spansInside(time, rows, width, [y1, y2, radius]) {
   const spans = [];
   let inside = false;
   for (let k = 0; k < time.length; k++) {
-    const [x, y] = [rows[k * width] - y1, rows[k * width + 1] - y2];
+    const x = rows[k * width] - y1;
+    const y = rows[k * width + 1] - y2;
     const now = x * x + y * y < radius * radius;
     if (now && !inside) spans.push([time[k], time[k]]);
     if (now) spans[spans.length - 1][1] = time[k];

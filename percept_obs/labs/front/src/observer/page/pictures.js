@@ -90,6 +90,10 @@ function dividedOf({ shares, time }, ghost, lines, theme) {
 function bandOf(shown, run, c, theme) {
   const middle = columnOf(run.estimate, shown.width, c);
   const deviation = columnOf(run.deviation, shown.width, c);
-  const bound = (factor) => derived(deviation, `bound ${factor}`, () => middle.map((value, k) => value + factor * deviation[k]));
+  const bound = (factor) => derived(deviation, `bound ${factor}`, () => {
+    const values = new Float64Array(middle.length);
+    for (let k = 0; k < values.length; k++) values[k] = middle[k] + factor * deviation[k];
+    return values;
+  });
   return { time: shown.time, low: bound(-2), high: bound(2), colour: theme.lines[run.order] };
 }

@@ -29,10 +29,9 @@ export class Camera {
     for (let k = 0; k < time.length; k++) {
       for (let p = 0; p < points; p++) {
         const at = k * points + p;
-        const [y1, y2] = [images[2 * at], images[2 * at + 1]];
         const away = hidden[p] && time[k] >= hidden[p][0] && time[k] < hidden[p][1];
         const chance = k > 0 && drawn.loss[at] < dropout; // the first sample is never lost
-        const lost = away || chance || !(Math.max(Math.abs(y1), Math.abs(y2)) <= view);
+        const lost = away || chance || !(Math.abs(images[2 * at]) <= view && Math.abs(images[2 * at + 1]) <= view);
         for (let m = 0; m < 2; m++) {
           const error = errorOf(noise.kind, noise.size, drawn.shape[2 * at + m]);
           outputs[2 * at + m] = lost ? NaN : images[2 * at + m] + error;

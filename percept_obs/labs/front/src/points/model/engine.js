@@ -40,11 +40,17 @@ export class PointsEngine {
       gramian: null,
       whole: false,
     };
-    return whole || settings.pictures.includes("gramian") ? this.completed(result, functions) : result;
+    if (whole) return this.completed(result, functions);
+    return settings.pictures.includes("gramian") ? { ...result, gramian: this.gramian(result, functions, false) } : result;
   }
 
-  /** A result with all that is read off it: what the images of each window tell. */
+  /** A result with all that is read off it. */
   completed(result, functions) {
+    return { ...result, gramian: this.gramian(result, functions, true), whole: true };
+  }
+
+  /** What the images of each window tell, or as much of it as a chart shows while a hand moves. */
+  gramian(result, functions, whole) {
     const { settings, time, seenImages: images } = result;
     const scene = this.scene(settings, functions);
     const clock = this.memory.once("samples' steps", [settings.period, settings.duration], () => ({
@@ -56,8 +62,7 @@ export class PointsEngine {
     made.back ??= flows.map(inversesOf);
     const window = Math.min(settings.window, time.at(-1));
     const { model, memory } = this;
-    const gramian = windowsOf({ ...scene, model, time, images, kindOf, flows, back: made.back, window, memory });
-    return { ...result, gramian, whole: true };
+    return windowsOf({ ...scene, model, time, images, kindOf, flows, back: made.back, window, memory, whole });
   }
 
   scene(settings, functions) {

@@ -13,23 +13,24 @@ const MOST_NUMBERS = 1500;
  *
  * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
  * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows some
- * are looked at, and all about the weakest.
+ * are looked at, and if the whole is wanted all about the weakest.
  */
-export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory }) {
+export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory, whole }) {
   const blocks = derived(layout, "blocks", () => blocksOf(layout));
   const gathered = gather(layout, blocks, model.block, n, time, images, kindOf, flows, memory);
   const ends = endsOf(time, window);
-  const matrix = (first) => between(gathered, blocks, first, ends[first], n, kindOf, back);
+  const matrix = (first, room) => between(gathered, blocks, first, ends[first], n, kindOf, back, room);
+  const room = memory.room("matrix", n * n);
   const every = Math.max(1, Math.ceil((ends.length * n) / MOST_NUMBERS));
   const found = new Map();
-  const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k), n, model.unseen)).get(k);
+  const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k, room), n, model.unseen)).get(k);
   for (let k = 0; k < ends.length; k += every) look(k);
   look(ends.length - 1);
   const sorted = () => [...found.keys()].sort((a, b) => a - b);
   const least = (of) => sorted().reduce((a, b) => (of(found.get(b)) < of(found.get(a)) ? b : a));
   // Windows that miss directions come first, and of them those that miss most.
   const weakness = ({ smallest, largest, missed }) => (missed ? -missed : smallest / Math.max(largest, 1e-300));
-  for (const of of [weakness, ({ smallest }) => smallest]) {
+  for (const of of whole ? [weakness, ({ smallest }) => smallest] : []) {
     const middle = least(of);
     for (let k = Math.max(0, middle - every + 1); k < Math.min(ends.length, middle + every); k++) look(k);
   }
@@ -42,7 +43,7 @@ export function windowsOf({ layout, model, n, time, images, kindOf, flows, back,
     smallest: column("smallest"),
     largest: column("largest"),
     weakest,
-    matrix: matrix(weakest),
+    matrix: matrix(weakest, new Float64Array(n * n)),
   };
 }
 
@@ -89,22 +90,24 @@ function gather({ begins, axes, states, entries }, { all, ofPoints }, { N, l }, 
           for (let c = 0; c < 3; c++) row[3 * v + c] += factor * flow[at + c];
         }
         for (let t = 0; t < pairs.length; t += 3) {
-          const [u, v, to] = [3 * pairs[t], 3 * pairs[t + 1], 9 * pairs[t + 2]];
+          const u = 3 * pairs[t];
+          const v = 3 * pairs[t + 1];
+          const to = 9 * pairs[t + 2];
           for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) now[to + 3 * i + j] += row[u + i] * row[v + j];
         }
       }
     }
     const half = k ? (time[k] - time[k - 1]) / 2 : 0;
-    const [from, to] = [(k - 1) * size, k * size];
-    for (let i = 0; k && i < size; i++) gathered[to + i] = gathered[from + i] + half * (before[i] + now[i]);
+    const to = k * size;
+    for (let i = 0; k && i < size; i++) gathered[to + i] = gathered[to - size + i] + half * (before[i] + now[i]);
     before.set(now);
   }
   return gathered;
 }
 
-/** What was gathered between two samples, from the state at the first of them. */
-function between(gathered, { all }, first, last, n, kindOf, back) {
-  const found = new Float64Array(n * n);
+/** What was gathered between two samples, from the state at the first of them, in the room for a matrix. */
+function between(gathered, { all }, first, last, n, kindOf, back, room) {
+  const found = room.fill(0);
   const inside = new Float64Array(9);
   const half = new Float64Array(9);
   const at = 9 * first;
@@ -112,7 +115,9 @@ function between(gathered, { all }, first, last, n, kindOf, back) {
     const [U, V] = [back[kindOf[u]], back[kindOf[v]]];
     for (let c = 0; c < 9; c++) inside[c] = gathered[9 * (last * all.length + block) + c] - gathered[9 * (first * all.length + block) + c];
     for (let i = 0; i < 3; i++) {
-      const [a, b, c] = [inside[3 * i], inside[3 * i + 1], inside[3 * i + 2]];
+      const a = inside[3 * i];
+      const b = inside[3 * i + 1];
+      const c = inside[3 * i + 2];
       for (let j = 0; j < 3; j++) half[3 * i + j] = a * V[at + j] + b * V[at + 3 + j] + c * V[at + 6 + j];
     }
     for (let i = 0; i < 3; i++) {

@@ -11,8 +11,8 @@ import { entriesOf } from "./sparse.js";
  * Step an estimate, and P where it is computed, by the Runge-Kutta method.
  *
  * layout    where the coefficients stand: rows, columns, which; begins, axes, states, entries of the points
- * functions  point: what one point tells, printed from its block; moveP and solveP, printed for the layout, where P is
- *           computed
+ * functions  point: what one point tells, printed from its block; those of sparse.js, printed for the layout, those of P
+ *           where it is computed
  * law       {computed, information, forgetting, pull} of P
  * x, P      at the start, P with no more entries than `entriesOf` finds; it is null where it is given
  * tables    {steps, coefficients, width, inverses, images, points, first}: coefficients have a row of `width` numbers
@@ -55,31 +55,20 @@ function entriesOfP(layout, n) {
   return derived(layout, "entries of P", () => entriesOf(layout, n));
 }
 
-/** What is laid out once for all steps of a layout. */
-function linesOf(layout) {
-  return derived(layout, "lines", () => {
-    const [rows, columns, which, begins, axes, states] = ["rows", "columns", "which", "begins", "axes", "states"].map((name) => Int32Array.from(layout[name]));
-    return { rows, columns, which, begins, axes, states, entries: Float64Array.from(layout.entries) };
-  });
-}
-
 /** A function that fills the rates of an estimate and, behind it, of P's entries. */
-function rateOf(layout, { point, moveP, solveP }, { computed, information, forgetting, pull }, n) {
-  const { rows, columns, which, begins, axes, states, entries } = linesOf(layout);
+function rateOf(layout, { point, moveX, place, correct, moveP, solveP }, { computed, information, forgetting, pull }, n) {
+  const points = layout.begins.length - 1;
   const correction = new Float64Array(n);
+  const places = new Float64Array(3 * points);
   const given = new Float64Array(5);
-  const told = new Float64Array(12 * (begins.length - 1));
-  const toldOf = Array.from(begins.subarray(1), (_, k) => told.subarray(12 * k, 12 * k + 12));
+  const told = new Float64Array(12 * points);
+  const toldOf = Array.from({ length: points }, (_, k) => told.subarray(12 * k, 12 * k + 12));
   const constant = Float64Array.from(entriesOfP(layout, n).pairs, ([i, j]) => (computed ? pull[i * n + j] : 0));
   return (now, inverse, known, offset, images, at, out) => {
-    out.fill(0, 0, n);
-    correction.fill(0);
-    for (let e = 0; e < rows.length; e++) {
-      const a = known[offset + which[e]];
-      out[rows[e]] += columns[e] === n ? a : a * now[columns[e]];
-    }
+    moveX(now, known, offset, out);
+    place(now, places);
     let anything = false;
-    for (let k = 0; k + 1 < begins.length; k++) {
+    for (let k = 0; k < points; k++) {
       given[0] = images[at + 2 * k];
       given[1] = images[at + 2 * k + 1];
       if (Number.isNaN(given[0] + given[1])) {
@@ -87,13 +76,14 @@ function rateOf(layout, { point, moveP, solveP }, { computed, information, forge
         continue;
       }
       anything = true;
-      given[2] = given[3] = given[4] = 0;
-      for (let e = begins[k]; e < begins[k + 1]; e++) given[2 + axes[e]] += entries[e] * now[states[e]];
+      given[2] = places[3 * k];
+      given[3] = places[3 * k + 1];
+      given[4] = places[3 * k + 2];
       point(given, toldOf[k]);
-      for (let e = begins[k]; e < begins[k + 1]; e++) correction[states[e]] += entries[e] * told[12 * k + axes[e]];
     }
     if (computed) moveP(now, known, offset, told, information, forgetting, constant, out);
     if (!anything) return;
+    correct(told, correction);
     if (computed) solveP(now, correction);
     for (let i = 0; i < n; i++) out[i] += computed ? correction[i] : inverse * correction[i];
   };

@@ -4,7 +4,7 @@
 import { derived } from "../../common/model/derived.js";
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { typedModule } from "../../common/model/typed.js";
-import { textsOfP } from "./sparse.js";
+import { textsOfP, textsOfX } from "./sparse.js";
 
 /** The name of a state that somebody brought. */
 export const OWN = "own";
@@ -26,14 +26,14 @@ export class PointsKernels extends PrintedKernels {
     const [typed] = typedModule(this.model, motion);
     const coefficients = typed ? written?.[motion]?.states?.[state] : states[state].coefficients;
     const moved = { ...typed, key: typed ? `${state} ${typed.key}` : state, texts: { coefficients } };
-    return [{ key: "points", texts: { locate, point } }, moved, ...(weight === "typed" ? typedModule(this.model, P) : this.ofP(settings))];
+    return [{ key: "points", texts: { locate, point } }, moved, ...this.rates(settings), ...(weight === "typed" ? typedModule(this.model, P) : [])];
   }
 
-  /** The functions of a P that is computed. */
-  ofP(settings) {
-    if (!COMPUTED.includes(settings.weight)) return [];
+  /** The rates of what is followed together, and those of a P that is computed. */
+  rates(settings) {
     const layout = layoutFollowed(this.model, settings);
     const n = layout.names.length;
-    return [{ key: `P of ${n} states, ${settings.state}`, texts: derived(layout, "texts of P", () => textsOfP(layout, n)) }];
+    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n)) });
+    return [printed("x", textsOfX), ...(COMPUTED.includes(settings.weight) ? [printed("P", textsOfP)] : [])];
   }
 }

@@ -21,7 +21,7 @@ export function pointErrors({ begins, axes, states, entries }, truth, estimate, 
       for (let e = begins[p]; e < begins[p + 1]; e++) {
         off[axes[e]] += entries[e] * (truth[k * n + states[e]] - estimate[k * n + states[e]]);
       }
-      found[k] = Math.hypot(off[0], off[1], off[2]);
+      found[k] = Math.sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2]);
     }
     return found;
   });

@@ -1,6 +1,6 @@
 // @ts-check
-// P between points that share nothing stays 0.  Printed here, for the entries that do not, are its rates and how P x = b
-// is solved with them: line by line, for loops over so few numbers take four times as long.
+// Rates of a layout are printed line by line, for loops over so few numbers take four times as long.  P between points
+// that share nothing stays 0: printed are the rates of its other entries, and how P x = b is solved with them.
 
 /** Statements of a function at most; engines give up on longer ones. */
 const LONGEST = 400;
@@ -35,18 +35,41 @@ export function entriesOf({ rows, columns, begins, states }, n) {
   return { at, pairs };
 }
 
+/**
+ * Texts of the functions of an estimate for a layout: `moveX` fills its rates without any correction, `place` the points'
+ * coordinates, and `correct` what all points together say of the state.
+ */
+export function textsOfX({ rows, columns, which, begins, axes, states, entries }, n) {
+  const sums = (count) => Array.from({ length: count }, () => /** @type {string[]} */ ([]));
+  const [rates, places, corrections] = [sums(n), sums(3 * (begins.length - 1)), sums(n)];
+  const times = (factor, text) => (factor === 1 ? text : `${factor} * ${text}`);
+  rows.forEach((row, e) => rates[row].push(`known[at + ${which[e]}]${columns[e] === n ? "" : ` * now[${columns[e]}]`}`));
+  for (let p = 0; p + 1 < begins.length; p++) {
+    for (let e = begins[p]; e < begins[p + 1]; e++) {
+      places[3 * p + axes[e]].push(times(entries[e], `now[${states[e]}]`));
+      corrections[states[e]].push(times(entries[e], `told[${12 * p + axes[e]}]`));
+    }
+  }
+  const filled = (name, found) => found.map((terms, i) => `${name}[${i}] = ${terms.join(" + ") || "0"};`);
+  return {
+    moveX: inParts("moveX", "now, known, at, out", filled("out", rates)),
+    place: inParts("place", "now, places", filled("places", places)),
+    correct: inParts("correct", "told, correction", filled("correction", corrections)),
+  };
+}
+
 /** Texts of the functions of P for a layout: `move` fills its rates, `solve` solves P x = right in place. */
 export function textsOfP(layout, n) {
   const found = entriesOf(layout, n);
   return { moveP: moveText(layout, found, n), solveP: solveText(found, n) };
 }
 
-/** A function that runs statements one after the other, in parts that are not too long. */
-function inParts(name, parameters, statements, before = "") {
+/** A function that runs statements one after the other, in parts that are not too long; `first` begins each part. */
+function inParts(name, parameters, statements, { before = "", first = "" } = {}) {
   const parts = [];
   for (let k = 0; k < statements.length; k += LONGEST) parts.push(statements.slice(k, k + LONGEST).join("\n"));
   const calls = parts.map((_, k) => `part${k}(${parameters});`).join(" ");
-  const functions = parts.map((text, k) => `function part${k}(${parameters}) {\n${text}\n}`);
+  const functions = parts.map((text, k) => `function part${k}(${parameters}) {\n${first}\n${text}\n}`);
   return [`function ${name}(${parameters}) { ${calls} }`, before, ...functions].join("\n");
 }
 
@@ -64,17 +87,18 @@ function moveText({ rows, columns, which, begins, axes, states, entries }, { at,
     }
   }
   const statements = pairs.map(([i, j], k) => {
-    const term = (e, other) => (at[rows[e] * n + other] < 0 ? [] : [`known[at + ${which[e]}] * now[${n + at[rows[e] * n + other]}]`]);
+    const term = (e, other) => (at[rows[e] * n + other] < 0 ? [] : [`a${which[e]} * now[${n + at[rows[e] * n + other]}]`]);
     const moved = rows.flatMap((_, e) => [...(columns[e] === i ? term(e, j) : []), ...(columns[e] === j ? term(e, i) : [])]);
     const less = moved.length ? ` - (${moved.join(" + ")})` : "";
     const more = learnt[k].length ? ` + information * (${learnt[k].join(" + ")})` : "";
     return `out[${n + k}] = pull[${k}] - forgetting * now[${n + k}]${less}${more};`;
   });
-  return inParts("moveP", "now, known, at, told, information, forgetting, pull, out", statements);
+  const first = [...new Set(which)].map((k) => `const a${k} = known[at + ${k}];`).join("\n");
+  return inParts("moveP", "now, known, at, told, information, forgetting, pull, out", statements, { first });
 }
 
 /**
- * Cholesky's method; NaN where P is not positive definite.  States with the fewest neighbours go first, so that little is
+ * Cholesky's method; not finite where P is not positive definite.  States with the fewest neighbours go first, so that little is
  * filled in.
  */
 function solveText({ at }, n) {
@@ -92,7 +116,7 @@ function solveText({ at }, n) {
     const products = before(p).map((q) => ` - ${L(p, q)} * y[${q}]`).join("");
     return [
       ...before(p).map((q) => `${L(p, q)} = (${cell(q)}) * D[${q}];`),
-      `D[${p}] = 1 / Math.sqrt(positive(${cell(p)}));`,
+      `D[${p}] = 1 / Math.sqrt(${cell(p)});`,
       `y[${p}] = (x[${state}]${products}) * D[${p}];`,
     ];
   });
@@ -100,9 +124,8 @@ function solveText({ at }, n) {
     const products = order.flatMap((_, q) => (q > p && has[q * n + p] ? [` - ${L(q, p)} * y[${q}]`] : [])).join("");
     return `x[${state}] = y[${p}] = (y[${p}]${products}) * D[${p}];`;
   });
-  const room = `const [L, D, y] = [${(n * (n + 1)) / 2}, ${n}, ${n}].map((size) => new Float64Array(size));
-function positive(value) { return value > 0 ? value : NaN; }`;
-  return inParts("solveP", "now, x", [...forwards, ...backwards.reverse()], room);
+  const room = `const [L, D, y] = [${(n * (n + 1)) / 2}, ${n}, ${n}].map((size) => new Float64Array(size));`;
+  return inParts("solveP", "now, x", [...forwards, ...backwards.reverse()], { before: room });
 }
 
 /** 1 where Cholesky's factor has an entry, row by row; `has` says where the matrix has one. */

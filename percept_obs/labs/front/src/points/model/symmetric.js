@@ -4,11 +4,11 @@ const PRECISION = 1e-13;
 const SWEEPS = 30;
 
 /**
- * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix
- * tridiagonal, and halving an interval finds them by counting.
+ * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix, which is
+ * used up, tridiagonal, and halving an interval finds them by counting.
  */
 export function spectrum(matrix, n, share) {
-  const { diagonal, beside } = tridiagonal(new Float64Array(matrix), n);
+  const { diagonal, beside } = tridiagonal(matrix, n);
   let [low, high] = [Infinity, -Infinity];
   for (let i = 0; i < n; i++) {
     const reach = Math.abs(beside[i - 1] ?? 0) + Math.abs(beside[i] ?? 0);
@@ -46,7 +46,8 @@ function tridiagonal(a, n) {
     w.fill(0, k + 1);
     // Of each pair of entries that are the same only the lower one is kept.
     for (let i = k + 1; i < n; i++) {
-      const [row, part] = [i * n, v[i]];
+      const row = i * n;
+      const part = v[i];
       let sum = a[row + i] * part;
       for (let j = k + 1; j < i; j++) {
         sum += a[row + j] * v[j];
@@ -57,7 +58,9 @@ function tridiagonal(a, n) {
     for (let i = k + 1; i < n; i++) product += v[i] * w[i];
     for (let i = k + 1; i < n; i++) w[i] = 2 * (w[i] - product * v[i]);
     for (let i = k + 1; i < n; i++) {
-      const [row, one, other] = [i * n, v[i], w[i]];
+      const row = i * n;
+      const one = v[i];
+      const other = w[i];
       for (let j = k + 1; j <= i; j++) a[row + j] -= one * w[j] + other * v[j];
     }
     a[(k + 1) * n + k] = end;

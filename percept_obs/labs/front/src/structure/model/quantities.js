@@ -20,10 +20,13 @@ export function quantityOf(result, rows, name) {
 export function rangeOf(result, rows) {
   return derived(rows, "range", () => {
     const [ybar3, theta] = [2, result.choice ? 3 : 2].map((c) => columnOf(rows, result.width, c));
-    return scales(result, rows).map((scale, k) => {
-      const inverse = scale * ybar3[k];
-      return inverse > 0 && !Number.isNaN(theta[k]) ? 1 / inverse : NaN;
-    });
+    const scale = scales(result, rows);
+    const range = new Float64Array(scale.length);
+    for (let k = 0; k < range.length; k++) {
+      const inverse = scale[k] * ybar3[k];
+      range[k] = inverse > 0 && !Number.isNaN(theta[k]) ? 1 / inverse : NaN;
+    }
+    return range;
   });
 }
 
