@@ -223,6 +223,7 @@ def settling_times(form, recording):
     return {name: run.settling_time(0.05, recording.view.inverse_distance.name) for name, run in runs.items()}
 
 
+@pytest.mark.slow
 def test_on_a_line_of_the_image_the_output_that_moves_is_enough_for_all():
     """A point that moves on a plane through the camera (Ma 2005, Fig. 2), with y2 constant."""
     recording = record(scenarios.planar())
@@ -256,6 +257,7 @@ def test_with_the_slope_alone_only_filters_follow_eq35():
         assert np.isinf(run.settling_time(0.05, "y3"))
 
 
+@pytest.mark.slow
 def test_with_the_slope_alone_all_but_the_cascade_follow_eq36():
     found = settling_times(SLOPE, record(scenarios.ma2005_eq36(chained()), 40))
     assert found["extended_kalman"] < 1

@@ -17,6 +17,7 @@ def test_the_calls_work_before_they_are_spoilt():
         function(*arguments.get("*", []), **{key: value for key, value in arguments.items() if key != "*"})
 
 
+@pytest.mark.slow
 def test_no_text_runs_as_code():
     ends = [
         bad_calls.outcome(function, arguments, key, text)

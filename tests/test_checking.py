@@ -70,6 +70,7 @@ def shares(count, slips, among):
     return told, seconds
 
 
+@pytest.mark.slow
 def test_a_slip_is_refused_and_found():
     told, _ = shares(12, 1, few_cases())
     assert told["refused"] == told["line"] == 1

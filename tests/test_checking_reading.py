@@ -298,6 +298,7 @@ def test_what_is_the_same_is_told_from_what_is_not(one, other, verdict):
     assert same(explicit(one), explicit(other)) is verdict
 
 
+@pytest.mark.slow
 def test_system_texts_are_bounded_in_time():
     start = time.process_time()
     for huge in ("*".join(f"(y1 + {k} y2)^9" for k in range(60)), "(y1 + y2)^20 (y2 + y3)^20 " * 200):

@@ -184,6 +184,7 @@ def test_check_refuses_what_is_not_there_and_exits_with_2(capsys, arguments, mes
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_module_runs_as_a_program():
     run = [sys.executable, "-m", "percept_obs.cli"]
     asked = subprocess.run([*run, "--help"], capture_output=True, text=True, check=False)

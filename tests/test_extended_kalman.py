@@ -14,6 +14,7 @@ from percept_obs.system.forms import partition
 EQ35 = scenarios.ma2005_eq35()
 
 
+@pytest.mark.slow
 def test_on_a_linear_system_it_is_the_kalman_filter():
     """Against pykalman, given the exact discretisation of the same continuous system."""
     x, v = sp.symbols("x v", real=True)

@@ -29,6 +29,7 @@ SMALL = {"size": 9, "period": 0.2}
 RIGHT = np.radians(90)
 
 
+@pytest.mark.slow
 def test_with_noise_of_equal_angle_every_surface_tells_the_same():
     first, *others = (field_bound(surface, TURNING, AngleNoise(), RIGHT, **SMALL) for surface in SURFACES)
     for other in others:

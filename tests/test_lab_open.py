@@ -241,6 +241,7 @@ def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(
             lab.settings = {**settings, "motion": "b1 = t"}
 
 
+@pytest.mark.slow
 def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
     def rounded(form):
         whole = cubic(form)

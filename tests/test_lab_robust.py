@@ -106,6 +106,17 @@ def test_each_picture_says_in_words_what_it_shows(fresh):
         assert all(part in label for part in parts), label
 
 
+def test_causes_are_told_of_settings_whose_functions_are_not_there_yet(fresh):
+    fresh.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        lab.change({ outputs: ["y2"], observers: ["spica"], surface: "chained" }, true);
+        document.querySelector(".causes").closest("details").open = false;
+        document.querySelector(".causes").closest("details").open = true;
+    }""")
+    rested(fresh)
+    fresh.wait_for_selector(".causes li:has-text('with y1 and y2 measured')")
+
+
 def test_lines_are_told_apart_without_colour(fresh):
     for name in ALL[1:]:
         fresh.check(control(f"observer {name}"))

@@ -38,6 +38,7 @@ def test_settings_survive_json_and_come_back_complete(lab):
     assert lab.settings == there
 
 
+@pytest.mark.slow
 def test_the_model_is_complete_and_is_json(lab):
     model = whole_model(lab)
     assert set(model["surfaces"]) == set(SURFACES)

@@ -48,6 +48,7 @@ def test_a_single_sample_is_told(node):
         assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]
 
 
+@pytest.mark.slow
 def test_of_structure(node):
     lab = structure_lab()
     tasks = [
@@ -64,6 +65,7 @@ def test_of_structure(node):
         assert_same_determinant(settings, answer)
 
 
+@pytest.mark.slow
 def test_of_points(node):
     lab = points_lab()
     short = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}

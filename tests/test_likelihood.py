@@ -46,6 +46,7 @@ def test_claims_hold_and_errors_are_hardly_larger_than_those_of_tuning_by_error(
     assert abs(np.log(by_error.nis)) > np.log(2)  # what the median error does to honesty
 
 
+@pytest.mark.slow
 def test_what_makes_no_sense_is_refused():
     run = follow(RECORDINGS[0], ekf(BOTH))
     for ask, message in (

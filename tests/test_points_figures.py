@@ -71,6 +71,7 @@ def test_depth_errors_have_medians_and_count_what_is_behind_the_camera():
     assert "lost: 3 sightings, median inf%, 2 of them behind the camera." in figure.text
 
 
+@pytest.mark.slow
 def test_figures_draw_on_the_axes_they_are_given(recording, run):
     draws = (
         lambda ax: figures.image_plane(recording, ax=ax),

@@ -47,6 +47,7 @@ def test_the_decay_rates(points):
     assert rates[1 / 3] < rates[1] > rates[10]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 2])
 def test_the_bound_on_the_decay_lies_below_it_and_has_a_best_gain_too(points):
     whole = recording(points, 12.0, 0.05)
@@ -134,6 +135,7 @@ def test_where_14_holds_the_pair_is_uniformly_observable(points):
     assert (pair.smallest >= found.smallest / (1 + largest) - 1e-9).all()
 
 
+@pytest.mark.slow
 def test_a_window_without_images_shows_nothing():
     whole = recording(1).without(10, 20)
     found = gramian(whole, 8)

@@ -50,6 +50,7 @@ def gains(widest, count):
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_the_bound_is_smaller_for_a_camera_that_looks_where_it_goes():
     """Of 100 starts within 30 degrees the median is about 2; steering by the instant may lose in single ones."""
     found = gains(30, sampled(11, 100))

@@ -142,6 +142,7 @@ def test_three_hundred_choices_that_the_paper_does_not_state():
     assert sum(corollary_of(choice) is None for choice in POSSIBLE if len(choice.unknown) == 3) > 150
 
 
+@pytest.mark.slow
 def test_a_choice_is_refused_exactly_where_the_unknowns_cannot_be_told_apart():
     """The rank of the rate's derivative with respect to the unknown quantities, at a point drawn at random."""
     draw = np.random.default_rng(1)
@@ -214,6 +215,7 @@ def test_the_determinant_vanishes_exactly_where_the_condition_fails(choice, draw
     assert choice.determinant.subs({**at, ybar3: 0}) == 0
 
 
+@pytest.mark.slow
 @given(choices, draws)
 def test_quantities_and_theta_are_each_others_inverse(choice, drawn):
     at = values_of(choice, drawn)

@@ -164,6 +164,7 @@ def test_an_observer_for_any_plane_follows_on_one():
     assert track(recording, ibo(system.measure("y1", "y2"))).settling_time() < 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["python", "numba"])
 def test_a_run_that_diverges_says_when_and_why(language):
     blown = track(RECORDING, smo(BOTH, switching_gain=1e150, bound=1e160), ZERO, language=language)

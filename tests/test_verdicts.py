@@ -119,6 +119,7 @@ def test_runs_that_are_cut_at_their_first_sample_inside_are_late_in_every_table(
     assert compare([cut], [ibo(BOTH)], ZERO)["outcome"].tolist() == ["late"]
 
 
+@pytest.mark.slow
 def test_points_are_judged_where_they_are_and_structure_by_all_that_is_sought():
     points = record(moving_body(2), 10, Camera(0.05), seed=1)
     run = track(points, luenberger(points.view, riccati(1.0, 0.3)), FirstSight(1.5))

@@ -23,14 +23,17 @@ export class WhatIf {
     const { settings, model } = lab;
     if (!this.body.open || this.told === settings) return;
     this.told = settings;
+    const outdated = () => lab.closed || lab.settings !== settings || this.told !== settings;
     const engine = lab.makeEngine();
+    await lab.kernels.prepare(settings);
+    if (outdated()) return;
     const now = engine.run(settings, lab.kernels.of(settings)).runs;
     const lines = [];
     for (const cause of lab.parts.causesOf(settings, model)) {
       const refused = Object.keys(lab.kernels.refused(cause.settings));
       if (cause.settings.observers.some((name) => refused.includes(name))) continue;
       await lab.kernels.prepare(cause.settings);
-      if (this.told !== lab.settings || lab.closed) return;
+      if (outdated()) return;
       const shown = engine.run(cause.settings, lab.kernels.of(cause.settings));
       const many = shown.runs.length > 1;
       for (const run of shown.runs) {
