@@ -592,7 +592,7 @@ def test_in_jupyter_a_figure_is_a_picture_with_alternative_text(runs):
     (alternative,) = re.findall(r'<img alt="([^"]*)"', shown)
     assert "|w| &lt; 0.1" in alternative
     assert html.unescape(alternative) == figure.text
-    assert "is within 10 % only since 79 s" in alternative
+    assert "was outside 10 % until 79 s" in alternative
     assert "max-width: 100%" in shown
     assert "data:image/png;base64,iVBOR" in shown
     assert figure.text in repr(figure)

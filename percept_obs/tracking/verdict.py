@@ -37,8 +37,8 @@ VERDICTS = MappingProxyType(
         "behind": "not converged: the estimate ends infinitely far away or behind the camera",
         "outside": "not converged: the {error_of} of {judged} ends at {error}, outside {tolerance}",
         "late": (
-            "not converged yet: the {error_of} of {judged} is within {tolerance} only since {time} s, too short before "
-            "the end to be sure of"
+            "not converged yet: the {error_of} of {judged} was outside {tolerance} until {time} s, too near the end to "
+            "be sure of the rest"
         ),
         "converged": "converged: the {error_of} of {judged} stays within {tolerance} after {time} s",
         "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",

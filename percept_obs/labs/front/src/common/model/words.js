@@ -49,7 +49,7 @@ export function verdictInShort({ divergedAt, settling, error }, { time, toleranc
   if (!error) return "no truth to compare with";
   if (settling < Infinity) {
     const sure = settled(settling, time.at(-1) - time[0], settledPart);
-    return sure ? `converged after ${short(settling)} s` : `within ${percent(tolerance, 6)} only since ${short(settling)} s`;
+    return sure ? `converged after ${short(settling)} s` : `outside ${percent(tolerance, 6)} until ${short(settling)} s`;
   }
   const last = error.at(-1);
   if (Number.isNaN(last)) return "ends without an estimate";

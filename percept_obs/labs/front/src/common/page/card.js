@@ -5,6 +5,7 @@ import { button, element } from "./controls.js";
 import { put } from "./put.js";
 
 const CHIP = { class: "chip", "aria-expanded": "false" };
+const BEFORE = "The pictures show the run before. The button makes the change, and shows what happens.";
 
 export class Card {
   constructor(lab, presets, sketch) {
@@ -72,7 +73,7 @@ export class Card {
     const moved = of && !same(of, lab.settings);
     put(line("since"), moved ? "You have moved something since: this is about the settings before." : "");
     body.classList.toggle("moved", Boolean(moved));
-    put(line("changes"), before && !moved && !same(before, lab.settings) ? changesInWords(before, lab.settings, lab.parts.names) : "");
+    put(line("changes"), act < 0 ? BEFORE : before && !moved && !same(before, lab.settings) ? changesInWords(before, lab.settings, lab.parts.names) : "");
     put(line("close"), before && !same(before, lab.settings) ? "Back to my settings" : "Close");
     body.querySelectorAll(".act").forEach((node, k) => {
       node.hidden = k > act + 1;

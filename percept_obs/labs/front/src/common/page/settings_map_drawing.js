@@ -199,7 +199,7 @@ function drawKey(pen, { left, top, width, height }, what, { duration, tolerance 
     if ((k + 1) % every === 0 || every === 1) word(readable(what === "settling" ? edge : 100 * edge, 2), x + 21, top + (k + 1) * each);
   });
   const rows = [
-    [FOLLOWED, what === "settling" ? "does not" : "no error"],
+    [FOLLOWED, what === "settling" ? "never" : "no error"],
     [DIVERGED, "diverges"],
     [IMPOSSIBLE, "no run"],
   ];
@@ -218,7 +218,7 @@ function drawKey(pen, { left, top, width, height }, what, { duration, tolerance 
   pen.lineWidth = 1.5;
   stroke(pen, [x, y + 6], [x + 16, y + 6]);
   pen.lineWidth = 1;
-  word(`off ${readable(100 * tolerance, 2)} %`, x + 21, y + 6);
+  word(`${readable(100 * tolerance, 2)} % error`, x + 21, y + 6);
 }
 
 /** The present settings as a cross, and the cell under the cursor as a frame. */

@@ -68,7 +68,7 @@ function noiseInWords({ shares }) {
   const added = shares && lateNoise(shares);
   if (!(added > 0)) return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
   return (
-    `Noise adds ${percent(added, 2)} to the error in the second half (filled in its chart). Without noise the error would follow the thin ` +
+    `Noise adds ${percent(added, 2)} to the error after ${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s (filled in its chart). Without noise the error would follow the thin ` +
     "dashed line. More gain lets that line fall faster, and lifts what noise adds."
   );
 }
