@@ -23,7 +23,7 @@ from percept_obs.exercises import COPIES
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
-from percept_obs.site.extension import mathml
+from percept_obs.site.extension import _let_keys_scroll, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.notebooks import drawing
 from percept_obs.site.pages import ledger_addresses, reference
@@ -186,6 +186,13 @@ def test_a_drawing_brings_no_rules_into_the_page():
 def test_a_text_in_the_settings_cannot_end_the_script():
     state = {"kind": "desk_lab", "model": {}, "settings": {"student": "</script><script>alert(1)"}, "texts": b""}
     assert "</script><script>" not in place_of(state)
+
+
+@pytest.mark.parametrize("wide", ["<pre", '<table border="1" class="dataframe"'])
+def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
+    context = {"body": f"{wide}>"}
+    _let_keys_scroll(None, "", "", context, None)
+    assert context["body"] == f'{wide} tabindex="0">'
 
 
 def test_a_formula_is_written_for_the_browser():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 
@@ -50,6 +51,7 @@ def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: 
 
 
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Let code that is wider than the page be scrolled by keys as well."""
+    """Let code and tables that are wider than the page be scrolled by keys as well."""
     if "body" in context:
-        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
+        wide = r'<(pre|table border="1" class="dataframe")>'
+        context["body"] = re.sub(wide, r'<\1 tabindex="0">', context["body"])

@@ -19,7 +19,7 @@ export class Handle {
     this.grip = null;
     this.keyed = false;
     this.scale = 1;
-    this.node = element("div", { class: `handle ${className}`, tabindex: 0, role: "slider", "aria-label": label });
+    this.node = element("div", { class: `handle ${className}`, tabindex: 0, role: "slider", "aria-label": label, "aria-valuenow": 0 });
     this.node.dataset.control = name;
     this.node.append(text);
     this.listen();
