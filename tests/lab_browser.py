@@ -124,6 +124,14 @@ def state(page, which=0):
     return page.evaluate(STATE, which)
 
 
+def assert_fits(page, width):
+    """In a cell of so many pixels nothing of the lab is cut."""
+    page.evaluate(WIDTH, f"{width}px")
+    page.wait_for_timeout(200)
+    assert page.evaluate(OUTSIDE) == []
+    page.evaluate(WIDTH, "")
+
+
 def assert_has(lab, settings):
     """The lab in Python has these settings."""
     assert json.loads(json.dumps(lab.settings)) == settings

@@ -4,10 +4,9 @@ import pytest
 from lab_alone import DRAWN, answered, opened
 from lab_browser import (
     EVENTS,
-    OUTSIDE,
     UNFOLD,
-    WIDTH,
     assert_equals_python,
+    assert_fits,
     assert_has,
     control,
     moved_by_keyboard,
@@ -129,10 +128,7 @@ def test_lines_are_told_apart_without_colour(fresh):
 
 @pytest.mark.parametrize("width", [400, 640, 1000])
 def test_the_lab_fits_its_cell(fresh, width):
-    fresh.evaluate(WIDTH, f"{width}px")
-    fresh.wait_for_timeout(200)
-    assert fresh.evaluate(OUTSIDE) == []
-    fresh.evaluate(WIDTH, "")
+    assert_fits(fresh, width)
 
 
 def test_a_kernel_text_that_fails_to_load_is_told(fresh):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lab_alone import answered
 from lab_browser import (
-    OUTSIDE,
-    WIDTH,
+    assert_fits,
     assert_has,
     control,
     drag_by_keys,
@@ -210,10 +209,7 @@ def test_axe_finds_nothing_serious(fresh):
 
 @pytest.mark.parametrize("width", [400, 800])
 def test_the_lab_fits_its_cell(fresh, width):
-    fresh.evaluate(WIDTH, f"{width}px")
-    fresh.wait_for_timeout(200)
-    assert fresh.evaluate(OUTSIDE) == []
-    fresh.evaluate(WIDTH, "")
+    assert_fits(fresh, width)
 
 
 def test_each_picture_says_in_words_what_it_shows(fresh):

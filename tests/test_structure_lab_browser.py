@@ -3,9 +3,8 @@
 import pytest
 from lab_alone import DRAWN, answered, opened
 from lab_browser import (
-    OUTSIDE,
     UNFOLD,
-    WIDTH,
+    assert_fits,
     assert_has,
     control,
     drag_by_keys,
@@ -214,10 +213,7 @@ def test_axe_finds_nothing_serious(fresh):
 
 @pytest.mark.parametrize("width", [400, 800])
 def test_the_lab_fits_its_cell(fresh, width):
-    fresh.evaluate(WIDTH, f"{width}px")
-    fresh.wait_for_timeout(200)
-    assert fresh.evaluate(OUTSIDE) == []
-    fresh.evaluate(WIDTH, "")
+    assert_fits(fresh, width)
 
 
 def test_dark_and_light_have_their_own_colours(fresh):

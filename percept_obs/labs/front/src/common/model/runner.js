@@ -93,6 +93,21 @@ export function startState({ columns, known: table, own }, kernel, functions, ga
   return functions.start(inputs, new Float64Array(kernel.states));
 }
 
+/** A function that fills in what the estimate at a sample follows from: outputs, what is known, gains, the state. */
+export function argumentsAt({ index, last, known: table }, kernel, states, gains, x) {
+  const before = last.length + table.width + gains.length;
+  x.set(table.rows.subarray(0, table.width), last.length);
+  x.set(gains, last.length + table.width);
+  return (k) => {
+    const at = index[k] * kernel.states;
+    for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
+    for (let m = 0; m < last.length; m++) x[m] = last[m][k];
+    if (!table.varying) return;
+    const row = EACH * index[k] * table.width;
+    for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
+  };
+}
+
 /** Fill in the estimates at the samples; none of the hidden coordinates in a gap, which `lacking` numbers from 1 on. */
 function readEstimates(functions, kernel, states, inputs, gains, { width, time, measured, hidden }, estimate, lacking) {
   const { index, last, columns, known: table } = inputs;
@@ -101,16 +116,9 @@ function readEstimates(functions, kernel, states, inputs, gains, { width, time, 
   const x = new Float64Array(after + 1 + last.length);
   const out = new Float64Array(width);
   const which = new Float64Array(1);
-  x.set(table.rows.subarray(0, table.width), last.length);
-  x.set(gains, last.length + table.width);
+  const fill = argumentsAt(inputs, kernel, states, gains, x);
   for (let k = 0; k < index.length; k++) {
-    const at = index[k] * kernel.states;
-    for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
-    for (let m = 0; m < last.length; m++) x[m] = last[m][k];
-    if (table.varying) {
-      const row = EACH * index[k] * table.width;
-      for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
-    }
+    fill(k);
     functions.estimate(x, out);
     for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
     if (!functions.gap) continue;

@@ -1,8 +1,7 @@
 // The engine of a map's cells: the same runs, of which nothing is kept but when they settle and how they end.
 
 import { errorOfOne, settlingFrom } from "../../common/model/errors.js";
-import { startState } from "../../common/model/runner.js";
-import { EACH } from "../../common/model/tables.js";
+import { argumentsAt, startState } from "../../common/model/runner.js";
 import { Engine } from "./engine.js";
 
 const NOWHERE = { foe: null, foeTowards: null, circle: null };
@@ -34,26 +33,18 @@ export class CellEngine extends Engine {
   follow(name, chosen, result, inputs, kernel, functions, asked) {
     if (functions.gap || !result.truth) return super.follow(name, chosen, result, inputs, kernel, functions, asked);
     const { width, time, truth, tolerance } = result;
-    const { grid, index, steps, last, held, arriving, known: table } = inputs;
+    const { grid, steps, last, held, arriving, known: table } = inputs;
     const gains = Float64Array.from(kernel.gains, (gain) => chosen[gain]);
     const states = this.room(`states of ${name}`, grid.length * kernel.states);
     const resets = this.room("resets", grid.length);
     const start = startState(inputs, kernel, functions, gains, asked);
     const diverged = functions.run(start, steps, held, table.rows, arriving, gains, table.varying, states, resets);
     if (diverged >= 0) return { divergedAt: grid[diverged], settling: Infinity, error: [NaN] };
-    const before = last.length + table.width + gains.length;
-    const x = this.room("x", before + kernel.states);
+    const x = this.room("x", last.length + table.width + gains.length + kernel.states);
     const out = this.room("out", width);
-    x.set(table.rows.subarray(0, table.width), last.length);
-    x.set(gains, last.length + table.width);
+    const fill = argumentsAt(inputs, kernel, states, gains, x);
     const errorAt = (k) => {
-      const at = index[k] * kernel.states;
-      for (let s = 0; s < kernel.states; s++) x[before + s] = states[at + s];
-      for (let m = 0; m < last.length; m++) x[m] = last[m][k];
-      if (table.varying) {
-        const row = EACH * index[k] * table.width;
-        for (let p = 0; p < table.width; p++) x[last.length + p] = table.rows[row + p];
-      }
+      fill(k);
       functions.estimate(x, out);
       return errorOfOne(truth[(k + 1) * width - 1], out[width - 1], out, 0, width);
     };

@@ -1,4 +1,4 @@
-// The map of the bound under the track: the redder a place of the image, the less can be known there of the distance.
+// The map of the bound under the track: the stronger the shade of a place in the image, the less can be known there of the distance.
 
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
