@@ -73,7 +73,7 @@ export class Card {
     const moved = of && !same(of, lab.settings);
     put(line("since"), moved ? "You have moved something since: this is about the settings before." : "");
     body.classList.toggle("moved", Boolean(moved));
-    put(line("changes"), act < 0 ? BEFORE : before && !moved && !same(before, lab.settings) ? changesInWords(before, lab.settings, lab.parts.names) : "");
+    put(line("changes"), act < 0 && !moved ? BEFORE : before && !moved && !same(before, lab.settings) ? changesInWords(before, lab.settings, lab.parts.names) : "");
     put(line("close"), before && !same(before, lab.settings) ? "Back to my settings" : "Close");
     body.querySelectorAll(".act").forEach((node, k) => {
       node.hidden = k > act + 1;

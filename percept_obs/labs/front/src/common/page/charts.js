@@ -192,16 +192,21 @@ function tracePath(pen, place, time, values) {
   flush();
 }
 
-/** A band between two values at each time. */
+/** A band between two values at each time, with gaps where there are none. */
 function fillBand(pen, place, { time, low, high, colour }) {
   const every = Math.max(1, Math.floor(time.length / (place.width * 2)));
   pen.beginPath();
-  const along = (k, bound) => {
-    const value = bound[k];
-    if (Number.isFinite(value)) pen.lineTo(place.x(time[k]), place.y(value));
+  let stretch = [];
+  const close = () => {
+    stretch.forEach((k, at) => (at ? pen.lineTo(place.x(time[k]), place.y(high[k])) : pen.moveTo(place.x(time[k]), place.y(high[k]))));
+    stretch.reverse().forEach((k) => pen.lineTo(place.x(time[k]), place.y(low[k])));
+    stretch = [];
   };
-  for (let k = 0; k < time.length; k += every) along(k, high);
-  for (let k = time.length - 1 - ((time.length - 1) % every); k >= 0; k -= every) along(k, low);
+  for (let k = 0; k < time.length; k += every) {
+    if (Number.isFinite(low[k]) && Number.isFinite(high[k])) stretch.push(k);
+    else close();
+  }
+  close();
   pen.globalAlpha = 0.16;
   pen.fillStyle = colour;
   pen.fill();
