@@ -140,6 +140,12 @@ def test_a_kernel_text_that_fails_to_load_is_told(fresh):
         lab.change({ outputs: ["y2"], observers: ["sliding_mode"] }, true);
     }""")
     fresh.wait_for_selector(".problem:not([hidden])")
+    # Pictures of the settings before may still come, and say nothing of these.
+    fresh.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        Object.assign(lab, { stale: true, spoken: -Infinity });
+        lab.paint();
+    }""")
     assert "could not be loaded" in fresh.inner_text(".problem:not([hidden])")
     fresh.click(control("reset"))
     rested(fresh)

@@ -229,6 +229,30 @@ def test_each_picture_says_in_words_what_it_shows(fresh):
         assert all(part in label for part in parts), label
 
 
+def test_a_handle_is_pressed_whose_point_goes_with_the_next_picture(fresh):
+    last = len(state(fresh)["settings"]["points"])
+    fresh.evaluate(
+        """async (last) => {
+            const [lab] = window.perceptObsLabs;
+            const handle = (k) => document.querySelector(`[data-control="point ${k}"]`);
+            lab.paint = () => {};  // the picture is late
+            handle(1).focus();
+            handle(1).dispatchEvent(new KeyboardEvent("keydown", { key: "Delete", bubbles: true }));
+            while (lab.latest.shown.settings !== lab.settings) {
+                await new Promise((resolve) => setTimeout(resolve, 10));
+                lab.compute();
+            }
+            delete lab.paint;
+            lab.pending = true;
+            handle(last).dispatchEvent(new PointerEvent("pointerdown", { pointerId: 3, bubbles: true }));
+            handle(last).dispatchEvent(new PointerEvent("pointerup", { pointerId: 3, bubbles: true }));
+        }""",
+        last,
+    )
+    rested(fresh)
+    assert len(state(fresh)["settings"]["points"]) == last - 1
+
+
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):
     opening, wanted = state(fresh), usable(fresh)
     assert wanted - used_at_random(fresh, 1, wanted, most=MOST_SAMPLES) == set()

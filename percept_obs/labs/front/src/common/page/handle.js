@@ -31,6 +31,8 @@ export class Handle {
       if (!this.at || event.button > 0) return;
       event.preventDefault();
       node.focus({ preventScroll: true });
+      // What had the focus comes to rest and is drawn, and this handle may be gone with it.
+      if (!this.at) return;
       try {
         node.setPointerCapture(event.pointerId);
       } catch {

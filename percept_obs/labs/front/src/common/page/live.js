@@ -254,7 +254,8 @@ export class Live extends Showing {
   /** Bring words and controls to what is drawn. */
   speakNow() {
     this.spoken = performance.now();
-    this.view.problem("");
+    // What is drawn may be of settings before those that cannot be shown.
+    if (this.shown.settings === this.settings) this.view.problem("");
     this.panel.show();
     this.view.steps(this.state);
     this.view.preset();
