@@ -92,6 +92,26 @@ def browser(chromium):
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def lab(browser, python):
+    """A page with one lab that the tests of a module share; Python's lab, `python`, answers it."""
+    from lab_alone import answered
+
+    with answered(browser, python) as page:
+        yield page
+
+
+@pytest.fixture
+def fresh(lab):
+    """The shared lab in its opening state."""
+    from lab_browser import control, rested
+
+    lab.click(control("reset"))
+    rested(lab)
+    lab.locator(".handle").first.scroll_into_view_if_needed()
+    return lab
+
+
 def found_chromium():
     """The path of Chromium or Chrome, if there is one."""
     return next(filter(None, map(shutil.which, BROWSERS)), None) or playwright_chromium()

@@ -1,7 +1,6 @@
 """The observer lab does what it promises: it follows the hand, tells Python, and leads back."""
 
 import pytest
-from lab_alone import answered
 from lab_browser import (
     assert_equals_python,
     assert_has,
@@ -25,22 +24,6 @@ FOE = control("foe")
 def python():
     """The lab in Python."""
     return observer_lab()
-
-
-@pytest.fixture(scope="module")
-def lab(browser, python):
-    """A page with one lab that the tests of this module share."""
-    with answered(browser, python) as page:
-        yield page
-
-
-@pytest.fixture
-def fresh(lab):
-    """The shared lab in its opening state."""
-    lab.click(control("reset"))
-    rested(lab)
-    lab.locator(FOE).scroll_into_view_if_needed()
-    return lab
 
 
 @pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])

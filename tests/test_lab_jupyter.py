@@ -52,15 +52,6 @@ def lab(browser_page, folder):
     return browser_page
 
 
-@pytest.fixture
-def fresh(lab):
-    """The shared lab in its opening state."""
-    lab.click(control("reset"))
-    rested(lab)
-    lab.locator(FOE).scroll_into_view_if_needed()
-    return lab
-
-
 def test_the_hand_moves_the_picture_and_the_kernel_hears_of_it(fresh, folder):
     before = state(fresh)
     drag_by_mouse(fresh, FOE)

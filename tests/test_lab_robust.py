@@ -1,7 +1,7 @@
 """The observer lab survives any order of events, keeps its memory, and is open to keyboards and screen readers."""
 
 import pytest
-from lab_alone import DRAWN, answered, opened
+from lab_alone import DRAWN, opened
 from lab_browser import (
     EVENTS,
     UNFOLD,
@@ -31,20 +31,6 @@ COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, .
 def python():
     """The lab in Python."""
     return observer_lab()
-
-
-@pytest.fixture(scope="module")
-def lab(browser, python):
-    """A page with one lab that the tests of this module share."""
-    with answered(browser, python) as page:
-        yield page
-
-
-@pytest.fixture
-def fresh(lab):
-    lab.click(control("reset"))
-    rested(lab)
-    return lab
 
 
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):

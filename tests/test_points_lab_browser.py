@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from lab_alone import answered
 from lab_browser import (
     assert_fits,
     assert_has,
@@ -47,21 +46,6 @@ STATE = """(which) => {
 def python():
     """The lab in Python."""
     return points_lab(duration=8.0, window=4.0)
-
-
-@pytest.fixture(scope="module")
-def lab(browser, python):
-    """A page with one lab that the tests of this module share."""
-    with answered(browser, python) as page:
-        yield page
-
-
-@pytest.fixture
-def fresh(lab):
-    lab.locator(control("reset")).click()
-    rested(lab)
-    lab.locator(POINT).scroll_into_view_if_needed()
-    return lab
 
 
 def state(page, which=0):

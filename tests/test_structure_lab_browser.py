@@ -1,7 +1,7 @@
 """The lab of structure and motion does what it promises: ticking, dragging, telling, and surviving."""
 
 import pytest
-from lab_alone import DRAWN, answered, opened
+from lab_alone import DRAWN, opened
 from lab_browser import (
     UNFOLD,
     assert_fits,
@@ -33,22 +33,6 @@ COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, .
 def python():
     """The lab in Python."""
     return structure_lab()
-
-
-@pytest.fixture(scope="module")
-def lab(browser, python):
-    """A page with one lab that the tests of this module share."""
-    with answered(browser, python) as page:
-        yield page
-
-
-@pytest.fixture
-def fresh(lab):
-    """The shared lab in its opening state."""
-    lab.click(control("reset"))
-    rested(lab)
-    lab.locator(START).scroll_into_view_if_needed()
-    return lab
 
 
 def assert_is_python(shown):
