@@ -37,6 +37,14 @@ class Sighting:
     point : int
     first, last : int
         Samples.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> recording = record(moving_body(1), 6, Camera(1.0)).without(2, 3, 0)
+    >>> recording.sightings(absence=1.5)
+    (Sighting(point=0, first=0, last=1), Sighting(point=0, first=3, last=6))
     """
 
     point: int
@@ -83,6 +91,15 @@ class Recording:
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record, scenarios
+    >>> recording = record(scenarios.ma2005_eq35(), 2, Camera(0.5))
+    >>> recording.names, recording.time.tolist()
+    (('y1', 'y2'), [0.0, 0.5, 1.0, 1.5, 2.0])
+    >>> recording.outputs[-1].round(3).tolist()
+    [-0.083, 0.764]
     """
 
     time: Array

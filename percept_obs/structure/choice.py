@@ -62,7 +62,14 @@ class ScaledDynamics:
 
 @lru_cache(maxsize=1)
 def scaled_dynamics() -> ScaledDynamics:
-    """The dynamics of the scaled inverse depth, derived from a rigid motion seen by a pinhole."""
+    """The dynamics of the scaled inverse depth, derived from a rigid motion seen by a pinhole.
+
+    Examples
+    --------
+    >>> from percept_obs.structure import scaled_dynamics
+    >>> scaled_dynamics().rate[2]
+    d_s*v_c3*ybar3**2 - d_s*v_p3*ybar3**2 - w1*y2*ybar3 + w2*y1*ybar3
+    """
     system = PerspectiveSystem(rigid(), pinhole())
     inverse_depth = system.coordinates[-1]
     scale = sp.diag(1, 1, 1 / d_s)
@@ -103,6 +110,15 @@ class StructureAndMotion(OnePoint):
     Notes
     -----
     Chwa 2019, sections IV to VI: the corollaries are seven of these choices.
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion
+    >>> choice = StructureAndMotion(("d_s", "v_c1", "v_c2"), zero=("v_p1", "v_p2", "v_p3"))
+    >>> choice.determinant
+    v_c3*ybar3**4
+    >>> choice.condition
+    Ne(v_c3, 0) & Ne(ybar3, 0)
     """
 
     unknown: tuple[str, ...]

@@ -35,6 +35,16 @@ class LinearView(OnePoint):
     Parameters
     ----------
     choice : StructureAndMotion
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion
+    >>> from percept_obs.structure import LinearView
+    >>> view = LinearView(StructureAndMotion(("v_p1", "v_p2"), zero=("v_p3",)))
+    >>> view.form.w
+    Matrix([
+    [d_s,   0, 0],
+    [  0, d_s, 0]])
     """
 
     choice: StructureAndMotion
