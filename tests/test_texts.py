@@ -5,6 +5,8 @@ import importlib
 import inspect
 import json
 import re
+from functools import cached_property
+from types import FunctionType
 
 import pytest
 from jupyter_harness import NOTEBOOKS
@@ -87,12 +89,15 @@ EXAMPLES = {
 """Modules with examples, and how many lines of them."""
 
 
+MEMBER = FunctionType | property | cached_property | classmethod | staticmethod
+
+
 def test_every_public_name_has_an_example():
     """Its own, or of a member; an exception is told by what raises it, and the others are constants."""
     for module, values in public().items():
         for names, value in values:
-            whole = [value, *vars(value).values()] if inspect.isclass(value) else [value]
-            told = any(">>> " in (thing.__doc__ or "") for thing in whole if callable(thing) or type(thing) is property)
+            members = [v for v in vars(value).values() if isinstance(v, MEMBER)] if inspect.isclass(value) else []
+            told = any(">>> " in (thing.__doc__ or "") for thing in (value, *members))
             raised = inspect.isclass(value) and issubclass(value, Exception)
             assert told or raised or not callable(value), f"{module}.{names[0]} has no example"
 

@@ -34,17 +34,14 @@ class Sighting:
 
     Parameters
     ----------
-    point : int
-    first, last : int
-        Samples.
+    point, first, last : int
+        Its number, and its first and its last sample.
 
     Examples
     --------
-    >>> from percept_obs import Camera, record
-    >>> from percept_obs.points.scenarios import moving_body
-    >>> recording = record(moving_body(1), 6, Camera(1.0)).without(2, 3, 0)
-    >>> recording.sightings(absence=1.5)
-    (Sighting(point=0, first=0, last=1), Sighting(point=0, first=3, last=6))
+    >>> from percept_obs import Camera, record, scenarios
+    >>> record(scenarios.planar(), 6, Camera(1.0)).without(2, 3).sightings(absence=1.5)[0]
+    Sighting(point=0, first=0, last=1)
     """
 
     point: int
@@ -91,15 +88,6 @@ class Recording:
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, record, scenarios
-    >>> recording = record(scenarios.ma2005_eq35(), 2, Camera(0.5))
-    >>> recording.names, recording.time.tolist()
-    (('y1', 'y2'), [0.0, 0.5, 1.0, 1.5, 2.0])
-    >>> recording.outputs[-1].round(3).tolist()
-    [-0.083, 0.764]
     """
 
     time: Array
@@ -290,8 +278,7 @@ class Recording:
         ----------
         begin, end : float
             Seconds.
-        point : int
-            From 0 on.
+        point : int, from 0 on
 
         Raises
         ------

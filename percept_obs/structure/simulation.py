@@ -14,7 +14,8 @@ from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
+from percept_obs.structure.choice import StructureAndMotion
+from percept_obs.structure.dynamics import OUTPUTS
 from percept_obs.structure.linear import LinearView
 from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
