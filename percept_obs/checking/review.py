@@ -35,6 +35,16 @@ class Review:
     lines : tuple of Judged
     hints : int
         How many hints are open; see `hint`.
+
+    Examples
+    --------
+    >>> from percept_obs import check
+    >>> review = check("y1' = b1 y1", "y1' = b1 y1 + b2")
+    >>> review.right
+    False
+    >>> print(review.hint(1))
+    Not right yet; hint(2) says which term.
+    ✗ y1dot = b1 y1
     """
 
     target: Target

@@ -61,6 +61,14 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
         Times of all steps' ends, from ``times[0]`` to ``times[-1]``.
     index : array of shape (len(times),)
         Where the times stand in the grid.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from percept_obs.recording import step_grid
+    >>> grid, index = step_grid(np.array([0.0, 1.0]), longest=0.4)
+    >>> grid.round(2).tolist(), index.tolist()
+    ([0.0, 0.33, 0.67, 1.0], [0, 3])
     """
     intervals = np.diff(times)
     limit(float((intervals / longest).sum()), "steps", "take longer steps or a shorter time")

@@ -56,6 +56,16 @@ class Figure:
         The axes that were drawn on.
     text : str
         What a reader sees in it, in words and numbers.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 2), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> figure = figures.signals(run)
+    >>> len(figure.axes)
+    4
+    >>> figure.text.partition(".")[0]
+    'Outputs and estimates of the identifier-based observer over 0 to 2 s, with y1, y2 measured and y3 hidden'
     """
 
     figure: matplotlib.figure.Figure
@@ -92,7 +102,7 @@ class Figure:
 def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]]:
     """Make a Figure of what a function draws and says.
 
-    Its docstring ends with its own parameters; the common ones, what is returned and what is refused are added here.
+    After its own parameters the common ones, what is returned and what is refused are added to its docstring.
 
     Parameters
     ----------
@@ -115,8 +125,9 @@ def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]
         signature = inspect.signature(draw)
         vars(drawn)["__signature__"] = signature.replace(return_annotation="Figure")
         common = "".join(text for name, text in COMMON.items() if name in signature.parameters)
-        end = f"\n\nReturns\n-------\nFigure\n\nRaises\n------\nValueError\n    If {refuses}.\n"
-        drawn.__doc__ = f"{inspect.cleandoc(draw.__doc__ or '')}{common}{end}"
+        end = f"\n\nReturns\n-------\nFigure\n\nRaises\n------\nValueError\n    If {refuses}."
+        own, mark, example = inspect.cleandoc(draw.__doc__ or "").partition("\n\nExamples\n")
+        drawn.__doc__ = f"{own}{common}{end}{mark}{example}"
         return drawn
 
     return of

@@ -28,6 +28,15 @@ def chatter(
         From `percept_obs.studies.chatter.chatter`; the last coordinate, the inverse distance, is drawn.
     efforts : mapping of labels to Effort
         From `percept_obs.studies.chatter.effort`.  Curves with the same label look the same on both sides.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, smo
+    >>> from percept_obs.studies.chatter import chatter, effort
+    >>> scene, observer = scenarios.ma2005_eq35(), smo(PerspectiveSystem(affine(), pinhole()))
+    >>> errors = chatter(record(scene, 1), observer, [0.01, 0.005])
+    >>> len(figures.chatter({"smo": errors}, {"smo": effort(scene, observer, 0.2)}).axes)
+    2
     """
     if not errors or not efforts:
         raise ValueError(f"there are {len(errors)} tables and {len(efforts)} efforts; at least one of each is needed")

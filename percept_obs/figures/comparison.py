@@ -37,6 +37,15 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     ----------
     table : pandas.DataFrame
         From `percept_obs.studies.comparison.compare`.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
+    >>> from percept_obs.studies.comparison import compare
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [observer])
+    >>> print(figures.comparison(table).text.split(". ")[0])
+    Settling time and rms error of every observer, on logarithmic axes
     """
     if not len(table) or not {"observer", *PANELS} <= set(table.columns):
         raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")

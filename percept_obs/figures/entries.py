@@ -21,6 +21,15 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
         How many entries to draw.
     share : float
         By which share of the motion's size an entry is off: of all of A, or of all of b.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
+    >>> from percept_obs.studies.sensitivity import sensitivity
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> found = sensitivity(record(scenarios.ma2005_eq35(), 10), observer)
+    >>> print(figures.entries(found, most=1).text.split(". ")[1])
+    a32: 9.4 % in the median of the last half
     """
     given.one(found, Sensitivity, "studies.sensitivity.sensitivity()")
     if most < 1:

@@ -26,6 +26,15 @@ def fields(
     Parameters
     ----------
     found : FieldBound or sequence of FieldBound
+
+    Examples
+    --------
+    >>> from percept_obs import affine, figures, sphere
+    >>> from percept_obs.studies.fields import AngleNoise, field_bound
+    >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
+    >>> found = field_bound(sphere(), sideways, AngleNoise(), 2.0, size=5)
+    >>> print(figures.fields(found).text.split(". ")[1])
+    sphere, y1, y2 measured: 0.53 % in the middle of the picture, 0.75 % near its edge, 0.53 to 96 % in all.
     """
     found = given.several(found, FieldBound, "field_bound()")
     names = given.labels_for(labels, [each.surface.name for each in found])

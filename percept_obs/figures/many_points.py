@@ -32,6 +32,15 @@ def error_norm(
         Of the first run's observer, a multiple of the identity for P.
     fitted : two times
         Between which the exponential is fitted, in seconds.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, figures, luenberger, record, track
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> recording = record(moving_body(1), 4, Camera(0.1))
+    >>> run = track(recording, luenberger(recording.view), recording.truth[0] + 0.1)
+    >>> print(figures.error_norm(run).text.split(". ")[-1])
+    Luenberger, constant P: from 0.17 to 0.095 in 4 s, decaying at 0.111 per second.
     """
     runs = given.several(runs, PointsRun, "track()")
     names = given.labels_for(labels, [run.observer.name for run in runs])
@@ -71,6 +80,12 @@ def depth_errors(errors: Mapping[str, ArrayLike], after: float, ax: Axes | None 
         From `percept_obs.studies.comparison.relative_distance_errors`; infinite where an estimate is behind the camera.
     after : float
         Seconds since first sight, for the words.
+
+    Examples
+    --------
+    >>> from percept_obs import figures
+    >>> print(figures.depth_errors({"mine": [0.01, 0.03, 0.02]}, after=2).text.split(". ")[-1])
+    mine: 3 sightings, median 2.0%, at most 3.0%.
     """
     known = {name: np.asarray(values, dtype=float).ravel() for name, values in errors.items()}
     if not known or not all(len(values) and not np.isnan(values).any() for values in known.values()):

@@ -19,6 +19,14 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     ----------
     values : xarray.DataArray
         With two dimensions, such as ``ensemble(...).settling_time.isel(seed=0)``; the first one goes up.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from percept_obs import figures
+    >>> errors = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], {"gain": [5, 10], "noise": [0.0, 0.1]}, name="error")
+    >>> print(figures.settings_map(errors).text.split(". ")[-1])
+    Largest: 4 at noise 0.1 and gain 10.
     """
     values = values.squeeze()
     if values.ndim != 2:

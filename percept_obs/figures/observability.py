@@ -23,6 +23,13 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     Parameters
     ----------
     found : Observability
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, how_observable, pinhole, record, scenarios
+    >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
+    >>> len(figures.observability(found).axes)
+    4
     """
     given.one(found, Observability, "how_observable(recording, system)")
     begun, hidden = found.recording.time[0], found.form.hidden[-1]
@@ -93,6 +100,13 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     found : BoundMap
     threshold : float
         Positive; in m/s, as w is.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, bound_map, figures, pinhole
+    >>> forwards = PerspectiveSystem(affine([[0.0] * 3] * 3, [0, 0, -0.5]), pinhole())
+    >>> print(figures.bound_map(bound_map(forwards, resolution=11)).text.split(". ")[-1])
+    The circle |w| = 0.1 around it has the radius 0.2.
     """
     given.one(found, BoundMap, "bound_map(system)")
     if not threshold > 0:

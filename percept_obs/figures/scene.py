@@ -29,6 +29,12 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
     far : float
         Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
         Without the truth, the median of the estimated distances stands for it.
+
+    Examples
+    --------
+    >>> from percept_obs import figures, record, scenarios
+    >>> print(figures.scene(record(scenarios.ma2005_eq35(), 20)).text.split(". ")[-1])
+    The point ends at X, Y, Z = (3.78, 10.1, 7.04) m.
     """
     recording, run = given.recording_and_run(data)
     if recording.points is None and run is None:

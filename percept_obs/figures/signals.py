@@ -40,6 +40,13 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     run : Run
     tolerance : float
         Bound on the relative error, see `Run.outcome`.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.signals(run).text.split(". ")[1])
+    Converged: the relative error of the distance stays within 10 % after 1.91 s
     """
     given.one(run, Run, "track()")
     names = [symbol.name for symbol in run.view.coordinates]

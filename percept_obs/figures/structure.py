@@ -33,6 +33,16 @@ def quantities(
         Of one choice of what is unknown, at the same times and with a truth; on (y1, y2, ybar3) or its linear view.
     image : bool
         Whether the image coordinates y1, y2 and the inverse depth y3 = 1/Z have a row each as well, above the others.
+
+    Examples
+    --------
+    >>> from percept_obs import figures, ismo, record, track
+    >>> from percept_obs.structure import ScaledDepthCamera
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> recording = record(chwa2019_experiment("IV.A"), 1, ScaledDepthCamera(0.01))
+    >>> run = track(recording, ismo(recording.view.form), step=0.01)
+    >>> [ax.get_ylabel() for ax in figures.quantities(run).axes]
+    ['$d_{s}$ (1/m)', '$v_{c2}$ (m/s)', '$v_{c3}$ (m/s)']
     """
     runs = given.several(runs, Run, "track()")
     labels = given.labels_for(labels, [run.observer.name for run in runs])
@@ -73,6 +83,16 @@ def cases(
         The runs of each case, as `quantities` takes them; equally many runs and rows in each.
     image : bool
         As in `quantities`.
+
+    Examples
+    --------
+    >>> from percept_obs import figures, ismo, record, track
+    >>> from percept_obs.structure import ScaledDepthCamera
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> recording = record(chwa2019_experiment("IV.A"), 1, ScaledDepthCamera(0.01))
+    >>> run = track(recording, ismo(recording.view.form), step=0.01)
+    >>> len(figures.cases({"IV.A": run}).axes)
+    3
     """
     runs_of = {name: [runs] if isinstance(runs, Run) else list(runs) for name, runs in columns.items()}
     unknown = {name: len(_choice(runs[0]).unknown) for name, runs in runs_of.items() if runs}

@@ -20,6 +20,15 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : TrustOverTime
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> from percept_obs.studies.trust import trust_over_time
+    >>> recording = record(scenarios.ma2005_eq35(), 5, Camera(0.05))
+    >>> run = track(recording, ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
+    Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
     """
     given.one(found, TrustOverTime, "studies.trust.trust_over_time(run)")
     ax, run = canvas(ax, 3.2), found.run
@@ -61,6 +70,18 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Diagnosis
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> from percept_obs import Camera, Gaussian, Scenario, diagnose, figures, pinhole, record, rigid
+    >>> def motion(late=0):
+    ...     return rigid(lambda t: [0.3 * np.sin(2 * t - 2 * late), 0.3 * np.cos(t - late), 0], [1, 0, 0], [0, 0, 0])
+    >>> scene = Scenario("mine", motion(), (0.2, 0.1, 5), 4, pinhole())
+    >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
+    >>> print(figures.scan(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[1])
+    time offset. It looks as if the images are 0.099 s early against the motion
     """
     given.one(found, Diagnosis, "diagnose(recordings)")
     if not found.findings or len(found.findings[0].tried) < 2:

@@ -23,6 +23,15 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
         From `Poses.path`; one that is labelled "truth" is drawn solid, and the others are compared with it.
     axis : int
         0, 1 and 2 are x to the right, y down and z forward.
+
+    Examples
+    --------
+    >>> from percept_obs import Neighbours, Quadratic, figures, read_tum
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> poses = read_tum(worked_folder() / "poses.txt")
+    >>> paths = {"narrow": poses.path(Quadratic(0.1)), "neighbours": poses.path(Neighbours())}
+    >>> print(figures.velocities(paths).text.split(". ")[1])
+    narrow: from -0.226 to 0.226
     """
     if not paths or not all(isinstance(path, CameraPath) for path in paths.values()):
         raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path(derivative) makes one")

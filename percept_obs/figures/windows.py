@@ -24,6 +24,14 @@ def excitation(
     Parameters
     ----------
     excitations : Excitation or sequence of Excitation
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, windowed
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = windowed(form, record(scenarios.ma2005_eq35(), 20), 5)
+    >>> print(figures.excitation(found).text.split(". ")[-1])
+    5 s window: the least is 0.485, at 20 s, the largest 7.2.
     """
     found = given.several(excitations, Excitation, "windowed(form, recording)")
     if not all(np.isfinite(one.smallest).any() for one in found):
@@ -52,6 +60,15 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     Parameters
     ----------
     found : Gramian or sequence of Gramian
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, figures, record
+    >>> from percept_obs.observability.gramian import gramian
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> found = gramian(record(moving_body(1), 5, Camera(0.1)), 2)
+    >>> print(figures.gramian(found).text.split("; ")[1])
+    least is seen in the 2 s from 0 s on, mainly of r_z, r_y, r_x.
     """
     found = given.several(found, Gramian, "observability.gramian.gramian()")
     names = given.labels_for(labels, [f"{one.window:g} s window" for one in found])
@@ -74,6 +91,15 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Consistency
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, check_consistency, ekf, figures, pinhole
+    >>> from percept_obs import record, scenarios, track
+    >>> recording = record(scenarios.ma2005_eq35(), 20, Camera(0.02, Gaussian(0.01)))
+    >>> run = track(recording, ekf(PerspectiveSystem(affine(), pinhole()), noise_variance=1e-4))
+    >>> print(figures.consistency(check_consistency(run, after=5)).text.split(". ")[1])
+    Consistent: the innovations are as large as the filter claims
     """
     given.one(found, Consistency, "check_consistency(run)")
     ax = canvas(ax, 3.2)

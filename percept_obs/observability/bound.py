@@ -41,6 +41,14 @@ class Bound:
         The same had there been no sample but those that the start needs.
     information : array of shape (K, n, n)
         Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, cramer_rao, pinhole, record, scenarios
+    >>> recording = record(scenarios.ma2005_eq35(), 4, Camera(0.1, Gaussian(0.01)))
+    >>> found = cramer_rao(recording, PerspectiveSystem(affine(), pinhole()))
+    >>> found.of("y3")[[0, -1]].round(4).tolist()
+    [1.0, 0.0017]
     """
 
     form: PartitionedSystem

@@ -27,6 +27,15 @@ class Efficiency:
         Errors of N runs.
     bound : array of shape (K,)
         Least standard deviation.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from percept_obs import Efficiency
+    >>> time, bound = np.array([0.0, 1.0]), np.array([0.2, 0.1])
+    >>> found = Efficiency(time, np.array([[0.3, 0.1], [-0.3, 0.2]]), bound)
+    >>> found.ratio.round(2).tolist()
+    [1.5, 1.58]
     """
 
     time: Array

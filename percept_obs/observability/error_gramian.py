@@ -38,6 +38,16 @@ class ErrorGramian(OverWindows):
         In the order of the form's coordinates.
     window : float
         Length of the windows in seconds.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import error_gramian
+    >>> found = error_gramian(record(scenarios.planar(), 3), PerspectiveSystem(affine(), pinhole()), window=1)
+    >>> found.names, found.matrices.shape[1:]
+    (('y1', 'y2', 'y3'), (3, 3))
+    >>> print(f"{found.smallest.min():.1e}")
+    1.4e-01
     """
 
     form: PartitionedSystem
@@ -75,6 +85,15 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     ------
     ValueError
         If system and recording do not fit, there is no truth, or the window does not fit.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import error_gramian
+    >>> seen, system = record(scenarios.planar(), 3, Camera(0.1)), PerspectiveSystem(affine(), pinhole())
+    >>> both, one = (error_gramian(seen, form, 1).smallest.min() for form in (system, system.measure("y1")))
+    >>> print(f"{both:.1e} {one:.1e}")
+    1.4e-01 2.5e-05
     """
     form = fitting(system, recording)
     check_samples(recording, window)
@@ -114,6 +133,15 @@ def empirical_gramian(
     Notes
     -----
     Krener and Ide, Measures of unobservability, IEEE Conf. Decision and Control (2009).
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import empirical_gramian
+    >>> seen = record(scenarios.planar(), 2, Camera(0.1))
+    >>> found = empirical_gramian(seen, PerspectiveSystem(affine(), pinhole()), window=1)
+    >>> print(f"{found.smallest.min():.1e}")
+    1.5e-01
     """
     form = fitting(system, recording)
     check_samples(recording, window)

@@ -34,6 +34,13 @@ class Codistribution:
         Order by order, from 0 on; columns in the order of the form's coordinates.
     derivatives : tuple of tuples of symbols
         The first, second, ... time derivatives of the form's parameters, if the motion varies; none if not.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, lie_derivatives, pinhole
+    >>> found = lie_derivatives(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> found.rank, found.matrix.shape
+    (3, (3, 3))
     """
 
     form: PartitionedSystem
@@ -126,6 +133,14 @@ class LieRanks:
         Seconds.
     rows : array of shape (K, q, n)
         The differentials, each scaled to the length 1.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import lie_ranks
+    >>> found = lie_ranks(record(scenarios.planar(), 3, Camera(1.0)), PerspectiveSystem(affine(), pinhole()))
+    >>> found.ranks.tolist(), found.holds
+    ([[2, 3, 3], [2, 3, 3], [2, 3, 3], [2, 3, 3]], True)
     """
 
     form: PartitionedSystem
@@ -228,6 +243,14 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     ------
     ValueError
         If system and recording do not fit, or there is no truth.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import lie_ranks
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> lie_ranks(record(scenarios.ma2005_eq35(), 2, Camera(1.0)), system.measure("y1"), orders=1).ranks.tolist()
+    [[1, 2], [1, 2], [1, 2]]
     """
     form = fitting(system, recording)
     signal = recording.motion.signal

@@ -49,6 +49,13 @@ class MapKernel:
         The relative standard deviation of the distance.
     shape : tuple of symbols
         What shapes the surface, such as a plane's normal vector.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> from percept_obs.observability import map_kernel
+    >>> sorted(map_kernel(pinhole(), ("y1",)).sources())
+    ['begin', 'finish', 'gather']
     """
 
     begin: Expressions
@@ -68,7 +75,15 @@ class MapKernel:
 
 @lru_cache(maxsize=64)
 def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
-    """What a map needs of a surface and its measured outputs, derived from the image and the distance of a point."""
+    """What a map needs of a surface and its measured outputs, derived from the image and the distance of a point.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> from percept_obs.observability import map_kernel
+    >>> map_kernel(pinhole(), ("y1",)).begin
+    (0, 0, 0, Z0**(-2), -Y0/Z0**3, Y0**2/Z0**4 + Z0**(-4))
+    """
     X = PHI * START + MOVED
     names = [symbol.name for symbol in surface.image_coordinates]
     seen = [e for name, e in zip(names, surface.image, strict=True) if name in measured]
@@ -110,6 +125,16 @@ class BoundMap:
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
         After which time, and how far away the points are at the beginning.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, bound_map, pinhole
+    >>> sideways = PerspectiveSystem(affine([[0.0] * 3] * 3, [0.5, 0, 0]), pinhole())
+    >>> found = bound_map(sideways, resolution=11)
+    >>> found.relative.shape
+    (11, 11)
+    >>> print(f"{found.at(0, 0):.2f}")
+    0.02
     """
 
     system: PerspectiveSystem

@@ -69,6 +69,14 @@ class Measure:
         Directions that it does not see there, in words.
     said : str
         What the value is.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
+    >>> measure = found.measures[0]
+    >>> measure.name, measure.holds
+    ('instant', True)
     """
 
     name: str
@@ -101,6 +109,13 @@ class Observability:
     error, empirical : ErrorGramian
         Of the linearised error system, and by perturbed runs.
     bound : Bound
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
+    >>> [measure.name for measure in found.measures if measure.holds]
+    ['instant', 'excitation', 'Lie rank', 'error Gramian', 'empirical Gramian', 'bound']
     """
 
     form: PartitionedSystem

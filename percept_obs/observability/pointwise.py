@@ -132,5 +132,14 @@ def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     ------
     NotAffine
         If there is no canonical form, and so no w.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, instantaneous, pinhole
+    >>> found = instantaneous(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"))
+    >>> found.information
+    Matrix([[(b1 - b3*y1)**2 + (b2 - b3*y2)**2]])
+    >>> found.zero_set
+    [{y1: b1/b3, y2: b2/b3}]
     """
     return InstantaneousObservability(form.canonical_form())

@@ -42,6 +42,15 @@ class Steering:
     ------
     ValueError
         If there is no canonical form with all image coordinates measured.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, pinhole, rigid, steering
+    >>> found = steering(PerspectiveSystem(rigid(), pinhole()))
+    >>> found.velocity
+    (v_c1, v_c2, v_c3)
+    >>> found.excitation
+    (-v_c1 + v_c3*y1 + v_p1 - v_p3*y1)**2 + (-v_c2 + v_c3*y2 + v_p2 - v_p3*y2)**2
     """
 
     system: PerspectiveSystem

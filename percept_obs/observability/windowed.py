@@ -69,6 +69,14 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
         If there is no canonical form, and so no w.
     ValueError
         If the window is not positive or longer than the recording.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, record, scenarios, windowed
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = windowed(form, record(scenarios.ma2005_eq35(), 20), window=5)
+    >>> print(f"{found.smallest.min():.2f}")
+    0.48
     """
     from scipy.integrate import cumulative_trapezoid
 

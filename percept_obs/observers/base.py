@@ -34,6 +34,14 @@ class About:
         What must be measured.
     claim : str
         What is claimed of its convergence, and under which condition.
+
+    Examples
+    --------
+    >>> from percept_obs import ibo
+    >>> ibo.about.title
+    'Identifier-based observer (IBO)'
+    >>> ibo.about.needs
+    'any outputs with a canonical form'
     """
 
     title: str
@@ -86,6 +94,15 @@ class Observer:
         Where the hidden coordinates have no estimate; of several that hold, the first tells the reason.
     fastest : FastestRate, optional
         What limits the integration step, if it is known.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> observer.equations.state
+    (yhat1, yhat2, yhat3)
+    >>> observer.with_gains(gain=4).gain_values
+    {G: 4.0, A: 1.0, P: -0.5, M: 10.0, gamma: 1.01, sigma^2: 0.0}
     """
 
     name: str
@@ -263,7 +280,15 @@ class Observer:
 
 @checked
 def with_point(observer: Observer) -> Observer:
-    """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state)."""
+    """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state).
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, with_point
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> with_point(observer).equations.state
+    (y1, y2, y3, yhat1, yhat2, yhat3)
+    """
     form, eq = observer.form, observer.equations
     point = (*form.x1, *form.x2)
     together = Equations(

@@ -41,6 +41,14 @@ def de_luca(form: CanonicalForm) -> Derived:
     -----
     A. De Luca, G. Oriolo, P. Robuffo Giordano, Feature depth observation for image-based visual servoing,
     Int. J. Robotics Research 27(10), 2008.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import de_luca
+    >>> observer = de_luca(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> observer.equations.flow[0]
+    H*(y1 - yhat1) + a11*y1 + a13 - a31*y1**2 - a33*y1 + yhat2*(a12 - a32*y1) + yhat3*(b1 - b3*y1)
     """
     return _damped(form, H)
 
@@ -63,6 +71,14 @@ def spica(form: CanonicalForm) -> Derived:
     Notes
     -----
     R. Spica, P. Robuffo Giordano, A framework for active estimation, IEEE CDC 2013.  |w| is the Frobenius norm.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import spica
+    >>> observer = spica(PerspectiveSystem(affine(), pinhole()), hidden_gain=20)
+    >>> observer.gain_values
+    {Lambda: 20.0}
     """
     return _damped(form, 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in form.w)))
 

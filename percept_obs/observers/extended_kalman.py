@@ -56,6 +56,17 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     -----
     Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  R is by default that of uniform noise of
     +-0.01; Q2 suits constants that may wander.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import ekf
+    >>> observer = ekf(PerspectiveSystem(affine(), pinhole()), noise_variance=1e-4)
+    >>> observer.covariance
+    Matrix([
+    [P11, P12, P13],
+    [P12, P22, P23],
+    [P13, P23, P33]])
     """
     x = (*form.x1, *form.x2)
     x_hat, size = hats(x), len(x)

@@ -82,6 +82,15 @@ class Family:
         Whether it stays at the truth if it is started there, without noise: whether it copies the system.
     offered_for_structure : bool
         Whether the lab of structure and motion offers it; integral sliding modes stand there in three ways.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import rio
+    >>> rio.name, rio.switches
+    ('range identification', ('hyperbolic tangent', 'sign', 'fraction'))
+    >>> rio.refusal(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    'y2, y3 are hidden; measure every image coordinate, for the rates of y1 do not determine them at an instant'
     """
 
     derive: Callable[..., Derived]

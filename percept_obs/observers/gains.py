@@ -37,6 +37,13 @@ class Gain:
     ------
     ValueError
         If the value is not a finite number, or does not fulfil the condition.
+
+    Examples
+    --------
+    >>> from percept_obs import ibo
+    >>> gain = ibo.gains[0]
+    >>> gain.name, gain.value, gain.unit, gain.condition
+    ('gain', 10.0, '1/s', G > 0)
     """
 
     symbol: sp.Symbol

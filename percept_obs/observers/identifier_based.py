@@ -52,6 +52,16 @@ def identifier_based(form: CanonicalForm) -> Derived:
     -----
     Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  A and P are factors of the identity; the printed P = -1/2 has a sign
     that repairs that of (11).  `noise_variance` takes out the `noise_bias` of the correction e.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import ibo
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()), gain=5)
+    >>> observer.gain_values
+    {G: 5.0, A: 1.0, P: -0.5, M: 10.0, gamma: 1.01, sigma^2: 0.0}
+    >>> observer.equations.reset_condition
+    yhat1**2 + yhat2**2 + yhat3**2 >= M**2*gamma**2
     """
     state, e = hats((*form.x1, *form.x2)), innovation(form)
     flow = output_injection(form, e, G * A, -(G**2) * P, noise_bias(form, e))

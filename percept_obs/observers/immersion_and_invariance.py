@@ -56,6 +56,14 @@ def immersion_and_invariance(form: CanonicalForm) -> Derived:
     D. Karagiannis, A. Astolfi, A new solution to the problem of range identification in perspective vision systems,
     IEEE Trans. Automatic Control 50(12), 2005.  beta holds the motion's coefficients, but the equations leave out the
     rate that their change would give it: `track` refuses a motion that varies.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import ii
+    >>> observer = ii(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> observer.estimate
+    (y1, lambda*(a12*y1 - a32*y1**2/2) + xi1, lambda*(b1*y1 - b3*y1**2/2) + xi2)
     """
     # beta, along the straight line from zero to the outputs
     share = sp.Symbol("s", real=True)

@@ -87,6 +87,14 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
     D. Chwa, Integral-sliding-mode-observer-based structure and motion estimation of a single object in general motion
     using a monocular dynamic camera, IEEE Access 8, 2020 (published in November 2019), section III.  The paper starts
     from ghat(0) = x1hat(0) = 0, but (9)-(14) give ghat(0) = gamma tanh(a e(0)), which is 0 only where e(0) is.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import ismo
+    >>> observer = ismo(PerspectiveSystem(affine(), pinhole()))
+    >>> observer.equations.state
+    (yhat1, yhat2, eI1, eI2, c)
     """
     x1_hat, e = hats(form.x1), innovation(form)
     integral, v = (sp.symbols(f"{name}1:{len(e) + 1}", real=True) for name in ("eI", "v"))

@@ -60,6 +60,14 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     L. Ma, Vision-based measurements for dynamic systems and control, PhD thesis, Utah State University, 2004, after
     C. Navarro Hernandez, S. P. Banks, M. Aldeen, IMA J. Math. Control Inf. 20, 2003.
     With Q = 0 the estimate never settles.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import lao
+    >>> observer = lao(PerspectiveSystem(affine(), pinhole()), iterates=2)
+    >>> len(observer.equations.state), observer.estimate
+    (18, (yhat1_2, yhat2_2, yhat3_2))
     """
     refuse_kind("linear_approximation", "iterates", iterates, int)
     if iterates < 1:

@@ -104,6 +104,16 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     Returns
     -------
     matrix of shape (n2, 1)
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import noise_bias
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> noise_bias(form, form.phi)
+    Matrix([
+    [-a32*sigma^2*(a11 - 2*a31*y1 - a33)],
+    [ -b3*sigma^2*(a11 - 2*a31*y1 - a33)]])
     """
     # a sign's derivative is taken as 0: the noise moves it at single instants only
     smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}

@@ -55,6 +55,14 @@ def range_identification(form: CanonicalForm, switch: str) -> Derived:
     W. E. Dixon, Y. Fang, D. M. Dawson, T. J. Flynn, Range identification for perspective vision systems, IEEE Trans.
     Automatic Control 48(12), 2003, for one hidden coordinate, where x2hat = w^T f / |w|^2; Ma, Chen and Moore 2005,
     p. 65.  For the theory to hold, gamma must be larger than the bounds on f' and f''.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import rio
+    >>> observer = rio(PerspectiveSystem(affine(), pinhole()), switch="sign")
+    >>> observer.estimate
+    (yhat1, yhat2, (f1*(b1 - b3*y1) + f2*(b2 - b3*y2))/((b1 - b3*y1)**2 + (b2 - b3*y2)**2))
     """
     sgn, x1_hat = switch_named(switch), hats(form.x1)
     f = sp.symbols(f"f1:{len(form.x1) + 1}", real=True)

@@ -59,6 +59,14 @@ def sliding_mode(form: CanonicalForm, switch: str) -> Derived:
     -----
     Ma, Chen and Moore 2005, (21)-(23), pp. 67-68.  lambda starts at `switching_gain`.  `noise_variance`
     takes out the `noise_bias` of the correction s.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import smo
+    >>> observer = smo(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> {gain.name: gain.value for gain in observer.gains[:3]}
+    {'hidden_gain': 5.0, 'adaptation': 10.0, 'boundary_layer': 0.2}
     """
     estimate = hats((*form.x1, *form.x2))
     lambdas = sp.symbols(f"lambda1:{len(form.x1) + 1}", real=True)

@@ -59,6 +59,13 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
     ------
     ValueError
         If there is no such paper or no such entry; it says which there are.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import find
+    >>> (ledger,) = find(["(38)"], paper="Ma")
+    >>> ledger.paper, [entry.place for entry in ledger.entries]
+    ('Ma, Chen and Moore 2005', ['(38)'])
     """
     ledgers = [ledger for ledger in LEDGERS if paper.casefold() in ledger.paper.casefold()]
     if not ledgers:
@@ -88,6 +95,12 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
         All of them, when left out.
     processes : int, optional
         As many as there are cores, when left out; `FEW` entries are judged in this one.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import find, judge
+    >>> judge(find(["(10)"], paper="Ma"), processes=1)
+    True
     """
     wanted = [entry for ledger in ledgers for entry in ledger.entries]
     if len(wanted) > FEW and (processes or workers()) > 1:
@@ -108,5 +121,12 @@ def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:
 
 
 def report(ledgers: Sequence[Ledger] = LEDGERS) -> str:
-    """All entries as tables, with the numbers that verdicts rest on, and how many verdicts are known in which way."""
+    """All entries as tables, with the numbers that verdicts rest on, and how many verdicts are known in which way.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import find, report
+    >>> print(report(find(["(10)"], paper="Ma")).splitlines()[0])
+    Ma, Chen and Moore 2005
+    """
     return "\n\n\n".join(map(str, ledgers))

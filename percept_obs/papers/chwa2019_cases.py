@@ -10,7 +10,7 @@ import sympy as sp
 from percept_obs.papers.base import column, equal, identities, is_identity, reader, vanishes, vectors
 from percept_obs.papers.entries import Check, Entry, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
-from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.structure.dynamics import OUTPUTS, d_s
 from percept_obs.system.motion import rigid
 
 ORDERS = tuple(map("".join, permutations("123")))

@@ -10,7 +10,7 @@ import sympy as sp
 from percept_obs.papers.base import column, dot, identities, reader, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, scaled_dynamics
-from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.structure.dynamics import OUTPUTS, d_s
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole

@@ -15,7 +15,7 @@ from percept_obs.papers.base import column, equal, exactly, identities, reader
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.recording import record
 from percept_obs.structure import COROLLARIES, ScaledDepthCamera
-from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.structure.dynamics import OUTPUTS, d_s
 from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.system.surfaces import POINT, pinhole

@@ -18,7 +18,7 @@ from percept_obs.papers.chwa2019_observer import ENTRIES as OBSERVER
 from percept_obs.papers.chwa2019_results import followed
 from percept_obs.papers.entries import Check, Entry, Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.structure import COROLLARIES, scaled_dynamics
-from percept_obs.structure.choice import OUTPUTS, d_s
+from percept_obs.structure.dynamics import OUTPUTS, d_s
 from percept_obs.structure.scenarios import chwa2019_experiment
 
 y1, y2, ybar3 = OUTPUTS

@@ -19,7 +19,14 @@ Values = dict[sp.Basic, sp.Basic]
 
 
 class Verdict(StrEnum):
-    """What a computation says about a printed statement."""
+    """What a computation says about a printed statement.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import Verdict
+    >>> print(*Verdict, sep=", ")
+    holds, misprint, false as stated, depends, not checkable
+    """
 
     HOLDS = "holds"
     MISPRINT = "misprint"
@@ -35,6 +42,12 @@ class Known(StrEnum):
     assumption has nothing to be derived from.  As implemented: the package's own equations or numbers are the printed
     ones.  Runs are simulations, of which there are as many as the note says.  Not reproduced: it is cited, lost by the
     scan, or our runs do not show what the paper's do.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import Known
+    >>> print(*Known, sep=", ")
+    derived, definition, as implemented, seen in runs, not reproduced
     """
 
     DERIVED = "derived"
@@ -49,6 +62,12 @@ class Finding:
     """The result of a check: a verdict, the numbers that it rests on, and what was derived in place of the print.
 
     The derived is in pairs of sides, for an equation that is sent to another process is evaluated there.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import MA2005
+    >>> print(MA2005["(10)"].finding.verdict)
+    holds
     """
 
     verdict: Verdict
@@ -93,6 +112,13 @@ class Entry:
         What is to be put in the place of what, in a misprint.
     known : Known
         How the verdict is known.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import MA2005
+    >>> entry = MA2005["(38)"]
+    >>> print(f"p. {entry.page}, {entry.expected}: {entry.says}")
+    p. 73, misprint: the same with (25), in s = G t
     """
 
     place: str

@@ -106,7 +106,14 @@ def summary(verdicts: Iterable[Verdict]) -> str:
 
 
 def page(ledgers: Iterable[Ledger]) -> str:
-    """All entries as a page of HTML that needs no network, with a box that leaves those in which a word stands."""
+    """All entries as a page of HTML that needs no network, with a box that leaves those in which a word stands.
+
+    Examples
+    --------
+    >>> from percept_obs.papers import find, page
+    >>> "<table" in page(find(["(10)"], paper="Ma"))
+    True
+    """
     entries = "".join(entry._repr_html_() for ledger in ledgers for entry in ledger.entries)
     box = (
         "<label>search <input oninput=\"for (const t of document.querySelectorAll('table')) "

@@ -84,6 +84,15 @@ def point_block(surface: ImagingSurface) -> PointBlock:
     ------
     NotLinear
         If the distance, or the image times the distance, is not linear in the point, as on curved surfaces.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> from percept_obs.points import point_block
+    >>> point_block(pinhole()).B
+    Matrix([
+    [1, 0, -y1],
+    [0, 1, -y2]])
     """
     l = sp.ImmutableMatrix([surface.distance]).jacobian(POINT)
     N = sp.ImmutableMatrix([sp.cancel(entry * surface.distance) for entry in surface.image]).jacobian(POINT)

@@ -40,6 +40,13 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     ------
     ValueError
         If there is no point, or the motion is not that of a point.
+
+    Examples
+    --------
+    >>> from percept_obs import affine
+    >>> from percept_obs.points import independent_points
+    >>> independent_points(affine(), 2).names
+    ('X1_x', 'X1_y', 'X1_z', 'X2_x', 'X2_y', 'X2_z')
     """
     _refuse(points)
     if motion.A.shape != (3, 3):
@@ -93,6 +100,12 @@ functions of time, optional
     -----
     Where instead the velocity is known of the body's point that is momentarily at the camera's centre, all points
     share one affine motion with w = w_b - w_c; take `independent_points`.
+
+    Examples
+    --------
+    >>> from percept_obs.points import rigid_body
+    >>> rigid_body(2).names
+    ('r_x', 'r_y', 'r_z', 'd2_x', 'd2_y', 'd2_z')
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
     _refuse(points)
@@ -132,6 +145,12 @@ def body_with_origin(
     -----
     UnseenDirection
         If the body does not turn, so that the directions are lost for good.
+
+    Examples
+    --------
+    >>> from percept_obs.points import body_with_origin
+    >>> body_with_origin(2).names
+    ('o_x', 'o_y', 'o_z', 'd1_x', 'd1_y', 'd1_z', 'd2_x', 'd2_y', 'd2_z')
     """
     given = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
     _refuse(points)

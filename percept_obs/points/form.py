@@ -78,6 +78,15 @@ class PointsForm:
     -----
     UnseenDirection
         If a direction of the state changes no image, whatever the motion's symbols are.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from percept_obs import PointsForm, linear
+    >>> along = linear([[0.0, 1.0], [0.0, 0.0]], [0.0, 0.0])
+    >>> form = PointsForm(along, np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 2.0]]), names=("place", "speed"))
+    >>> form.names, form.points
+    (('place', 'speed'), 1)
     """
 
     motion: Motion

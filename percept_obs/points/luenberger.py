@@ -35,6 +35,14 @@ class LuenbergerObserver:
         What it believes in.
     P : LyapunovMatrix
         P.
+
+    Examples
+    --------
+    >>> from percept_obs import luenberger
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> observer = luenberger(moving_body(2).form, 0.1)
+    >>> observer.P.name
+    'constant P'
     """
 
     form: PointsForm
@@ -154,5 +162,13 @@ def luenberger(
     -----
     H. Inaba et al., Nonlinear observers for perspective time-varying linear systems with multiple observing points,
     IFAC 2005, (10), (11) and Theorem 3.4.
+
+    Examples
+    --------
+    >>> from percept_obs import luenberger
+    >>> from percept_obs.points import riccati
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> luenberger(moving_body(2).form, riccati()).name
+    'Luenberger, Riccati'
     """
     return LuenbergerObserver(form, lyapunov_matrix(P).sized(form.states))

@@ -33,6 +33,13 @@ class LyapunovMatrix:
         Unused where P is given.
     schedule : Signal, optional
         P over time, row by row (or one number), where it is given.
+
+    Examples
+    --------
+    >>> from percept_obs.points import riccati
+    >>> P = riccati(0.1).sized(2)
+    >>> P.name, P.forgetting, P.start.tolist()
+    ('Riccati', 0.3, [[0.1, 0.0], [0.0, 0.1]])
     """
 
     name: str
@@ -106,7 +113,14 @@ class LyapunovMatrix:
 
 @checked
 def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
-    """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity."""
+    """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity.
+
+    Examples
+    --------
+    >>> from percept_obs.points import constant
+    >>> constant(2.0).sized(2).at([0.0]).tolist()
+    [[[2.0, 0.0], [0.0, 2.0]]]
+    """
     return LyapunovMatrix("constant P", None, schedule=Signal(np.ravel(np.asarray(P, dtype=float))))
 
 
@@ -125,6 +139,12 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
     ------
     ValueError
         If samples and times do not fit.
+
+    Examples
+    --------
+    >>> from percept_obs.points import scheduled
+    >>> scheduled([1.0, 3.0], times=[0.0, 2.0]).sized(2).at([1.0]).tolist()
+    [[[2.0, 0.0], [0.0, 2.0]]]
     """
     if callable(P):
         return LyapunovMatrix("scheduled P", None, schedule=Signal(P))
@@ -146,6 +166,12 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatri
         Symmetric positive definite.
     decrease : array of shape (n, n) or float
         Symmetric positive semidefinite.  P stays positive only while the start outweighs what it takes away.
+
+    Examples
+    --------
+    >>> from percept_obs.points import lyapunov
+    >>> lyapunov(2.0, decrease=0.1).sized(2).decrease.tolist()
+    [[0.1, 0.0], [0.0, 0.1]]
     """
     return LyapunovMatrix("Lyapunov", start, decrease=decrease)
 
@@ -173,6 +199,13 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     -----
     Where A^T start + start A = 0, as for rotations and a multiple of the identity, P >= start at all times, and
     A^T P + P A + P' = S - forgetting (P - start) <= S: the weaker condition holds with epsilon = 1, instead of (15).
+
+    Examples
+    --------
+    >>> from percept_obs.points import riccati
+    >>> P = riccati(0.1, forgetting=0.5)
+    >>> P.name, P.computed
+    ('Riccati', True)
     """
     if not (np.isfinite(forgetting) and forgetting >= 0):
         raise ValueError(f"the forgetting is {forgetting} 1/s; it must be finite and not negative")

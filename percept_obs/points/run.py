@@ -38,6 +38,15 @@ class PointsRun(Run):
         Samples at which P was kept.
     P : array of shape (T, n, n)
         P at these samples.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, luenberger, record, track
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> recording = record(moving_body(2), 4, Camera(0.1))
+    >>> run = track(recording, luenberger(recording.view), recording.truth[0] + 0.1)
+    >>> run.deviation[[0, -1]].round(3).tolist()
+    [0.245, 0.117]
     """
 
     began: NDArray[np.bool_]

@@ -43,6 +43,15 @@ class FirstSight:
     ------
     ValueError
         If one of them is not positive, or the depth is not finite.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, FirstSight, luenberger, record, track
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> recording = record(moving_body(2), 2, Camera(0.1))
+    >>> run = track(recording, luenberger(recording.view), FirstSight(depth=3.0))
+    >>> run.distance[0].round(3).tolist()
+    [3.0, 3.0]
     """
 
     depth: float

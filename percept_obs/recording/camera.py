@@ -26,7 +26,14 @@ def _check_spread(name: str, value: float) -> None:
 @checked
 @dataclass(frozen=True)
 class Uniform:
-    """Uniform noise between -bound and bound."""
+    """Uniform noise between -bound and bound.
+
+    Examples
+    --------
+    >>> from percept_obs import Uniform
+    >>> print(f"{Uniform(0.3).variance:.3f}")
+    0.030
+    """
 
     bound: float
 
@@ -49,7 +56,14 @@ class Uniform:
 @checked
 @dataclass(frozen=True)
 class Gaussian:
-    """Gaussian noise of standard deviation sigma."""
+    """Gaussian noise of standard deviation sigma.
+
+    Examples
+    --------
+    >>> from percept_obs import Gaussian
+    >>> print(f"{Gaussian(0.1).variance:.3f}")
+    0.010
+    """
 
     sigma: float
 
@@ -96,6 +110,12 @@ class Camera:
     ------
     ValueError
         If a number is out of its range.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian
+    >>> Camera(period=0.5, noise=Gaussian(0.01)).times(2).tolist()
+    [0.0, 0.5, 1.0, 1.5, 2.0]
     """
 
     period: float = 0.01
@@ -198,7 +218,15 @@ class Camera:
 
 
 class Scene(ABC):
-    """What a camera can be pointed at: a point, the points of a state, or an object whose structure is sought."""
+    """What a camera can be pointed at: a point, the points of a state, or an object whose structure is sought.
+
+    Examples
+    --------
+    >>> from percept_obs import scenarios
+    >>> from percept_obs.recording import Scene
+    >>> isinstance(scenarios.planar(), Scene)
+    True
+    """
 
     name: str
     duration: float
@@ -242,6 +270,12 @@ def seeded(seed: Seed) -> np.random.Generator:
     ------
     ValueError
         If the seed is neither a Generator nor a whole number from 0 to 2^32 - 1.
+
+    Examples
+    --------
+    >>> from percept_obs.recording import seeded
+    >>> seeded(1).random(2).round(3).tolist()
+    [0.417, 0.72]
     """
     if isinstance(seed, np.random.Generator):
         return seed

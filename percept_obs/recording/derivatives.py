@@ -25,6 +25,14 @@ class Neighbours:
 
     Poses are kept as they are.  It follows the fastest motion, and noise sigma in a position becomes sigma/(sqrt(2) h)
     in the velocity if the poses are h seconds apart.
+
+    Examples
+    --------
+    >>> from percept_obs import Neighbours, read_tum
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> poses = read_tum(worked_folder() / "poses.txt")
+    >>> poses.path(Neighbours()).velocity[50].round(2).tolist()
+    [-0.14, -0.04, -0.01]
     """
 
     fewest = 3
@@ -121,6 +129,14 @@ class SmoothingSpline:
 
     Nothing has to be chosen, if the noise of one pose tells nothing of the noise of the next.  Where it does, as for
     poses that a filter has smoothed, noise is taken for motion.  The splines go through the entries of the quaternions.
+
+    Examples
+    --------
+    >>> from percept_obs import SmoothingSpline, read_tum
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> poses = read_tum(worked_folder() / "poses.txt")
+    >>> poses.path(SmoothingSpline()).velocity[50].round(2).tolist()
+    [-0.14, -0.04, -0.01]
     """
 
     fewest = 5

@@ -124,6 +124,14 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
     ------
     ValueError
         If the recording has no truth.
+
+    Examples
+    --------
+    >>> from percept_obs import record, scenarios
+    >>> from percept_obs.recording import render
+    >>> film = render(record(scenarios.planar(), 2), count=2, size=32)
+    >>> len(film.images)
+    2
     """
     if recording.truth is None:
         raise ValueError("the recording has no truth to draw; give frames of its camera instead")

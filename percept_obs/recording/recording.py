@@ -34,9 +34,14 @@ class Sighting:
 
     Parameters
     ----------
-    point : int
-    first, last : int
-        Samples.
+    point, first, last : int
+        Its number, and its first and its last sample.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record, scenarios
+    >>> record(scenarios.planar(), 6, Camera(1.0)).without(2, 3).sightings(absence=1.5)[0]
+    Sighting(point=0, first=0, last=1)
     """
 
     point: int
@@ -273,8 +278,7 @@ class Recording:
         ----------
         begin, end : float
             Seconds.
-        point : int
-            From 0 on.
+        point : int, from 0 on
 
         Raises
         ------

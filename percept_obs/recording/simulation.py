@@ -43,6 +43,14 @@ class Scenario(Scene):
     surface : ImagingSurface
     source : str
         Where the set-up comes from.
+
+    Examples
+    --------
+    >>> from percept_obs import Scenario, affine, pinhole
+    >>> turning = affine([[0, -1, 0], [1, 0, 0], [0, 0, 0]], [0, 0, 0])
+    >>> scenario = Scenario("a turn", turning, (1.0, 0.0, 2.0), 3.0, pinhole())
+    >>> scenario.points([0.0, 1.0]).round(3).tolist()
+    [[1.0, 0.0, 2.0], [0.54, 0.841, 2.0]]
     """
 
     name: str

@@ -104,19 +104,25 @@ def reference() -> Pages:
     """The public names: a page a module."""
     intro = "All public names, by module. Every example is run by the package's tests."
     yield "reference/index.md", contents("Reference", intro, [slug(name) for name in MODULES])
-    documented: set[int] = set()
-    for name in MODULES:
-        module = import_module(name)
-        lines = [name, "=" * len(name), "", inspect.getdoc(module) or "", "", f".. currentmodule:: {name}", ""]
-        for names, value in _named(module):
-            if id(value) not in documented:
-                documented.add(id(value))
-                lines += _described(names, value)
+    for name, values in public().items():
+        text = inspect.getdoc(import_module(name)) or ""
+        lines = [name, "=" * len(name), "", text, "", f".. currentmodule:: {name}", ""]
+        for names, value in values:
+            lines += _described(names, value)
         yield f"reference/{slug(name)}.rst", "\n".join(lines)
 
 
+def public() -> dict[str, list[tuple[list[str], object]]]:
+    """Public values by the first module that has them, each with its names, the longest first."""
+    found: dict[str, list[tuple[list[str], object]]] = {}
+    seen: set[int] = set()
+    for name in MODULES:
+        found[name] = [(names, value) for names, value in _named(import_module(name)) if id(value) not in seen]
+        seen |= {id(value) for _, value in found[name]}
+    return found
+
+
 def _named(module: ModuleType) -> list[tuple[list[str], object]]:
-    """Public values of a module, each with its names, the longest first."""
     names: dict[int, list[str]] = {}
     for name in getattr(module, "__all__", [name for name in vars(module) if not name.startswith("_")]):
         value = getattr(module, name)

@@ -1,7 +1,8 @@
 """Structure and motion from a scaled inverse depth: choices of what is known, and their canonical forms."""
 
-from percept_obs.structure.choice import QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
+from percept_obs.structure.choice import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.structure.corollaries import COROLLARIES, Corollary
+from percept_obs.structure.dynamics import scaled_dynamics
 from percept_obs.structure.linear import LinearView
 from percept_obs.structure.simulation import (
     DepthSource,

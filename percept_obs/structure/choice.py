@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -13,62 +13,19 @@ from numpy.typing import ArrayLike
 
 from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, vectorised
+from percept_obs.structure.dynamics import CAMERA, OBJECT, OUTPUTS, ROTATION, d_s, scaled_dynamics, ybar3
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, rigid
-from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
 
-y1, y2, ybar3 = OUTPUTS = sp.symbols("y1 y2 ybar3", real=True)
-d_s = sp.Symbol("d_s", real=True)
-_ROTATION, _CAMERA, _OBJECT = (rigid().parameters[k : k + 3] for k in (0, 3, 6))
-
-QUANTITIES = (d_s.name, *(symbol.name for symbol in (*_CAMERA, *_OBJECT)))
+QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
 """What may be unknown: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
 
 
 class ImpossibleChoice(ValueError):
     """These unknowns cannot be told apart, or what is said of them is contradictory."""
-
-
-@dataclass(frozen=True)
-class ScaledDynamics:
-    """Rate of ybar = (y1, y2, ybar3), with ybar3 = y3 / d_s (Chwa 2019, (5)-(7), p. 4).
-
-        ybar' = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s
-
-    Parameters
-    ----------
-    camera, rotation, object : matrices of shape (3, 3)
-        Omega1, the matrix that multiplies w in Omega2, and Omega3.
-    """
-
-    camera: sp.ImmutableMatrix
-    rotation: sp.ImmutableMatrix
-    object: sp.ImmutableMatrix
-
-    @property
-    def rate(self) -> sp.ImmutableMatrix:
-        """Time derivative of ybar."""
-        translation = self.camera * sp.ImmutableMatrix(_CAMERA) + self.object * sp.ImmutableMatrix(_OBJECT)
-        return (self.rotation * sp.ImmutableMatrix(_ROTATION) + d_s * translation).expand()
-
-    def _repr_latex_(self) -> str:
-        names = (r"\Omega_1", r"\Omega_2 = \Omega_\omega \omega,\quad \Omega_\omega", r"\Omega_3")
-        matrices = map(sp.latex, (self.camera, self.rotation, self.object))
-        return r"$\displaystyle " + r",\quad ".join(map(" = ".join, zip(names, matrices, strict=True))) + "$"
-
-
-@lru_cache(maxsize=1)
-def scaled_dynamics() -> ScaledDynamics:
-    """The dynamics of the scaled inverse depth, derived from a rigid motion seen by a pinhole."""
-    system = PerspectiveSystem(rigid(), pinhole())
-    inverse_depth = system.coordinates[-1]
-    scale = sp.diag(1, 1, 1 / d_s)
-    rate = (scale * system.rate.subs(inverse_depth, d_s * ybar3)).expand()
-    camera, rotation, object_ = (rate.jacobian(symbols) for symbols in (_CAMERA, _ROTATION, _OBJECT))
-    return ScaledDynamics((camera / d_s).expand(), rotation, (object_ / d_s).expand())
 
 
 @checked
@@ -103,6 +60,15 @@ class StructureAndMotion(OnePoint):
     Notes
     -----
     Chwa 2019, sections IV to VI: the corollaries are seven of these choices.
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion
+    >>> choice = StructureAndMotion(("d_s", "v_c1", "v_c2"), zero=("v_p1", "v_p2", "v_p3"))
+    >>> choice.determinant
+    v_c3*ybar3**4
+    >>> choice.condition
+    Ne(v_c3, 0) & Ne(ybar3, 0)
     """
 
     unknown: tuple[str, ...]
@@ -147,7 +113,7 @@ class StructureAndMotion(OnePoint):
                 f"{len(self.unknown)} unknowns ({', '.join(self.unknown)}), but ybar has 3 components, which give "
                 f"3 equations at an instant; know at least {len(self.unknown) - len(OUTPUTS)} of them"
             )
-        for camera, object_ in zip(_CAMERA, _OBJECT, strict=True):
+        for camera, object_ in zip(CAMERA, OBJECT, strict=True):
             if {camera.name, object_.name} <= set(self.unknown):
                 return (
                     f"{camera} and {object_} act through their difference only, so det Omega_g is zero everywhere; "
@@ -163,7 +129,7 @@ class StructureAndMotion(OnePoint):
     @property
     def known_velocity(self) -> tuple[sp.Expr, ...]:
         """Components of v_c - v_p along the axes on which both are known, those that are zero left out."""
-        axes = zip(_CAMERA, _OBJECT, strict=True)
+        axes = zip(CAMERA, OBJECT, strict=True)
         known = ((c - o).xreplace(self._absent) for c, o in axes if not {c.name, o.name} & set(self.unknown))
         return tuple(filter(None, known))
 
@@ -189,7 +155,7 @@ class StructureAndMotion(OnePoint):
     @property
     def _known(self) -> tuple[sp.Symbol, ...]:
         """Parameters of the rigid motion that are known signals."""
-        return tuple(s for s in (*_ROTATION, *_CAMERA, *_OBJECT) if s.name not in (*self.unknown, *self.zero))
+        return tuple(s for s in (*ROTATION, *CAMERA, *OBJECT) if s.name not in (*self.unknown, *self.zero))
 
     def known_motion(self, motion: Motion) -> Motion:
         """What is known of a rigid motion: the signals of its known parameters.
@@ -243,7 +209,7 @@ class StructureAndMotion(OnePoint):
         They hold known signals only, so that Omega_g = Omega3 M for every choice, with the same Omega3.
         """
         hidden = sp.ImmutableMatrix(self.form.x2)
-        difference = sp.ImmutableMatrix([d_s * (o - c) for c, o in zip(_CAMERA, _OBJECT, strict=True)])
+        difference = sp.ImmutableMatrix([d_s * (o - c) for c, o in zip(CAMERA, OBJECT, strict=True)])
         moved = difference.xreplace(self._absent).xreplace(self._in_theta(tuple(hidden))).expand()
         return moved.jacobian(hidden), moved.xreplace(dict.fromkeys(hidden, sp.S.Zero))
 

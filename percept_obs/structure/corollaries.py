@@ -21,6 +21,14 @@ class Corollary:
         Its cell of Table 1: how the camera and the object move.
     unknown, zero, earlier : tuples of str
         As in `StructureAndMotion`, with the axes i, j, k for 1, 2, 3.
+
+    Examples
+    --------
+    >>> from percept_obs.structure import COROLLARIES
+    >>> print(COROLLARIES[0])
+    corollary 1, section IV.A: dynamic camera, object in semigeneral motion
+    >>> COROLLARIES[0].choice("123").unknown
+    ('d_s', 'v_c2', 'v_c3')
     """
 
     number: int

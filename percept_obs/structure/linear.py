@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from percept_obs.border import checked
 from percept_obs.compile import Array
-from percept_obs.structure.choice import StructureAndMotion, d_s
+from percept_obs.structure.choice import StructureAndMotion
+from percept_obs.structure.dynamics import d_s
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import rigid
 from percept_obs.system.view import OnePoint
@@ -35,6 +36,16 @@ class LinearView(OnePoint):
     Parameters
     ----------
     choice : StructureAndMotion
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion
+    >>> from percept_obs.structure import LinearView
+    >>> view = LinearView(StructureAndMotion(("v_p1", "v_p2"), zero=("v_p3",)))
+    >>> view.form.w
+    Matrix([
+    [d_s,   0, 0],
+    [  0, d_s, 0]])
     """
 
     choice: StructureAndMotion

@@ -14,7 +14,8 @@ from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.structure.choice import OUTPUTS, StructureAndMotion
+from percept_obs.structure.choice import StructureAndMotion
+from percept_obs.structure.dynamics import OUTPUTS
 from percept_obs.structure.linear import LinearView
 from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
@@ -25,7 +26,15 @@ NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
 
 class DepthSource(Protocol):
-    """Where the scaled inverse depth comes from."""
+    """Where the scaled inverse depth comes from.
+
+    Examples
+    --------
+    >>> from percept_obs.structure import DepthSource, GivenDepth
+    >>> source: DepthSource = GivenDepth(bias=0.01)
+    >>> source.offsets.tolist()
+    [[0.0, 0.0, 0.0]]
+    """
 
     @property
     def offsets(self) -> Array:
@@ -58,6 +67,15 @@ class GivenDepth:
         In the unit of ybar3.  A constant factor would be no error: it changes what d_s is.
     drift : float
         Per second.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from percept_obs.recording import seeded
+    >>> from percept_obs.structure import GivenDepth
+    >>> time, exact = np.array([0.0, 1.0]), np.array([0.5, 0.4])
+    >>> GivenDepth(bias=0.01, drift=0.02).depths(np.zeros((2, 1, 2)), exact, time, seeded(0)).round(3).tolist()
+    [0.51, 0.43]
     """
 
     noise: Noise = NO_NOISE
@@ -90,6 +108,15 @@ class PatchDepth:
     ----------
     offsets : array of shape (n, 3)
         As from `grid_patch`.
+
+    Examples
+    --------
+    >>> from percept_obs import record
+    >>> from percept_obs.structure import PatchDepth, ScaledDepthCamera, grid_patch
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> camera = ScaledDepthCamera(0.5, depth=PatchDepth(grid_patch(0.2)))
+    >>> record(chwa2019_experiment("IV.A"), 1, camera).outputs.round(3).tolist()
+    [[0.32, 0.3, 0.05], [0.377, 0.36, 0.05], [0.434, 0.42, 0.05]]
     """
 
     offsets: Array
@@ -127,6 +154,14 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
     ------
     ValueError
         If the side is not positive, the count is not odd and at least 3, or the normal vector is zero.
+
+    Examples
+    --------
+    >>> from percept_obs.structure import grid_patch
+    >>> grid_patch(0.2).shape
+    (9, 3)
+    >>> grid_patch(0.2)[0].tolist()
+    [0.0, 0.0, 0.0]
     """
     if not (np.isfinite(side) and side > 0) or count < 3 or count % 2 == 0:
         raise ValueError(f"a patch needs an odd count from 3 on and a positive side, not {count} points and {side} m")
@@ -161,6 +196,16 @@ class StructureScenario(Scenario):
         If d_s is not positive, or a scenario makes no sense.
     ImpossibleChoice
         If a velocity that is said to be zero is not.
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion, pinhole, rigid
+    >>> from percept_obs.structure import StructureScenario
+    >>> motion = rigid([0, 0, 0], [0.3, 0.2, 0.1], [0, 0, 0])
+    >>> choice = StructureAndMotion(("d_s", "v_c2", "v_c3"), zero=("v_p1", "v_p2", "v_p3"))
+    >>> scene = StructureScenario("a house", motion, (1, 1, 5), 3, pinhole(), scale=4, choice=choice)
+    >>> scene.coordinates([0]).tolist()
+    [[0.2, 0.2, 0.05, 4.0, 0.8, 0.4]]
     """
 
     scale: float = field(kw_only=True)
@@ -216,6 +261,15 @@ class ScaledDepthCamera(Camera):
         Instead of the noise; the signal is the pixel coordinates of all points of the object.
     depth : DepthSource
         `GivenDepth` without errors when left out.
+
+    Examples
+    --------
+    >>> from percept_obs import Gaussian, PixelCamera, record
+    >>> from percept_obs.structure import ScaledDepthCamera
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> camera = ScaledDepthCamera(0.5, Gaussian(0.5), pixels=PixelCamera((720, 720), (320, 240)))
+    >>> record(chwa2019_experiment("IV.A"), 1, camera).outputs.round(2).tolist()
+    [[0.32, 0.3, 0.05], [0.38, 0.36, 0.05], [0.43, 0.42, 0.05]]
     """
 
     period: float = 1e-3
@@ -272,6 +326,17 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
         From `rigid`; what is unknown in it is not used unless the truth is asked for.
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
+
+    Examples
+    --------
+    >>> from percept_obs import StructureAndMotion, record
+    >>> from percept_obs.structure import ScaledDepthCamera, seen_as
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> scene = chwa2019_experiment("IV.A")
+    >>> choice = StructureAndMotion(("v_p1", "v_p2", "v_p3"), scale=10.4)
+    >>> other = seen_as(record(scene, 1, ScaledDepthCamera(0.5)), choice, scene.motion)
+    >>> other.view.theta
+    (v_p1, v_p2, v_p3)
     """
     truth = None
     if scale is not None:
@@ -295,6 +360,15 @@ def linear_view(recording: Recording) -> Recording:
     ------
     ValueError
         If it is of something else.
+
+    Examples
+    --------
+    >>> from percept_obs import record
+    >>> from percept_obs.structure import ScaledDepthCamera, linear_view
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> recording = record(chwa2019_experiment("IV.A"), 1, ScaledDepthCamera(0.5))
+    >>> linear_view(recording).outputs.round(2).tolist()
+    [[6.4, 6.0, 20.0], [7.54, 7.2, 20.0], [8.69, 8.39, 20.0]]
     """
     choice = recording.view
     if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:

@@ -96,6 +96,16 @@ def semigeneral(
     Notes
     -----
     Chwa 2019, section IV, corollaries 1 and 2, pp. 6-7.
+
+    Examples
+    --------
+    >>> from percept_obs import affine, record, semigeneral
+    >>> from percept_obs.structure import ScaledDepthCamera
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> scene = chwa2019_experiment("IV.A")
+    >>> both = semigeneral(record(scene, 2, ScaledDepthCamera(0.01)), scene.motion, moves_at=1, step=0.01)
+    >>> both.object_velocity[-1].round(2).tolist()
+    [0.0, 0.0, -0.0]
     """
     choice = choice or COROLLARIES[0].choice()
     if camera not in ("kept", "given"):

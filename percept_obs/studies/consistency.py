@@ -186,6 +186,15 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     Notes
     -----
     Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation (2001), section 5.4.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, check_consistency, ekf, pinhole, record
+    >>> from percept_obs import scenarios, track
+    >>> recording = record(scenarios.ma2005_eq35(), 20, Camera(0.02, Gaussian(0.01)))
+    >>> run = track(recording, ekf(PerspectiveSystem(affine(), pinhole()), noise_variance=1e-4))
+    >>> check_consistency(run, after=5).verdict().partition(".")[0]
+    'consistent: the innovations are as large as the filter claims'
     """
     if not 0 < confidence < 1:
         raise ValueError(f"the confidence is {confidence}; it must lie between 0 and 1")

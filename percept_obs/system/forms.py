@@ -62,6 +62,13 @@ class PartitionedSystem:
         All coordinates in the order of the view.
     view : View or None
         Where the outputs are seen.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, plane
+    >>> system = PerspectiveSystem(affine(), plane()).partition("y1")
+    >>> system.measured, system.hidden
+    (('y1',), ('y2', 'y3'))
     """
 
     x1: tuple[sp.Symbol, ...]
@@ -136,6 +143,15 @@ class CanonicalForm(PartitionedSystem):
     w : matrix of shape (n2, n1)
     phi : matrix of shape (n1, 1)
     g : matrix of shape (n2, 1)
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, linear, pinhole, rigid
+    >>> form = PerspectiveSystem(rigid(), pinhole()).measure("y1")
+    >>> form.x1, form.x2
+    ((y1,), (y2, y3))
+    >>> form.w.T
+    Matrix([[-w1*y1 - w3, -v_c1 + v_c3*y1 + v_p1 - v_p3*y1]])
     """
 
     rate: sp.ImmutableMatrix = field(init=False)

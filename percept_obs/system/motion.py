@@ -35,6 +35,18 @@ class Motion:
         The symbols in A and b, in the order of the signal's columns.
     signal : Signal, optional
         Values of `parameters` over time.
+
+    Examples
+    --------
+    >>> from percept_obs import rigid
+    >>> motion = rigid([0.0, 0.0, 0.1], [0.0, 0.0, 0.5], [0.0, 0.0, 0.0])
+    >>> motion.A
+    Matrix([
+    [  0, -w3,  w2],
+    [ w3,   0, -w1],
+    [-w2,  w1,   0]])
+    >>> motion.values[motion.parameters[2]]
+    0.1
     """
 
     name: str
@@ -91,6 +103,17 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     ------
     ValueError
         If shapes do not match, values are not finite or times do not increase.
+
+    Examples
+    --------
+    >>> from percept_obs import affine
+    >>> affine().A
+    Matrix([
+    [a11, a12, a13],
+    [a21, a22, a23],
+    [a31, a32, a33]])
+    >>> affine([[0.0] * 3] * 3, [0.5, 0.0, 0.0]).b.T
+    Matrix([[b1, b2, b3]])
     """
     A_symbols = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"a{i + 1}{j + 1}", real=True))
     b_symbols = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
@@ -119,6 +142,15 @@ def rigid(
     ------
     ValueError
         If shapes do not match, values are not finite or times do not increase.
+
+    Examples
+    --------
+    >>> from percept_obs import rigid
+    >>> rigid().A
+    Matrix([
+    [  0, -w3,  w2],
+    [ w3,   0, -w1],
+    [-w2,  w1,   0]])
     """
     w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
     given = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
@@ -159,6 +191,13 @@ def linear(
     ------
     ValueError
         If shapes do not match, n is not known, values are not finite or times do not increase.
+
+    Examples
+    --------
+    >>> from percept_obs import linear
+    >>> motion = linear([[0.0, 1.0], [0.0, 0.0]], [0.0, 0.5])
+    >>> motion.values
+    {a12: 1.0, v2: 0.5}
     """
     shown = [np.shape(value)[-1] for value in (A, v) if value is not None and not callable(value) and np.ndim(value)]
     n = states if states is not None else (shown or [0])[0]

@@ -33,6 +33,17 @@ class PerspectiveSystem:
     ----------
     motion : Motion
     surface : ImagingSurface
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> system.rate[2]
+    -a31*y1*y3 - a32*y2*y3 - a33*y3 - b3*y3**2
+    >>> system.foe
+    Matrix([
+    [b1/b3],
+    [b2/b3]])
     """
 
     motion: Motion

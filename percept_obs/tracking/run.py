@@ -44,6 +44,15 @@ class Run:
         Times by the recording's clock at which the estimate was reset.
     unobservable : array of shape (K,) of int
         Which of `Observer.unobservable` hides the hidden coordinates, counted from 1; 0 where they have an estimate.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(f"{run.settling_time(0.1):.1f} s")
+    1.9 s
+    >>> print(f"{run.relative_error[-1]:.0e}")
+    2e-04
     """
 
     recording: Recording

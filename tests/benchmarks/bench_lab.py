@@ -298,6 +298,8 @@ def main(*arguments: str) -> None:
     """Measure what the arguments ask for."""
     names = [argument for argument in arguments if not argument.startswith("--")]
     wanted = {title: case for title, case in CASES.items() if all(name in title for name in names)}
+    if not wanted:
+        raise SystemExit(f"nothing is called {' '.join(names)!r}; there are:\n" + "\n".join(CASES))
     if "--alone" in arguments or "--saved" in arguments:
         measure_alone(wanted, open_saved if "--saved" in arguments else open_alone)
     elif "--opening" in arguments:

@@ -86,6 +86,13 @@ class ObserverLab(Lab):
         Those to open with, such as ``outputs=["y1"]``:
 
     {settings}
+
+    Examples
+    --------
+    >>> from percept_obs.labs import observer_lab
+    >>> lab = observer_lab(outputs=["y1"])
+    >>> lab.settings["outputs"], lab.settings["duration"]
+    (['y1'], 80.0)
     """
 
     schema = SCHEMA

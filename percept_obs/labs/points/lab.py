@@ -89,6 +89,13 @@ class PointsLab(Lab):
         Those to open with, such as ``state="independent"``:
 
     {settings}
+
+    Examples
+    --------
+    >>> from percept_obs.labs import points_lab
+    >>> lab = points_lab(points=[[0, 0, 4], [1, 0, 5]])
+    >>> lab.settings["points"]
+    [[0.0, 0.0, 4.0], [1.0, 0.0, 5.0]]
     """
 
     schema = SCHEMA

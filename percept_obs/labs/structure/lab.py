@@ -75,6 +75,13 @@ class StructureLab(Lab):
         Those to open with, such as ``unknown=["v_p1", "v_p2", "v_p3"]``:
 
     {settings}
+
+    Examples
+    --------
+    >>> from percept_obs.labs import structure_lab
+    >>> lab = structure_lab(duration=5)
+    >>> lab.settings["duration"]
+    5.0
     """
 
     schema = SCHEMA

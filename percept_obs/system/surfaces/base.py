@@ -55,6 +55,15 @@ class ImagingSurface(OnePoint):
     ------
     ValueError
         If the point is not found again from its image coordinates and its distance.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> surface = pinhole()
+    >>> surface.image_coordinates, surface.inverse_distance
+    ((y1, y2), y3)
+    >>> surface.project([2.0, 1.0, 4.0]).tolist()
+    [0.5, 0.25, 0.25]
     """
 
     name: str

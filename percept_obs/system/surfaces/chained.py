@@ -6,6 +6,15 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 
 
 def chained() -> ImagingSurface:
-    """Image plane Y = 1: the slope X/Y, then Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69)."""
+    """Image plane Y = 1: the slope X/Y, then Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69).
+
+    Examples
+    --------
+    >>> from percept_obs import chained
+    >>> chained().image
+    (X/Y, Z/Y)
+    >>> chained().distance
+    Y
+    """
     y1, y2 = sp.symbols("y1 y2", real=True)
     return ImagingSurface("chained", (X / Y, Z / Y), Y, (y1, 1, y2))

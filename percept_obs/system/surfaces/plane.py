@@ -26,6 +26,12 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
     ------
     ValueError
         If the normal vector is not three finite numbers with n3 not zero, or outputs is not 2 or 3.
+
+    Examples
+    --------
+    >>> from percept_obs import plane
+    >>> plane((0.0, 0.6, 0.8)).project([2.0, 1.0, 4.0]).round(3).tolist()
+    [0.526, 0.263, 0.263]
     """
     n = sp.symbols("n1:4", real=True)
     y = sp.symbols("y1:4", real=True)

@@ -25,6 +25,12 @@ def sphere(outputs: int = 2) -> ImagingSurface:
     ------
     ValueError
         If outputs is not 2 or 3.
+
+    Examples
+    --------
+    >>> from percept_obs import sphere
+    >>> sphere().project([2.0, 1.0, 2.0]).round(3).tolist()
+    [0.4, 0.2, 0.333]
     """
     if outputs not in (2, 3):
         raise ValueError(f"a sphere has 2 or 3 outputs, not {outputs!r}")
