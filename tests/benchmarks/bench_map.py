@@ -1,0 +1,80 @@
+"""How soon the map over two settings is there, and how many are drawn a second while a hand drags beside it.
+
+    python tests/benchmarks/bench_map.py [rounds]
+
+The first map is counted from the choice that asks for it to the moment in which a picture of it has been handed to the
+screen, in a page that is opened anew each time and in which nothing of maps was touched before.  Beside it stands for
+how long the page's main thread computed until then, which depends less on what else the machine does.
+"""
+
+import statistics
+import sys
+from typing import Any
+
+from bench_lab import SECONDS, drag, lab_alone, launched, open_alone, rested, spent
+
+from percept_obs.labs import observer_lab
+
+FIRST = """() => new Promise((resolve) => {
+    const [lab] = window.perceptObsLabs;
+    const map = lab.planes.find(({ sweep }) => sweep);
+    const began = performance.now();
+    const draw = map.draw.bind(map);
+    map.draw = (...given) => {
+        const drawn = draw(...given);
+        if (map.sweep.present) {
+            delete map.draw;
+            requestAnimationFrame(() => {
+                const { port1, port2 } = new MessageChannel();
+                port1.onmessage = () => resolve({ took: performance.now() - began, cells: map.sweep.found.levels[0].cells });
+                port2.postMessage(0);
+            });
+        }
+        return drawn;
+    };
+    lab.change({ over: { ...lab.settings.over, shows: "settling" } }, true);
+})"""
+
+COUNT = """() => {
+    const { sweep } = window.perceptObsLabs.values().next().value.planes.find(({ sweep }) => sweep);
+    const take = sweep.take.bind(sweep);
+    window.maps = new Set();
+    sweep.take = (part) => {
+        take(part);
+        if (sweep.found) window.maps.add(sweep.found.key);
+    };
+}"""
+
+
+def first_map(page: Any) -> dict[str, float]:
+    """Milliseconds to the first picture of a map, and those of the main thread."""
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    before = spent(session)["TaskDuration"]
+    found = page.evaluate(FIRST)
+    return found | {"main": 1000 * (spent(session)["TaskDuration"] - before)}
+
+
+def main(rounds: int = 5) -> None:
+    """Open a lab so many times, and tell medians."""
+    firsts, drags = [], []
+    with launched() as context:
+        for _ in range(rounds):
+            page = open_alone(context, observer_lab())
+            page.wait_for_function(lab_alone.DRAWN)
+            rested(page, 60)
+            firsts.append(first_map(page))
+            rested(page, 60)
+            page.evaluate(COUNT)
+            drags.append(drag(page, "foe", SECONDS) | {"maps": page.evaluate("window.maps.size") / SECONDS})
+            page.close()
+    first, moved = ({name: statistics.median(one[name] for one in all_) for name in names}
+                    for all_, names in ((firsts, ("took", "main", "cells")), (drags, ("maps", "rate"))))  # fmt: skip
+    print(
+        f"first map, {first['cells']:.0f} places a side: {first['took']:.0f} ms, the main thread {first['main']:.0f} ms\n"
+        f"while a hand drags: {moved['maps']:.1f} maps a second, the lab {moved['rate']:.1f} pictures a second"
+    )
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
