@@ -93,10 +93,10 @@ def on_a_cluster(work, rounds):
 
     over = {"gain": np.linspace(1, 30, 100), "noise": np.linspace(0, 0.02, 10)}
 
-    def run(seeds, client=None):
+    def run(seeds, client=None, **settings):
         camera = Camera(STEP, Uniform(0.01))
         begin, cpu = time.perf_counter(), spent(client)
-        ensemble(SCENARIO, ibo(BOTH), over, seeds, 20, camera, language="numba", client=client)
+        ensemble(SCENARIO, ibo(BOTH), over, seeds, 20, camera, language="numba", client=client, **settings)
         return np.array([time.perf_counter() - begin, spent(client) - cpu])
 
     def spent(client):
@@ -109,14 +109,12 @@ def on_a_cluster(work, rounds):
         distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
-        first, small = run(1, client), run(1, client)
+        first, small = (run(1, client, chunk=250) for _ in range(2))
         took = np.array([[run(seeds), run(seeds, client)] for _ in range(rounds)])
     threads, workers = np.median(took, axis=0)
     ratios = np.median(took[:, 0] / took[:, 1], axis=0)
-    print("seconds of wall clock and of CPU")
-    print(
-        "  1,000 runs on new workers, which import and load: {:.2f} {:.2f}; again: {:.2f} {:.2f}".format(*first, *small)
-    )
+    print("seconds of wall clock and of CPU; new workers import and load")
+    print("  1,000 runs on four new workers: {:.2f} {:.2f}; again: {:.2f} {:.2f}".format(*first, *small))
     print("  {:,} runs on threads: {:.2f} {:.2f}; on workers: {:.2f} {:.2f}".format(1000 * seeds, *threads, *workers))
     print("  threads' over workers': wall {:.2f}, CPU {:.2f}".format(*ratios))
     kept = ratios[0] >= 0.9
