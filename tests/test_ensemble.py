@@ -14,6 +14,7 @@ from percept_obs import (
     PerspectiveSystem,
     Scenario,
     affine,
+    cramer_rao,
     ekf,
     ensemble,
     ibo,
@@ -161,6 +162,34 @@ def test_coordinates_are_judged_when_they_are_asked_for():
     assert found.judged.item() == pytest.approx(outcome.final)
 
 
+def test_efficiency_is_the_error_over_the_bound():
+    over, camera = {"noise": [0.0, 0.02], "Z": [3.0, -1.0]}, Camera(0.05, Gaussian(0.01), dropout=0.1)
+    kalman = ekf(BOTH, noise_variance=1e-4)
+    found = ensemble(EQ35, kalman, over, [2, 5], 4.0, camera, {"y3": 0.3}, after=2.0, prior={"y3": 0.02})
+    scene, seen = with_numbers(EQ35, Z=3.0), replace(camera, noise=Gaussian(0.02))
+    runs = [track(record(scene, 4.0, seen, seed), kalman, {"y3": 0.3}) for seed in (2, 5)]
+    late = runs[0].elapsed >= 2
+    errors = [np.mean(run.error[late, -1] ** 2) for run in runs]
+    least = [np.mean(cramer_rao(run.recording, BOTH, {"y3": 0.02}).of("y3")[late] ** 2) for run in runs]
+    one = found.sel(noise=0.02, Z=3.0)
+    assert least[0] != least[1], "they lost different samples"
+    np.testing.assert_allclose(one.bound, np.sqrt(least), rtol=1e-12)
+    np.testing.assert_allclose(one.efficiency, np.sqrt(np.mean(errors) / np.mean(least)), rtol=1e-9)
+    assert found.efficiency.sizes == {"noise": 2, "Z": 2}
+    assert_array_equal(np.isfinite(found.efficiency), [[False, False], [True, False]])
+    assert (found.bound.attrs["units"], found.efficiency.attrs["units"]) == ("1/m", "1")
+
+
+@pytest.mark.slow
+def test_a_filter_that_knows_the_noise_comes_near_to_the_bound():
+    camera, start = Camera(0.05, Gaussian(0.01)), xr.DataArray(0.4 + 0.05 * np.random.default_rng(1).normal(size=50))
+    drawn = {"start_y3": start.rename({"dim_0": "seed"})}
+    observer = ekf(BOTH, noise_variance=1e-4, hidden_variance=0.0025)
+    found = ensemble(EQ35, observer, drawn, 50, 10.0, camera, after=2.0, prior={"y3": 0.0025})
+    assert 0.9 < found.efficiency.item() < 1.2
+    assert ensemble(EQ35, ibo(BOTH), drawn, 50, 10.0, camera, after=2.0, prior={"y3": 0.0025}).efficiency.item() > 1.5
+
+
 @pytest.mark.slow
 def test_it_keeps_names_units_and_settings_in_files(tmp_path):
     found = ensemble(EQ35, ekf(BOTH), {"b1": [0.4, 0.5], "start_y3": [0.2]}, 2, 1.0, NOISY)
@@ -226,6 +255,8 @@ def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkey
         ({"coordinates": ("y9",)}, "no coordinate y9"),
         ({"start": (0.0,)}, "expected 3"),
         ({"seeds": 10**9}, "at most 1e"),
+        ({"prior": {}, "camera": Camera()}, "without noise there is no bound"),
+        ({"prior": {"y9": 1.0}, "camera": NOISY}, "the prior names y9"),
     ],
 )
 def test_what_makes_no_sense_is_refused(changes, message):

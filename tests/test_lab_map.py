@@ -166,3 +166,43 @@ def test_a_map_follows_the_hand_beside_the_page_and_in_it(browser, where):
     assert found > 3
     page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.present")
     page.close()
+
+
+AIMED = "([...window.perceptObsLabs][0].planes[2].there)"
+TRACE = ".there path"
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_the_run_at_the_pointer_is_drawn_as_python_tracks_it(browser):
+    page = page_of(browser, observer_lab(noise=NOISY, duration=2.0, over={"shows": "settling"}))
+    page.wait_for_function(WHOLE)
+    box = page.locator(PLACE).bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"])
+    page.wait_for_function(f"() => {AIMED}.found && {AIMED}.found.key === {AIMED}.wanted.key")
+    found = page.evaluate(f"({{ settings: {AIMED}.wanted.follow, errors: Array.from({AIMED}.found.errors) }})")
+    assert found["settings"]["noise"]["size"] == pytest.approx(0.03, abs=0.001)
+    (run,) = runs(settings_of(page) | found["settings"]).values()
+    np.testing.assert_allclose(found["errors"], run.relative_error, rtol=1e-9)
+    assert page.get_attribute(TRACE, "d").startswith("M")
+    page.mouse.move(2, 2)
+    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d') === ''")
+    page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.change({ pictures: ['distance'] }, true); }")
+    page.wait_for_function(DRAWN)
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"])
+    assert page.evaluate(f"{AIMED}.wanted") is None, "a chart that is not shown asks for nothing"
+    page.close()
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_the_run_at_the_cursor_is_drawn_without_a_worker(browser):
+    lab = structure_lab(duration=1.0, period=0.02, step=0.02, over={"shows": "settling"})
+    page = page_of(browser, lab, policy=f"{stated_policy()}; worker-src 'none'")
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.found")
+    page.focus(PLACE)
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d').startsWith('M')")
+    page.keyboard.press("Escape")
+    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d') === ''")
+    page.close()

@@ -29,11 +29,15 @@ STATISTICS = MappingProxyType(
         "worst": ("1/m", "its largest value after the transient"),
         "resets": ("1", "number of resets"),
         "diverged_at": ("s", "time at which the estimate grew beyond all bounds"),
+        "bound": ("1/m", "least rms error after the transient that the noise leaves to any unbiased observer"),
         "nees": ("1", "mean normalised estimation error squared after the transient"),
         "nis": ("1", "mean normalised innovation squared after the transient"),
     }
 )
-"""What is known of every run: its unit and what it is.  The last two need a covariance, the very last samples' too."""
+"""What is known of every run: its unit and what it is.
+
+The bound needs a prior, the two after it a covariance, and the very last a measurement update.
+"""
 
 
 def watched(observer: Observer, coordinates: Sequence[str] = ()) -> Watched:

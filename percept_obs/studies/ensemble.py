@@ -13,6 +13,7 @@ import numpy as np
 from percept_obs.border import Kind, checked, limit, needed
 from percept_obs.compile import Array, Language, choose
 from percept_obs.compile.integrator import LONGEST_STEP
+from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Camera, Scenario, record
 from percept_obs.studies.filling import Store, fill
@@ -49,6 +50,7 @@ def ensemble(
     tolerance: float = TOLERANCE,
     after: float = 0.0,
     coordinates: Sequence[str] = (),
+    prior: Mapping[str, float] | None = None,
     language: Language | None = None,
     client: Client = None,
     store: str | os.PathLike[str] | None = None,
@@ -79,6 +81,9 @@ def ensemble(
         Seconds from which on errors count for their root mean square, their largest value, NEES and NIS.
     coordinates : sequence of str, optional
         Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
+    prior : mapping of names to variances, optional
+        What is known before the first sample, see `cramer_rao`; with it the Dataset has the bound and the efficiency.
+        An empty one stands for the variance that the extended Kalman filter begins with.
     language : "python" or "numba", optional
         See `solve`; Python's runs in numpy.
     client : distributed.Client, optional
@@ -94,10 +99,12 @@ def ensemble(
     xarray.Dataset
         With the dimension "seed" and those of `over`: status, outcome, settling_time (s, infinite if it has not
         converged), judged (what the tolerance bounds, at the end), final, rms, worst (errors of the inverse distance in
-        1/m), resets, diverged_at (s, infinite if it does not), and for an observer with a covariance the means nees and
-        nis.  `status` and `outcome` are numbers whose meanings are among their attributes.  A point that
-        does not stay in front of the camera has the status "not_in_front" and NaN.  ``to_netcdf`` and ``to_zarr`` keep
-        it with all settings.
+        1/m), resets, diverged_at (s, infinite if it does not), for an observer with a covariance the means nees and
+        nis, and with a prior the bound of rms (1/m) and, without the dimension "seed", the efficiency: root mean
+        squares of both over the seeds, one by the other, 1 at best without bias.  `status` and `outcome` are numbers
+        whose meanings are among their attributes.  A point that does not stay in front of the camera has the status
+        "not_in_front" and NaN, as the bound has without noise.  ``to_netcdf`` and ``to_zarr`` keep it with all
+        settings.
 
     Raises
     ------
@@ -157,6 +164,7 @@ def ensemble(
         tolerance,
         after,
         tuple(coordinates),
+        None if prior is None else tuple((name, float(value)) for name, value in prior.items()),
         choose(language, steps),
         len(several) == 1 and not {"noise", "dropout"} & set(over or {}),
     )
@@ -192,5 +200,8 @@ def _refuse_values(plan: Plan, grid: Grid) -> None:
     first = record(scenario, short, replace(camera, period=short))
     run = track(first, observer, plan.start, plan.hold, plan.believed, plan.step, "python")
     run.outcome(plan.tolerance, *plan.coordinates)
+    if plan.prior is not None:
+        noise = float(values["noise"].max()) ** 2 if "noise" in values else None
+        cramer_rao(first, observer.form, dict(plan.prior), noise)
     if not 0 <= plan.after <= plan.duration:
         raise ValueError(f"after is {plan.after} s; errors count from then on, within the {plan.duration} s of a run")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -59,9 +59,9 @@ class Store:
         self.runs: Any = group["progress/runs"]
         kept[:] = self.runs[:]
 
-    def keep(self, begin: int, found: Array) -> None:
-        """Write what is known of the runs from one on."""
-        self.runs[begin : begin + len(found)] = found
+    def keep(self, part: slice, found: Array) -> None:
+        """Write what is known of some runs that follow each other."""
+        self.runs[part] = found
 
     def finish(self, found: xr.Dataset) -> None:
         """Write the whole."""
@@ -88,42 +88,43 @@ def fill(plan: Plan, grid: Grid, kept: Array, chunk: int, client: Any = None, st
         If it was interrupted.
     """
     left = kept[:, 0] == NOT_RUN
-    parts = [np.arange(begin, min(begin + chunk, len(kept))) for begin in range(0, len(kept), chunk)]
-    todo = [(int(part[0]), grid.part(part)) for part in parts if left[part].any()]
+    parts = [slice(begin, min(begin + chunk, len(kept))) for begin in range(0, len(kept), chunk)]
+    todo = [part for part in parts if left[part].any()]
     if client is None:
         plan.prepare(grid.columns)
-    computed = _beside(plan, todo, client) if client or workers() > 1 else _one_by_one(plan, todo)
+    work = plan, grid
+    computed = _beside(work, todo, client) if client or workers() > 1 else _one_by_one(work, todo)
     with closing(computed), bar(None, "runs", len(kept), initial=int((~left).sum()), unit="run") as progress:
         try:
-            for begin, found in computed:
-                kept[begin : begin + len(found)] = found
+            for part, found in computed:
+                kept[part] = found
                 if store:
-                    store.keep(begin, found)
+                    store.keep(part, found)
                 progress.update(len(found))
         except KeyboardInterrupt:
             warn(Unfinished(f"interrupted: {int((kept[:, 0] == NOT_RUN).sum())} of {len(kept)} runs are missing"))
 
 
-Parts = Sequence[tuple[int, Mapping[str, Array]]]
-"""Where each part begins, and what its runs take."""
+Work = tuple[Plan, Grid]
+"""What runs have in common, and what each of them takes."""
 
-Computed = Generator[tuple[int, Array]]
-"""Where a part begins, and what its runs gave."""
-
-
-def _one_by_one(plan: Plan, todo: Parts) -> Computed:
-    for begin, part in todo:
-        yield begin, plan.compute(part)
+Computed = Generator[tuple[slice, Array]]
+"""A part, and what its runs gave."""
 
 
-def _beside(plan: Plan, todo: Parts, client: Any) -> Computed:
+def _one_by_one(work: Work, todo: Sequence[slice]) -> Computed:
+    for part in todo:
+        yield part, _part(work, part)
+
+
+def _beside(work: Work, todo: Sequence[slice], client: Any) -> Computed:
     """Parts as they are done on the threads of this machine or on a cluster; what is not wanted any more is left."""
     executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
     # a task's result goes to each worker once, and is found again when a worker dies
-    there = client.submit(_itself, plan, pure=False) if client else plan
-    begun: dict[Future[Array], int] = {}
+    there = client.submit(_itself, work, pure=False) if client else work
+    begun: dict[Future[Array], slice] = {}
     try:
-        begun |= {executor.submit(Plan.compute, there, part): begin for begin, part in todo}
+        begun |= {executor.submit(_part, there, part): part for part in todo}
         for future in as_completed(begun):
             yield begun.pop(future), future.result()
     finally:
@@ -132,5 +133,11 @@ def _beside(plan: Plan, todo: Parts, client: Any) -> Computed:
         executor.shutdown()
 
 
-def _itself(plan: Plan) -> Plan:
-    return plan
+def _itself(work: Work) -> Work:
+    return work
+
+
+def _part(work: Work, part: slice) -> Array:
+    """Some runs, whose values are laid out where they are computed."""
+    plan, grid = work
+    return plan.compute(grid.part(np.arange(part.start, part.stop)))

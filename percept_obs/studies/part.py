@@ -18,6 +18,7 @@ from percept_obs.recording import Camera, Scenario
 from percept_obs.recording.many import numbers_of, transitions, with_numbers
 from percept_obs.recording.simulation import LONGEST_LOOK_SHARE, coefficients
 from percept_obs.studies.counting import STATISTICS, moving, told, watched
+from percept_obs.studies.least_error import Values, least_error
 from percept_obs.studies.varying import camera_with
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import from_the_start
@@ -30,6 +31,9 @@ STATUS = ("not_run", "done", "not_in_front")
 
 MOST_AT_ONCE = 2_000_000
 """Numbers of samples and truths that are kept at once, 16 MB."""
+
+NEEDING = ("bound", "nees", "nis")
+"""Statistics that not every ensemble has."""
 
 DIP = 4.0
 """Largest changes of a distance between samples by which it must stay away from 0 to be sure not to dip below."""
@@ -50,6 +54,7 @@ class Plan:
     tolerance: float
     after: float
     coordinates: tuple[str, ...]
+    prior: Values | None
     language: Language
     noises_alike: bool
 
@@ -61,7 +66,8 @@ class Plan:
     @cached_property
     def statistics(self) -> tuple[str, ...]:
         """Names of what is known of every run, its status first."""
-        return ("status", *(name for name in STATISTICS if name not in ("nees", "nis") or name in self.means))
+        bound = () if self.prior is None else ("bound",)
+        return ("status", *(name for name in STATISTICS if name not in NEEDING or name in (*bound, *self.means)))
 
     def prepare(self, varied: Collection[str]) -> None:
         """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
@@ -160,8 +166,24 @@ class Plan:
         told_of = told(counts, time - time[0], grid - grid[0], late, self.means)
         fine = self._in_front(columns, scenes, counts, turning, time) if alone else np.isfinite(truth[scene, 0, 0])
         status = np.where(fine, DONE, NOT_IN_FRONT).astype(float)
+        if self.prior is not None:
+            told_of["bound"] = self._bounds(columns, scenes, camera, self.prior)
         rest = [np.where(fine, told_of[name], np.nan) for name in self.statistics[1:]]
         return np.stack([status, *rest], axis=-1)
+
+    def _bounds(self, columns: Mapping[str, Array], scenes: list[str], camera: Camera, prior: Values) -> Array:
+        """The least error of each run; the seed matters only where samples are lost."""
+        varied = [name for name in ("noise", "dropout") if name in columns]
+        seed = ["seed"] if camera.dropout or "dropout" in columns else []
+        rows, which = _distinct(columns, [*scenes, *varied, *seed])
+        found = []
+        for row in rows.tolist():
+            values = dict(zip([*scenes, *varied, *seed], row, strict=True))
+            numbers = tuple((name, values[name]) for name in scenes)
+            taken = camera_with(camera, {name: values[name] for name in varied})
+            form, drawn = self.observer.form, int(values.get("seed", 0))
+            found.append(least_error(self.scenario, numbers, form, self.duration, taken, drawn, prior, self.after))
+        return np.array(found)[which]
 
     def _truths(self, names: tuple[str, ...], rows: Array, time: Array) -> Array:
         """True coordinates of variants of the scenario, shape (D, K, n); NaN where the point is not seen throughout."""

@@ -41,6 +41,7 @@ def settings(plan: Plan, grid: Grid) -> dict[str, Any]:
         "tolerance": plan.tolerance,
         "after": plan.after,
         "judged_coordinates": list(plan.coordinates),
+        "prior": None if plan.prior is None else dict(plan.prior),
         "language": plan.language,
     }
     parts: list[Any] = [
@@ -85,6 +86,10 @@ def dataset(plan: Plan, grid: Grid, kept: Array, units: Mapping[str, str], said:
         elif name != "status":
             values = np.where(kept[:, 0].reshape(shape) == STATUS.index("done"), values, np.nan)
         variables[name] = (tuple(grid.dimensions), values, about)
+    if "bound" in variables:
+        error, least = (np.sqrt(np.mean(variables[name][1] ** 2, axis=0)) for name in ("rms", "bound"))
+        about = {"units": "1", "long_name": "rms error over its bound, both in the mean square over the seeds"}
+        variables["efficiency"] = (tuple(grid.dimensions)[1:], error / least, about)
     coordinates = {
         name: (along, values, {"units": units.get(name, "1")}) for name, (along, values) in grid.columns.items()
     }

@@ -18,7 +18,7 @@ from percept_obs.system.perspective import PerspectiveSystem
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 MAKERS = {make.key: make for make in OBSERVERS}
 PASSED = frozenset(
-    ("seeds", "duration", "start", "hold", "step", "tolerance", "after", "coordinates", "language", "chunk")
+    ("seeds", "duration", "start", "hold", "step", "tolerance", "after", "coordinates", "prior", "language", "chunk")
 )
 """What a file may say besides scenario, observer, outputs, gains, camera, over and store; see `ensemble`."""
 

@@ -1,10 +1,12 @@
 """Many runs of (35), y1 alone, without noise: an ensemble beside C, numpy, one run a thread, scipy and others.
 
     python tests/benchmarks/bench_ensemble.py [--runs 1024] [--duration 80] [--rounds 5] [--page FILE] [--million]
+    python tests/benchmarks/bench_ensemble.py --dask 30 [--rounds 5]
 
 Every round runs each of them once on the same work, so that a busy machine slows all alike; the table has medians of
 CPU seconds and their ratios to the ensemble's, and may be written as a page of the site.  What is not installed is left
-out and named.  Exits with 1 if a bar is not kept.
+out and named.  With --dask, work of so many CPU seconds on threads and on four workers instead.  Exits with 1 if a bar
+is not kept.
 """
 
 from __future__ import annotations
@@ -85,6 +87,41 @@ def by_the_number(runs):
     return cost
 
 
+def on_a_cluster(work, rounds):
+    """An ensemble of so many CPU seconds on this machine's threads and on four of Dask's workers, in turns."""
+    import distributed
+
+    over = {"gain": np.linspace(1, 30, 100), "noise": np.linspace(0, 0.02, 10)}
+
+    def run(seeds, client=None, **settings):
+        camera = Camera(STEP, Uniform(0.01))
+        begin, cpu = time.perf_counter(), spent(client)
+        ensemble(SCENARIO, ibo(BOTH), over, seeds, 20, camera, language="numba", client=client, **settings)
+        return np.array([time.perf_counter() - begin, spent(client) - cpu])
+
+    def spent(client):
+        """CPU seconds of this process and of all workers so far."""
+        return time.process_time() + (sum(client.run(time.process_time).values()) if client else 0.0)
+
+    run(1)
+    seeds = max(1, round(work / run(10)[1] * 10))
+    with (
+        distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        first, small = (run(1, client, chunk=250) for _ in range(2))
+        took = np.array([[run(seeds), run(seeds, client)] for _ in range(rounds)])
+    threads, workers = np.median(took, axis=0)
+    ratios = np.median(took[:, 0] / took[:, 1], axis=0)
+    print("seconds of wall clock and of CPU; new workers import and load")
+    print("  1,000 runs on four new workers: {:.2f} {:.2f}; again: {:.2f} {:.2f}".format(*first, *small))
+    print("  {:,} runs on threads: {:.2f} {:.2f}; on workers: {:.2f} {:.2f}".format(1000 * seeds, *threads, *workers))
+    print("  threads' over workers': wall {:.2f}, CPU {:.2f}".format(*ratios))
+    kept = ratios[0] >= 0.9
+    print(f"{'kept' if kept else 'NOT KEPT':9} four workers no slower than 0.9 of the threads: {ratios[0]:.2f}")
+    return 0 if kept else 1
+
+
 def timed(rounds, contenders):
     """Median CPU seconds of each, every round running all of them in turn."""
     found = {name: [] for name in contenders}
@@ -112,7 +149,12 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--page", type=Path, help="write the table as a page of the site")
     parser.add_argument("--million", action="store_true", help="a million runs of 20 s as well, about 20 CPU seconds")
+    parser.add_argument(
+        "--dask", type=float, help="instead, work of so many CPU seconds on threads and on four workers"
+    )
     options = parser.parse_args()
+    if options.dask:
+        return on_a_cluster(options.dask, options.rounds)
     per_run = [by_the_number(count) for count in (10**3, 10**3, 10**4, 10**5, *([10**6] if options.million else []))]
     runs, steps = options.runs // LANES * LANES, round(options.duration / STEP)
     observer = ibo(FORM)

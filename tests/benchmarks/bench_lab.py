@@ -152,9 +152,9 @@ def drag_patiently(page: Any, handle: str, seconds: float) -> dict[str, Any]:
     page.bring_to_front()
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
-    before = _spent(session)
+    before = spent(session)
     pictures = max(1, page.evaluate(DRAG, [seconds, handle, True])["pictures"])
-    after = _spent(session)
+    after = spent(session)
     session.detach()
     return {
         name: 1000 * (after[metric] - before[metric]) / pictures
@@ -162,7 +162,8 @@ def drag_patiently(page: Any, handle: str, seconds: float) -> dict[str, Any]:
     }
 
 
-def _spent(session: Any) -> dict[str, float]:
+def spent(session: Any) -> dict[str, float]:
+    """What a page has computed so far, in seconds."""
     return {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
 
 
@@ -276,22 +277,27 @@ def open_saved(context: Any, lab: Any) -> Any:
     return page
 
 
-def measure_alone(wanted: dict[str, Case], opened: Callable[[Any, Any], Any]) -> None:
-    """Measure configurations in pages without JupyterLab, which open at once."""
+@contextmanager
+def launched() -> Any:
+    """A browser that pages without JupyterLab are opened in."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(CHROMIUM_OPTIONS))
-        context = browser.new_context(viewport={"width": 1280, "height": 900})
-        with reference_page(context) as reference:
-            for title, case in wanted.items():
-                lab = getattr(labs, case.lab)(**case.settings)
-                page = opened(context, lab)
-                page.wait_for_function(lab_alone.DRAWN)
-                rested(page, 60)
-                measure(title, page, reference, HANDLES[case.lab])
-                page.close()
+        yield browser.new_context(viewport={"width": 1280, "height": 900})
         browser.close()
+
+
+def measure_alone(wanted: dict[str, Case], opened: Callable[[Any, Any], Any]) -> None:
+    """Measure configurations in pages without JupyterLab, which open at once."""
+    with launched() as context, reference_page(context) as reference:
+        for title, case in wanted.items():
+            lab = getattr(labs, case.lab)(**case.settings)
+            page = opened(context, lab)
+            page.wait_for_function(lab_alone.DRAWN)
+            rested(page, 60)
+            measure(title, page, reference, HANDLES[case.lab])
+            page.close()
 
 
 def main(*arguments: str) -> None:

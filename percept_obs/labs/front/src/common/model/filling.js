@@ -16,9 +16,14 @@ const REST = 25;
  *   Numbers of cells of a map with so many cells a side, and the milliseconds that one took.
  */
 
+/**
+ * @typedef {{model: any, kernels: any, engine: any, runs: any, axesOf: any}} Lab
+ *   `engine` keeps of a run what a cell holds, and that of `runs` all of it
+ */
+
 export class Filling {
   /**
-   * @param {{model: any, kernels: any, engine: any, axesOf: any}} lab
+   * @param {Lab} lab
    * @param {(part: Part) => void} tell
    * @param {{slice: number, pause: () => Promise<any>}} manners  milliseconds at a time, and what lets others have their turn
    */
@@ -54,6 +59,15 @@ export class Filling {
     }
   }
 
+  /** Follow one run, with its error at every sample. */
+  async follow({ key, follow: settings }) {
+    const { kernels, runs } = this.lab;
+    await kernels.prepare(settings);
+    const result = runs.run(settings, kernels.of(settings), false);
+    const [time, errors] = [result.time ?? [], result.runs?.[0]?.error ?? []];
+    return { key, time, errors };
+  }
+
   async fill({ id, settings, base, first }) {
     const { model, kernels, axesOf } = this.lab;
     await kernels.prepare(base);
@@ -87,7 +101,7 @@ export class Filling {
 }
 
 /** Let what has come meanwhile be heard. */
-function breath() {
+export function breath() {
   const { port1, port2 } = new MessageChannel();
   return new Promise((resolve) => {
     port1.onmessage = () => {
@@ -100,15 +114,15 @@ function breath() {
 
 /** Fill maps in a worker; `computing` gives what computes for a lab by its kind. The first message opens a lab, each of the others has a task. */
 export function serveMaps(computing, scope) {
-  /** @type {{model: any, kernels: any, engine: any, axesOf: any} | null} */
+  /** @type {Lab | null} */
   let lab = null;
   /** @type {Filling | null} */
   let filling = null;
 
   async function open({ kind, texts, model: given }) {
-    const { Kernels, CellEngine, axesOf } = computing(kind);
+    const { Kernels, Engine, CellEngine, axesOf } = computing(kind);
     const model = await modelOf(texts, given);
-    lab = { model, axesOf, kernels: new Kernels(model), engine: new CellEngine(model) };
+    lab = { model, axesOf, kernels: new Kernels(model), engine: new CellEngine(model), runs: new Engine(model) };
     filling = new Filling(lab, (part) => scope.postMessage(part, [part.values.buffer]), { slice: 12, pause: breath });
     scope.postMessage({ ready: true });
   }
@@ -119,7 +133,7 @@ export function serveMaps(computing, scope) {
   }
 
   scope.onmessage = ({ data }) => {
-    const done = "id" in data ? fill(data) : open(data);
+    const done = "follow" in data ? filling?.follow(data).then((found) => scope.postMessage(found)) : "id" in data ? fill(data) : open(data);
     done?.catch((error) => scope.postMessage({ error: error.message }));
   };
 }

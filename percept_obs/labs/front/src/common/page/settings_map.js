@@ -1,8 +1,8 @@
 // The map over two settings: what an observer's run comes to at every place, with a cursor that goes there.
 
 import { cellAt } from "../model/axes.js";
-import { IMPOSSIBLE, settingsAt, THEN } from "../model/cells.js";
-import { Filling } from "../model/filling.js";
+import { bare, IMPOSSIBLE, settingsAt, THEN } from "../model/cells.js";
+import { breath, Filling } from "../model/filling.js";
 import { cellAtShares, sharesOf, Sweep } from "../model/sweep.js";
 import { readOf } from "../model/typed.js";
 import { cellInWords, mapInWords, placeInWords, stateInWords } from "../model/map_words.js";
@@ -10,6 +10,7 @@ import { openBeside } from "./beside.js";
 import { Picture } from "./canvas.js";
 import { element } from "./controls.js";
 import { put } from "./put.js";
+import { RunThere } from "./run_there.js";
 import { boxOf, drawAim, drawMap } from "./settings_map_drawing.js";
 
 const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -17,6 +18,8 @@ const LEAP = 8;
 const HOW = "Map over two settings: move the cursor with the arrow keys, Enter goes there";
 /** Milliseconds at a time that maps may take of the page's own, until there is a worker and where there is none. */
 const SLICE = 8;
+/** Milliseconds in which a first picture has been handed to the screen, so that opening a worker does not delay it. */
+const SHOWN = 50;
 
 export class SettingsMap extends Picture {
   constructor(lab, axesOf) {
@@ -37,6 +40,8 @@ export class SettingsMap extends Picture {
     this.pad.dataset.control = "map place";
     this.line = element("p", { class: "run-there", "aria-hidden": "true" });
     this.figure.append(this.pad, this.line);
+    /** @type {RunThere | null} */
+    this.there = null;
     this.listen();
   }
 
@@ -110,29 +115,40 @@ export class SettingsMap extends Picture {
   come() {
     const { lab } = this;
     this.again();
+    setTimeout(() => this.here && this.hire(), SHOWN);
     const finest = this.sweep.found?.levels.at(-1);
     if (finest && finest.done === finest.cells ** 2 && !lab.held && lab.shown) this.describe(lab.shown);
   }
 
-  /** What fills maps: a worker as soon as it is open, and until then, or without one, slices of the page's own time; hired when somebody opens its controls, so that the first map need not wait for it. */
-  hire() {
-    if (this.here || this.worker) return;
+  /** Fill maps in slices of the page's own time: until there is a worker, and where there is none. */
+  begin() {
+    if (this.here) return;
     const { lab, sweep } = this;
-    const { CellEngine, axesOf } = lab.constructor.computing;
-    const pause = () => new Promise((resolve) => setTimeout(resolve));
-    const here = new Filling({ model: lab.model, kernels: lab.kernels, engine: new CellEngine(lab.model), axesOf }, (part) => sweep.take(part), { slice: SLICE, pause });
+    const there = (this.there ??= new RunThere(lab.charts.error));
+    const { Engine, CellEngine, axesOf } = lab.constructor.computing;
+    const { model, kernels } = lab;
+    const here = new Filling({ model, kernels, engine: new CellEngine(model), runs: new Engine(model), axesOf }, (part) => sweep.take(part), { slice: SLICE, pause: breath });
     this.here = here;
-    sweep.fill({ ask: (task) => here.take(task).catch((error) => lab.fail(error)) });
+    const failed = (error) => lab.fail(error);
+    sweep.fill({ ask: (task) => here.take(task).catch(failed) });
+    there.from((task) => here.follow(task).then((found) => there.take(found), failed));
+  }
+
+  /** Let a worker fill maps as soon as it is open: hired when somebody comes to its controls, else after the first picture, which would wait for it. */
+  hire() {
+    this.begin();
+    const { here, lab, sweep, there } = this;
     const bundle = lab.widget.get("_esm");
-    if (!bundle || typeof Worker === "undefined") return;
+    if (this.worker || !bundle || typeof Worker === "undefined") return;
     const [kind, texts, model] = ["kind", "texts", "model"].map((name) => lab.widget.get(name));
     this.worker = openBeside({ bundle, kind, texts, model }, {
       onReady: ({ ask }) => {
-        here.stop();
+        here?.stop();
+        there?.from(ask);
         sweep.fill({ ask: (task) => ask({ ...task, written: readOf(task.settings, lab.model) }) });
         this.again();
       },
-      onAnswer: (answer) => (answer.error ? lab.fail(new Error(answer.error)) : sweep.take(answer)),
+      onAnswer: (answer) => (answer.error ? lab.fail(new Error(answer.error)) : answer.key ? there?.take(answer) : sweep.take(answer)),
       onGone: () => {},
     }, "maps");
   }
@@ -143,6 +159,8 @@ export class SettingsMap extends Picture {
     this.worker?.terminate();
     this.here = this.worker = null;
     this.sweep.close();
+    this.there?.from(null);
+    this.there?.want(null);
   }
 
   draw(shown, _ghost, _cursor, theme) {
@@ -154,7 +172,7 @@ export class SettingsMap extends Picture {
     }
     const functions = lab.kernels.of(shown.settings);
     if (off || !functions) return undefined;
-    this.hire();
+    this.begin();
     sweep.want(shown.settings, functions, shown.tolerance);
     const size = this.fit(theme.font);
     const box = boxOf(size);
@@ -182,6 +200,8 @@ export class SettingsMap extends Picture {
     const cell = aim && found && cellAtShares(found, aim);
     const text = cell ? `${placeInWords(found.plan, cell.place)}: ${cellInWords(cell)}` : stateInWords(sweep);
     put(this.line, text);
+    const follow = cell && this.at(aim)?.settings;
+    this.there?.want(follow ? { key: JSON.stringify([sweep.key, cell.place]), follow: bare(follow, found.plan.observer) } : null);
     this.pad.setAttribute("aria-valuenow", String(Math.round(100 * (aim?.[0] ?? 0))));
     if (this.pad.getAttribute("aria-valuetext") !== text) this.pad.setAttribute("aria-valuetext", text);
   }

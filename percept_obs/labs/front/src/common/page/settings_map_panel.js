@@ -26,7 +26,7 @@ export function mapTopic(panel, axesOf) {
   const rows = [observer, ...axes].map((control) => panel.add(control));
   const more = element("div", {}, ...rows, element("p", { class: "meaning" }, "Each place is a whole run with all other settings as they are; noise has the same seed everywhere."));
   const body = topic("over", "Map over two settings", panel.add(shows), panel.onlyIf(({ over }) => over.shows !== "nothing", more));
-  body.addEventListener("toggle", () => body.open && lab.planes.find((plane) => plane.sweep).hire());
+  for (const near of ["pointerenter", "focusin", "toggle"]) body.addEventListener(near, () => lab.planes.find((plane) => plane.sweep).hire());
   return body;
 }
 
