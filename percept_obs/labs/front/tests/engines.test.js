@@ -67,16 +67,16 @@ test("resets have one tick in each column of pixels, however many there are", ()
 });
 
 test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {
-  const settings = { state: "independent", depth: 2, size: 5 };
+  const settings = { state: "independent", depth: 2 };
   const functions = { locate: ([y1, y2, depth]) => [y1 * depth, y2 * depth, depth] };
   const [x, P] = [new Float64Array(6).fill(9), new Float64Array(36).fill(7)];
   const layout = { ...apart(2), names: ["a", "b", "c", "d", "e", "f"] };
   const observer = new Observer({ memory: new Memory() });
-  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P);
+  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P, new Float64Array(36).map((_, at) => at));
   [9, 9, 9, 1, -0.5, 2].forEach((value, i) => assert.ok(Math.abs(x[i] - value) < 1e-14));
   P.forEach((value, at) => {
     const [i, j] = [Math.floor(at / 6), at % 6];
-    assert.equal(value, i < 3 && j < 3 ? 7 : i === j ? 5 : 0);
+    assert.equal(value, i < 3 && j < 3 ? 7 : i < 3 || j < 3 ? 0 : at);
   });
 });
 
