@@ -9,6 +9,7 @@ import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
 import { translationTowards } from "../src/observer/model/engine.js";
 import { drawResets } from "../src/common/page/chart_events.js";
+import { fillBand } from "../src/common/page/charts.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
@@ -64,6 +65,20 @@ test("resets have one tick in each column of pixels, however many there are", ()
   drawResets(pen, place, [{ times, colour: "black", text: "" }], { picked: null }, false);
   const wanted = new Set(Array.from(times, (time) => Math.round(place.x(time))).filter((x) => x >= 10 && x <= 60));
   assert.deepEqual(ticks, [...wanted]);
+});
+
+test("a band ends where its numbers end, and begins anew behind", () => {
+  const place = { width: 100, x: (time) => time, y: (value) => value };
+  const drawn = [];
+  const pen = { beginPath() {}, fill() {}, moveTo: (x, y) => drawn.push([["from", x, y]]), lineTo: (x, y) => drawn.at(-1).push(["to", x, y]) };
+  const high = Float64Array.of(5, 6, NaN, 7, 8, Infinity, 9);
+  fillBand(pen, place, { time: Float64Array.from(high, (_, k) => k), low: new Float64Array(7), high, colour: "black" });
+  const outline = ([[, x, y], ...rest]) => [[x, y], ...rest.map(([, ...at]) => at)];
+  assert.deepEqual(drawn.map(outline), [
+    [[0, 5], [1, 6], [1, 0], [0, 0]],
+    [[3, 7], [4, 8], [4, 0], [3, 0]],
+    [[6, 9], [6, 0]],
+  ]);
 });
 
 test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {
