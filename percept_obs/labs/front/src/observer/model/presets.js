@@ -88,8 +88,8 @@ export const PRESETS = presetsOf([
         button: "Show the cure",
         changes: { gains: { identifier_based: { noise_variance: 1e-4 / 3 } } },
         answer:
-          "Who knows the variance of the noise knows this mean, and can take it out. The estimate then stays about the " +
-          "truth, as near as one noisy output tells it.",
+          "If the variance of the noise is known, so is this mean, and the observer can take it out. Then the estimate stays " +
+          "about the truth, as near as one noisy output tells it.",
       },
     ],
   },
