@@ -164,7 +164,7 @@ def test_p_is_typed_as_a_matrix_and_what_does_not_fit_is_said(fresh):
     shown = typed("P", f"[{ones}]")
     assert_equals_python(shown)
     fresh.locator(control("add point")).click()
-    fresh.wait_for_function("document.body.innerText.includes('P is of 9 × 9, and the state has 12 entries')")
+    fresh.wait_for_function("() => document.body.innerText.includes('P is of 9 × 9, and the state has 12 entries')")
     fresh.locator(control("undo")).click()
     fresh.locator(control("P")).fill("[[1, 2, 0], [t, 1, 0], [0, 0, 1]]")
     fresh.locator(control("P")).press("Enter")
@@ -173,7 +173,7 @@ def test_p_is_typed_as_a_matrix_and_what_does_not_fit_is_said(fresh):
     assert "P is not symmetric: its row 1 has 2 in column 2" in said.inner_text()
     fresh.locator(control("P")).fill("[1, 1, 1 - t]")
     fresh.locator(control("P")).press("Enter")
-    fresh.wait_for_function("document.body.innerText.includes('P has the eigenvalue')")
+    fresh.wait_for_function("() => document.body.innerText.includes('P has the eigenvalue')")
     fresh.locator(control("undo")).click()
     rested(fresh)
 
