@@ -219,7 +219,7 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
         (points_lab, {"P": "[[1, t, 0], [2t, 1, 0], [0, 0, 1]]"}, "row 1 has t in column 2, and its row 2 has 2.t"),
         (points_lab, {"P": np.eye(4)}, "P is of 4 x 4; it must be .* or of 9 x 9, for the state has 9 entries"),
         (points_lab, {"P": "[[1, 2, 0]]"}, r"P is of 1 x 3; it must be a number, a diagonal \[a, b, c\]"),
-        (points_lab, {"P": [["1", "__import__('os')"]]}, "an entry of P is the text '1'.*never text"),
+        (points_lab, {"P": [["1", "__import__('os')"]]}, "P: an entry is the text '1'.*never text; it must be"),
         (points_lab, {"P": "1; P = 2"}, "P gives an expression; it must be one expression"),
         (points_lab, {"P": "P = 1; P = 2"}, "P is given twice"),
         (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),

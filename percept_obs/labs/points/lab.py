@@ -134,7 +134,7 @@ class PointsLab(Lab):
         Points without a word on hiding are seen, and a P without a word on its kind is meant as it is typed.
         """
         if isinstance(settings, Mapping):
-            given = {name: as_text(settings[name]) for name in USED_BY if name in settings}
+            given = {name: as_text(name, settings[name]) for name in USED_BY if name in settings}
             settings = {**({"weight": "typed"} if "P" in given else {}), **settings, **given}
         points = settings.get("points") if isinstance(settings, Mapping) else None
         if isinstance(points, list | tuple) and points and "hidden" not in settings:

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
+from numbers import Real
 from types import MappingProxyType
 from typing import Any
 
@@ -153,13 +154,21 @@ def read_weight(text: str) -> TypedWeight:
     return typed
 
 
-def as_text(value: Any) -> Any:
-    """What is given for P as a text: of numbers, expressions of `TIME`, and matrices of these; others as they are."""
-    if isinstance(value, str) or value is None:
+def as_text(name: str, value: Any) -> Any:
+    """What is given for a setting of P as a text: of a number, a column, a matrix, in numbers or in `TIME`.
+
+    What else is given stays as it is, for the schema to refuse.
+    """
+    if not isinstance(value, list | tuple | np.ndarray | sp.MatrixBase | sp.Expr | Real) or isinstance(value, bool):
         return value
-    entries = np.atleast_1d(np.asarray(value, dtype=object))  # a matrix of sympy would run text as code
-    rows = (entries[:, None] if entries.ndim == 1 else entries).tolist()
-    lines = [", ".join(_written(expression(entry, "an entry of P")) for entry in row) for row in rows]
+    try:
+        entries = np.atleast_1d(np.asarray(value, dtype=object))  # a matrix of sympy would run text as code
+        if not 0 < entries.size <= MOST_OF_P:
+            raise ValueError(f"it has {entries.size} entries")
+        rows = (entries[:, None] if entries.ndim == 1 else entries).tolist()
+        lines = [", ".join(_written(expression(entry, "an entry")) for entry in row) for row in rows]
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}; it must be {FORMS}") from None
     return f"P = {lines[0]}" if len(rows) == len(rows[0]) == 1 else f"P = [{', '.join(f'[{line}]' for line in lines)}]"
 
 
