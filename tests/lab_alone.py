@@ -21,14 +21,14 @@ const listeners = {};
 window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
     Object.assign(state, found);
-    for (const name of Object.keys(found)) listeners[`change:${name}`]?.();
+    for (const name of Object.keys(found)) for (const hear of listeners[`change:${name}`] ?? []) hear();
 };
 const model = {
     get: (name) => state[name],
     set: (name, value) => (state[name] = value),
     save_changes: () => window.toPython?.({ asked: state.asked, settings: state.settings, summary: state.summary })
         .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
-    on: (event, listener) => (listeners[event] = listener),
+    on: (event, listener) => (listeners[event] ??= []).push(listener),
     off() {},
 };
 bundle.render({ model, el: document.body });

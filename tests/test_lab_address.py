@@ -180,7 +180,7 @@ OF_OBSERVER = [
 OF_POINTS = [
     *(f"points={value}" for value in ["", "/", "1,2,3/", "1,2/3,4", "1,2,3/x", "-", "0,0,1/" * 200 + "0,0,1", "0,0,1"]),
     *(f"hidden={value}" for value in ("", "-/-", "5,2/-/-", "-1,2/-/-")),
-    *("weight=typed;P=exp(t)", "state=own", "P=" + "x" * 401),
+    *("weight=typed;P=exp(t)", "state=own", "P=" + "x" * 2001),
 ]
 OF_STRUCTURE = [
     *("unknown=v_p1,d_s", "unknown=v_p1,v_p1", "duration=100;step=1e-5", "kept.duration=100;kept.step=1e-5"),

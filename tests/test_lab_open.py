@@ -17,8 +17,7 @@ from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo,
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.points.lab import run_of as run_of_points
-from percept_obs.labs.shared.lab import MOST_WRITTEN
-from percept_obs.labs.shared.typed_motion import MOST
+from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
@@ -162,6 +161,7 @@ def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
 
 
 SWUNG = "w = [0, 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
+OF_ALL = np.eye(9) + 0.1 * np.ones((9, 9))
 OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
 
 
@@ -173,6 +173,16 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     typed = {"weight": "typed", "P": "P = P + exp(-t) / 2", "size": 0.7}
     changes = [{"state": "origin", "spin": 0.3, "motion": SWUNG, **typed}, {"state": "independent", "motion": SWUNG}]
     changes.append({"points": places, "hidden": [None] * 12, **typed, "P": "1 + t", "start": "error"})
+    first = {"weight": "riccati", "size": 0.05, "hidden": [None, [0.0, 0.4], None]}
+    changes += [
+        {"P": "q = exp(-t); P = [[P + 1, q/2, 0], [q/2, 1, 0], [0, 0, 1 + t]]", "start": "error"},
+        {"P": "[1, 2, P]", "size": 4.0, "state": "independent"},
+        {"P": OF_ALL, "start": "error", "hidden": [None, [0.2, 0.6], None]},
+        {"P": OF_ALL, "state": "independent"},
+        {**first, "P0": "P = [[2P, P, 0], [P, 2P, 0], [0, 0, P/4]]", "state": "origin", "spin": 0.3},
+        {**first, "P0": OF_ALL / 9, "state": "independent"},
+        {"weight": "lyapunov", "P0": OF_ALL, "decrease": 0.02},
+    ]
     tasks = [lab.check({**lab.settings, **OF_POINTS, **change}) for change in changes]
     assert tasks[2]["P"] == "P = 1 + t"
     for settings in tasks:
@@ -204,6 +214,15 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
         (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
         (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives w1; it must be one expression"),
         (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
+        (points_lab, {"P": "[1, 1, 1 - t]"}, "P is not positive definite: it has the eigenvalue .* at 1.02 s"),
+        (points_lab, {"P": [[1, 2, 0], [2, 1, 0], [0, 0, 1]]}, "it has the eigenvalue -1 at 0 s"),
+        (points_lab, {"P": "[[1, t, 0], [2t, 1, 0], [0, 0, 1]]"}, "row 1 has t in column 2, and its row 2 has 2.t"),
+        (points_lab, {"P": np.eye(4)}, "P is of 4 x 4; it must be .* or of 9 x 9, for the state has 9 entries"),
+        (points_lab, {"P": "[[1, 2, 0]]"}, r"P is of 1 x 3; it must be a number, a diagonal \[a, b, c\]"),
+        (points_lab, {"P": [["1", "__import__('os')"]]}, "P: an entry is the text '1'.*never text; it must be"),
+        (points_lab, {"P": "1; P = 2"}, "P gives an expression; it must be one expression"),
+        (points_lab, {"P": "P = 1; P = 2"}, "P is given twice"),
+        (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
     ],
 )
 def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
@@ -324,9 +343,9 @@ def test_whatever_the_page_asks_to_be_read_is_answered_and_never_run(make, tmp_p
     monkeypatch.chdir(tmp_path)
     lab = make()
     before = lab.settings
-    for text in (*TYPED, *(f"b1 = {k}" for k in range(2 * MOST_WRITTEN)), "y" * (MOST + 1)):
+    for text in (*TYPED, *(f"b1 = {k}" for k in range(2 * MOST_WRITTEN)), "y" * (MOST_READ + 1)):
         lab.set_state({"asked": text})
-        if text.strip() and len(text) <= MOST:
+        if text.strip() and len(text) <= MOST_READ:
             answer = lab.written[text]
             assert set(answer) == {"refusal", "position"} or "source" in answer
     assert len(lab.written) <= MOST_WRITTEN

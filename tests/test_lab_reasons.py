@@ -107,6 +107,26 @@ def test_the_innovation_is_drawn_against_the_noise(show):
     assert sorted(value for name, value in lines["drawn"] if name == "noise") == [-0.02, 0.02]
 
 
+def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(show):
+    page = show()
+    page.click(control("preset gain"))
+    page.click(control("act gain 0"))
+    page.wait_for_function(RESTED)
+    assert page.evaluate("() => [...window.perceptObsLabs][0].settings.kept.gains.identifier_based.gain") == 10
+    sizes = page.evaluate("""() => {
+        const [{ drawn }] = window.perceptObsLabs;
+        const size = ({ values }) => Math.hypot(...Array.from(values).slice(400)) / 20;
+        return ["innovation", "step"].map((name) => {
+            const of = (begins) => drawn[name].lines.find((line) => line.name.startsWith(begins));
+            return size(of("identifier")) / size(of("kept"));
+        });
+    }""")
+    assert 0.9 < sizes[0] < 1.3
+    assert 25 < sizes[1] < 36
+    page.set_viewport_size({"width": 1280, "height": 800})
+    assert len(names_of(page, "kept run")) == 3  # on top of both, and what noise adds to it
+
+
 def test_a_choice_opens_the_time_where_its_story_is(show):
     page = show()
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") < 20

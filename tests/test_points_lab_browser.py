@@ -146,6 +146,38 @@ def test_another_p_is_chosen(fresh):
         estimates.append(shown["estimate"])
 
 
+def test_p_is_typed_as_a_matrix_and_what_does_not_fit_is_said(fresh):
+    def typed(name, text):
+        fresh.locator(control(name)).fill(text)
+        fresh.locator(control(name)).press("Enter")
+        fresh.wait_for_function(
+            "([name, text]) => [...perceptObsLabs][0].settings[name] === text", arg=[name, f"P = {text}"]
+        )
+        rested(fresh)
+        return state(fresh)
+
+    fresh.locator(control("weight")).select_option("riccati")
+    shown = typed("P0", "[[P, 0, 0], [0, P, 0], [0, 0, P/4]]")
+    assert_equals_python(shown, 1e-7)
+    fresh.locator(control("weight")).select_option("typed")
+    ones = ", ".join(f"[{', '.join(str(0.1 + (i == j)) for j in range(9))}]" for i in range(9))
+    shown = typed("P", f"[{ones}]")
+    assert_equals_python(shown)
+    fresh.locator(control("add point")).click()
+    fresh.wait_for_function("() => document.body.innerText.includes('P is of 9 × 9, and the state has 12 entries')")
+    fresh.locator(control("undo")).click()
+    fresh.locator(control("P")).fill("[[1, 2, 0], [t, 1, 0], [0, 0, 1]]")
+    fresh.locator(control("P")).press("Enter")
+    said = fresh.locator("[data-control=P] ~ [role=status]")
+    said.wait_for()
+    assert "P is not symmetric: its row 1 has 2 in column 2" in said.inner_text()
+    fresh.locator(control("P")).fill("[1, 1, 1 - t]")
+    fresh.locator(control("P")).press("Enter")
+    fresh.wait_for_function("() => document.body.innerText.includes('P has the eigenvalue')")
+    fresh.locator(control("undo")).click()
+    rested(fresh)
+
+
 def test_the_motion_is_changed_and_what_is_lost_is_said(fresh):
     fresh.locator(control("no input")).click()
     rested(fresh)

@@ -15,7 +15,7 @@ from percept_obs.recording import Scenario, scenarios
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 HOLDS = ("zero", "first", "exact")
-PICTURES = ("outputs", "innovation", "inverse", "distance", "error", "excitation")
+PICTURES = ("outputs", "innovation", "step", "inverse", "distance", "error", "excitation")
 BOUND = ("error", "map")
 MAPPED = (
     *("noise.size", "dropout", "foe.0", "foe.1", "b.0", "b.1", "b.2", "seen.0", "seen.1", "seen.2"),

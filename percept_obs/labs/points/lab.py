@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from percept_obs.compile import Array, vectorised
+from percept_obs.compile import vectorised
 from percept_obs.labs.points.settings import PICTURES, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
@@ -22,33 +21,35 @@ from percept_obs.labs.points.texts import (
     state_of,
     typed_velocities,
 )
+from percept_obs.labs.points.typed_weight import (
+    USED_BY,
+    as_text,
+    gives_P,
+    read_weight,
+    refuse_P,
+    weight_of,
+)
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
+from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
 from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import (
     FirstSight,
-    LyapunovMatrix,
     PointsRun,
     PointsScenario,
     UnseenDirection,
-    constant,
     luenberger,
-    lyapunov,
-    riccati,
-    scheduled,
 )
 from percept_obs.points.form import JUDGED, PointsForm, points_form
 from percept_obs.points.manoeuvre import Manoeuvre, velocities
 from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record
 from percept_obs.system.motion import TIME
-from percept_obs.system.signal import OverTime
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
 
@@ -60,22 +61,6 @@ LOOK_WORK = 26
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
-
-_WEIGHTS: Mapping[str, Callable[[Settings], LyapunovMatrix]] = MappingProxyType(
-    {
-        "constant": lambda s: constant(s["size"]),
-        "scheduled": lambda s: scheduled(lambda t: s["size"] * (s["final"] / s["size"]) ** (t / s["duration"])),
-        "typed": lambda s: scheduled(OverTime(lambda times: _typed_P(s, times)[:, None])),
-        "lyapunov": lambda s: lyapunov(s["size"], s["decrease"]),
-        "riccati": lambda s: riccati(s["size"], s["forgetting"]),
-    }
-)
-"""P by its name in the settings; a scheduled one grows or shrinks by the same factor in equal times."""
-
-
-def _typed_P(settings: Settings, times: Array) -> Array:
-    """A typed P at some times, shape (T,)."""
-    return read_motion(settings["P"], BLOCKS).rows(times, np.array([*[0.0] * 9, settings["size"]]))[:, -1]
 
 
 class PointsLab(Lab):
@@ -129,20 +114,28 @@ class PointsLab(Lab):
         return run_of(self.settings, self._form)
 
     def typed(self, text: str) -> Typed:
-        """The motion, or the P, that a text describes; a ValueError if it cannot be read."""
+        """The motion that a text describes; a ValueError if it cannot be read."""
         return read_motion(text, BLOCKS)
 
     def typed_for_the_page(self, text: str) -> Settings:
-        """The coefficients of each state with a typed motion."""
+        """A typed P, or the coefficients of each state with a typed motion."""
+        if gives_P(text):
+            return read_weight(text).for_the_page()
         typed = self.typed(text)
         moved = typed_velocities(typed, velocities())
-        states = {state: coefficients_for_the_page(state, moved) for state in STATES if set(typed.changed) != {"P"}}
+        states = {state: coefficients_for_the_page(state, moved) for state in STATES}
         functions = {str(f.func) for entry in typed.changed.values() for f in entry.atoms(sp.Function)}
         told = {name: sp.sstr(entry) for name, entry in typed.changed.items()}
         return {**typed.for_the_page(), "states": states, "sympy": told, "functions": sorted(functions)}
 
     def check(self, settings: Settings) -> Settings:
-        """Complete settings, or a ValueError that says what is wrong; points without a word on hiding are seen."""
+        """Complete settings, or a ValueError that says what is wrong.
+
+        Points without a word on hiding are seen, and a P without a word on its kind is meant as it is typed.
+        """
+        if isinstance(settings, Mapping):
+            given = {name: as_text(name, settings[name]) for name in USED_BY if name in settings}
+            settings = {**({"weight": "typed"} if "P" in given else {}), **settings, **given}
         points = settings.get("points") if isinstance(settings, Mapping) else None
         if isinstance(points, list | tuple) and points and "hidden" not in settings:
             settings = {**settings, "hidden": [None] * len(points)}
@@ -158,10 +151,18 @@ class PointsLab(Lab):
                 raise ValueError(f"there are {points} points; it must be {self._form.points}, as in your own form")
             if settings["motion"].strip():
                 raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
-        _refuse_typed(settings)
+        _refuse_motion(settings)
+        refuse_P(settings, self._states(settings))
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
                 raise ValueError(f"hidden {k} is {times!r}; it must begin at 0 s or later and end after that")
+
+    def _states(self, settings: Settings) -> int:
+        """How many entries the state of settings has."""
+        if self._form is not None and settings["state"] == "own":
+            return self._form.states
+        layouts = part("points_lab")["states"][settings["state"]]["layouts"]
+        return len(layouts[len(settings["points"]) - 1]["names"])
 
     def analyse(self) -> Settings:
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
@@ -182,29 +183,16 @@ class PointsLab(Lab):
 points_lab = PointsLab
 
 
-def _refuse_typed(settings: Settings) -> None:
-    """Refuse a typed motion or P that has no numbers, or gives what the other is for."""
-    duration = settings["duration"]
-    if settings["motion"].strip():
-        typed = typed_in(settings, "motion", BLOCKS)
-        if "P" in typed.changed:
-            raise ValueError('motion gives P; choose weight="typed" and type it there')
-        moved = (*(entry for vector in _manoeuvre(settings).velocities for entry in vector), sp.S.One)
-        function = vectorised((TIME,), moved)
-        typed.refuse_poles(duration, lambda times: np.stack(function(times), axis=-1))
-    if settings["weight"] != "typed":
+def _refuse_motion(settings: Settings) -> None:
+    """Refuse a typed motion that has no numbers, or gives P."""
+    if not settings["motion"].strip():
         return
-    if "=" not in settings["P"]:
-        settings["P"] = f"P = {settings['P']}"
-    changed = set(typed_in(settings, "P", BLOCKS).changed) - {"P"}
-    if changed:
-        raise ValueError(f"P gives {', '.join(sorted(changed))}; it must be one expression, such as P = 1 + exp(-t)")
-    times = np.linspace(0, duration, INSTANTS)
-    with np.errstate(all="ignore"):
-        found = _typed_P(settings, times)
-    bad = np.flatnonzero(~((found > 1e-9) & (found < 1e9)))
-    if len(bad):
-        raise ValueError(f"P is {found[bad[0]]:.4g} at {times[bad[0]]:.4g} s; it must be from 1e-9 to 1e9 at all times")
+    if gives_P(settings["motion"]):
+        raise ValueError('motion gives P; choose weight="typed" and type it there')
+    typed = typed_in(settings, "motion", BLOCKS)
+    moved = tuple(entry for vector in _manoeuvre(settings).velocities for entry in vector)
+    function = vectorised((TIME,), moved)
+    typed.refuse_poles(settings["duration"], lambda times: np.stack(function(times), axis=-1))
 
 
 def _manoeuvre(settings: Settings) -> Manoeuvre:
@@ -249,7 +237,7 @@ def run_of(settings: Settings, own: PointsForm | None = None) -> PointsRun:
     begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None
     if settings["start"] == "error":
         begin = recording.truth[0] - settings["error"] * np.resize(ERROR, form.states)
-    observer = luenberger(form, _WEIGHTS[settings["weight"]](settings))
+    observer = luenberger(form, weight_of(settings, form.states))
     run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"], language="python")
     assert isinstance(run, PointsRun)
     return run

@@ -1,9 +1,10 @@
 """What may be set in the lab of many points."""
 
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
+from percept_obs.labs.points.typed_weight import MOST_OF_P
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, noise
 from percept_obs.labs.shared.schema import Choice, Names, Number, Optional, Row, Schema, Settings, Several, Text, vector
-from percept_obs.labs.shared.typed_motion import MOST, typed_setting
+from percept_obs.labs.shared.typed_motion import typed_setting
 
 PICTURES = ("error", "depth", "points", "gramian")
 WEIGHTS = ("constant", "scheduled", "typed", "lyapunov", "riccati")
@@ -30,7 +31,19 @@ SCHEMA = Schema(
     weight=Choice("constant", WEIGHTS, label="P is"),
     size=Number(*_SIZE, label="P", about="P, or P at the beginning, times the identity"),
     final=Number(*_SIZE, label="P at the end"),
-    P=Text("P = 1 + exp(-t)", MOST, label="P over time", about="a typed P, times the identity; P stands for `size`"),
+    P=Text(
+        "P = 1 + exp(-t)",
+        MOST_OF_P,
+        label="P over time: a number, a diagonal or a matrix",
+        about="a typed P, as text or array: a number, a diagonal, 3 x 3 for each vector of three states, or the whole; "
+        "the letter P stands for `size`",
+    ),
+    P0=Text(
+        "",
+        MOST_OF_P,
+        label="P at the beginning: a diagonal or a matrix",
+        about="in the same way a Lyapunov or Riccati P at the beginning; empty for `size` times the identity",
+    ),
     decrease=Number(0.0, 0, 100, (0, 0.5), 0.005, unit="1/s", about="of a Lyapunov P"),
     forgetting=Number(0.3, 0, 100, (0, 2), 0.02, unit="1/s", about="of a Riccati P"),
     start=Choice(

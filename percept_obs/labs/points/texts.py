@@ -24,12 +24,8 @@ LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("
 
 SURFACE = pinhole()
 
-P = sp.Symbol("P", real=True)
-BLOCKS = MappingProxyType(
-    {name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "v", "w_b")}
-    | {"P": sp.ImmutableMatrix([P])}
-)
-"""What may be typed: how resting points turn and move in the camera's frame, how the body turns, and P."""
+BLOCKS = MappingProxyType({name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "v", "w_b")})
+"""What may be typed of a motion: how resting points turn and move in the camera's frame, and how the body turns."""
 
 
 def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
@@ -102,8 +98,8 @@ def coefficients_for_the_page(state: str, moved: Vectors) -> str:
 def typed_velocities(typed: Typed, moved: Vectors) -> Vectors:
     """Velocities of a manoeuvre, changed as it was typed."""
     turning, velocity, spin = moved
-    base = dict(zip(typed.symbols, [*(-e for e in turning), *(-e for e in velocity), *spin], strict=False))
-    entries = [entry.xreplace(base) for entry in typed.expressions[:9]]
+    base = dict(zip(typed.symbols, [*(-e for e in turning), *(-e for e in velocity), *spin], strict=True))
+    entries = [entry.xreplace(base) for entry in typed.expressions]
     return tuple(-e for e in entries[:3]), tuple(-e for e in entries[3:6]), tuple(entries[6:])
 
 

@@ -23,7 +23,6 @@ from percept_obs.border import write_whole
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import MOST as MOST_TYPED
 from percept_obs.labs.shared.typed_motion import Typed
 from percept_obs.recording import Gaussian, Uniform
 
@@ -41,8 +40,11 @@ ValueError
     If a setting is unknown or makes no sense."""
 """The end of every lab's docstring."""
 
-TYPED = ("motion", "P")
+TYPED = ("motion", "P", "P0")
 """The settings that are typed as expressions of time."""
+
+MOST_READ = 2000
+"""Letters of a text that the page may ask to be read."""
 
 MOST_WRITTEN = 50
 """How many typed motions are kept ready for the page."""
@@ -156,7 +158,7 @@ class Lab(anywidget.AnyWidget):
 
     @traitlets.observe("asked")
     def _read(self, change: Mapping[str, Any]) -> None:
-        if change["new"].strip() and len(change["new"]) <= MOST_TYPED:
+        if change["new"].strip() and len(change["new"]) <= MOST_READ:
             self._write(change["new"])
 
     def analyse(self) -> Settings:

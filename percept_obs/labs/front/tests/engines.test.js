@@ -9,6 +9,7 @@ import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
 import { translationTowards } from "../src/observer/model/engine.js";
 import { drawResets } from "../src/common/page/chart_events.js";
+import { fillBand } from "../src/common/page/charts.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
@@ -66,17 +67,31 @@ test("resets have one tick in each column of pixels, however many there are", ()
   assert.deepEqual(ticks, [...wanted]);
 });
 
+test("a band ends where its numbers end, and begins anew behind", () => {
+  const place = { width: 100, x: (time) => time, y: (value) => value };
+  const drawn = [];
+  const pen = { beginPath() {}, fill() {}, moveTo: (x, y) => drawn.push([["from", x, y]]), lineTo: (x, y) => drawn.at(-1).push(["to", x, y]) };
+  const high = Float64Array.of(5, 6, NaN, 7, 8, Infinity, 9);
+  fillBand(pen, place, { time: Float64Array.from(high, (_, k) => k), low: new Float64Array(7), high, colour: "black" });
+  const outline = ([[, x, y], ...rest]) => [[x, y], ...rest.map(([, ...at]) => at)];
+  assert.deepEqual(drawn.map(outline), [
+    [[0, 5], [1, 6], [1, 0], [0, 0]],
+    [[3, 7], [4, 8], [4, 0], [3, 0]],
+    [[6, 9], [6, 0]],
+  ]);
+});
+
 test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {
-  const settings = { state: "independent", depth: 2, size: 5 };
+  const settings = { state: "independent", depth: 2 };
   const functions = { locate: ([y1, y2, depth]) => [y1 * depth, y2 * depth, depth] };
   const [x, P] = [new Float64Array(6).fill(9), new Float64Array(36).fill(7)];
   const layout = { ...apart(2), names: ["a", "b", "c", "d", "e", "f"] };
   const observer = new Observer({ memory: new Memory() });
-  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P);
+  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P, new Float64Array(36).map((_, at) => at));
   [9, 9, 9, 1, -0.5, 2].forEach((value, i) => assert.ok(Math.abs(x[i] - value) < 1e-14));
   P.forEach((value, at) => {
     const [i, j] = [Math.floor(at / 6), at % 6];
-    assert.equal(value, i < 3 && j < 3 ? 7 : i === j ? 5 : 0);
+    assert.equal(value, i < 3 && j < 3 ? 7 : i < 3 || j < 3 ? 0 : at);
   });
 });
 

@@ -9,7 +9,7 @@ export function typedModule({ written }, text) {
   const answer = written?.[text];
   if (!answer?.source) {
     const why = answer?.refusal ?? "only Python reads what is typed, and it has not: open the lab in a notebook, and run its cell";
-    return [{ key: `motion ${text}`, texts: {}, refusal: `The motion "${text}" cannot be shown: ${why}` }];
+    return [{ key: `motion ${text}`, texts: {}, refusal: `What is typed, "${text}", cannot be shown: ${why}` }];
   }
   const { source, columns, uses } = answer;
   const typed = `${source}\nObject.assign(evaluate, ${JSON.stringify({ columns, uses })});`;

@@ -193,7 +193,7 @@ function tracePath(pen, place, time, values) {
 }
 
 /** A band between two values at each time, with gaps where there are none. */
-function fillBand(pen, place, { time, low, high, colour }) {
+export function fillBand(pen, place, { time, low, high, colour }) {
   const every = Math.max(1, Math.floor(time.length / (place.width * 2)));
   pen.beginPath();
   let stretch = [];

@@ -55,10 +55,14 @@ export const PRESETS = presetsOf([
     sketch: true,
     acts: [
       {
-        changes: { noise: NOISE, gains: { identifier_based: { gain: 60 } }, pictures: ["inverse", "distance", "error"] },
+        changes: {
+          noise: NOISE, gains: { identifier_based: { gain: 60 } }, duration: 8, window: 2, pictures: ["innovation", "step", "error"],
+        },
+        beside: { gain: 10 },
         answer:
-          "It is faster, and it follows the noise: the error settles about ten times higher. In the chart of the error the " +
-          "dashed line is the same run without noise, and what noise adds is filled. Move the gain: one falls, the other rises.",
+          "It is faster, and it follows the noise: the error ends about ten times higher. The kept run has gain 10. The " +
+          "innovation is as large in both runs, for most of it is noise. But each step of the estimate is the innovation " +
+          "times the gain, here times its square: with gain 60 the steps are about 30 times as large.",
       },
     ],
   },
@@ -84,8 +88,8 @@ export const PRESETS = presetsOf([
         button: "Show the cure",
         changes: { gains: { identifier_based: { noise_variance: 1e-4 / 3 } } },
         answer:
-          "Who knows the variance of the noise knows this mean, and can take it out. The estimate then stays about the " +
-          "truth, as near as one noisy output tells it.",
+          "If the variance of the noise is known, so is this mean, and the observer can take it out. Then the estimate stays " +
+          "about the truth, as near as one noisy output tells it.",
       },
     ],
   },
@@ -110,6 +114,7 @@ export const PRESETS = presetsOf([
 /** The settings of an act, whose observers may believe a motion so many times as fast. */
 export function settingsOf(act, standard) {
   const changed = settingsAfter(act, standard);
+  if (act.beside) changed.kept = settingsAfter({ changes: { ...act.changes, gains: { identifier_based: act.beside } } }, standard);
   if (act.believe) changed.believed = { A: changed.A, b: changed.b.map((value) => value * act.believe) };
   return changed;
 }

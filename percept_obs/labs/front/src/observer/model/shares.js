@@ -50,6 +50,14 @@ export function lateNoise({ added }) {
   return late.length ? late[Math.floor(late.length / 2)] : NaN;
 }
 
+/** How far each sample moves the estimated inverse distance, less how far the true one moves meanwhile, where it is known. */
+export function stepOf({ truth, width }, { estimate }) {
+  return derived(estimate, "step", () => {
+    const [found, right] = [estimate, truth].map((rows) => rows && columnOf(rows, width, width - 1));
+    return found.map((value, k) => (k ? value - found[k - 1] - (right ? right[k] - right[k - 1] : 0) : NaN));
+  });
+}
+
 /** What is measured less what the observer has for it. */
 export function innovationOf({ outputs, sampled, width }, { estimate }, c) {
   const [seen, expected] = [columnOf(outputs, sampled, c), columnOf(estimate, width, c)];

@@ -22,7 +22,7 @@ export const WORDS = {
   believed: { A: { label: "Believed A" }, b: { name: "believed {}", label: "believed {}" } },
   pictures: {
     choices: {
-      outputs: "image coordinates", innovation: "innovation", inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
+      outputs: "image coordinates", innovation: "innovation", step: "steps of the estimate", inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
     },
   },
   bound: { choices: { error: "bound under the error", map: "map of the bound in the image" } },

@@ -6,13 +6,14 @@ import { percent } from "../../common/model/words.js";
 import { BOUND, KEPT, QUIET, SOLID } from "../../common/page/lines.js";
 import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
 
-import { innovationOf } from "../model/shares.js";
+import { innovationOf, stepOf } from "../model/shares.js";
 
 const NAMES = { pinhole: "Depth Z", chained: "Depth Y", plane: "Depth along the normal", sphere: "Range", unified: "Distance Z + ξR" };
 
 export const LABELS = {
   outputs: "Image coordinates over time",
   innovation: "Innovation over time",
+  step: "Steps of the estimate over time",
   inverse: "Inverse distance over time",
   distance: "Distance over time",
   error: "Relative error of the distance over time",
@@ -38,13 +39,19 @@ const BUILD = {
   },
   innovation(shown, ghost, theme) {
     const { measured, names, settings } = shown;
-    const lines = measured.flatMap((c) => runLines(shown, ghost, theme, `innovation of ${names[c]}`, (result, run) => innovationOf(result, run, c)));
+    const lines = keptOnTop(measured.flatMap((c) => runLines(shown, ghost, theme, `innovation of ${names[c]}`, (result, run) => innovationOf(result, run, c))));
     const { kind, size } = settings.noise;
     const [reach, words] = kind === "uniform" ? [size, "bound of the noise"] : [2 * size, "2σ of the noise"];
     const ends = [shown.time[0], shown.time.at(-1)];
     if (size > 0) for (const side of [-reach, reach]) lines.push(line("noise", ends, [side, side], theme.noise, SOLID));
     const title = `Innovation, ${measured.map((c) => `${names[c]} − ŷ${c + 1}`).join(", ")}${size > 0 ? `, and the ${words}, ±${readable(reach)}` : ""}`;
     return { title, lines, scale: () => linearScale(...(size > 0 ? [-2 * reach, 2 * reach] : [-0.01, 0.01]), 3), marks: marksOf(shown, theme) };
+  },
+  step(shown, ghost, theme) {
+    const lines = keptOnTop(runLines(shown, ghost, theme, "step", stepOf));
+    const reach = Math.max(1e-6, ...lines.map(({ values }) => usual(values)));
+    const title = `Step of the estimated ${shown.names[shown.width - 1]} at each sample, in 1/m`;
+    return { title, lines, scale: () => linearScale(-2 * reach, 2 * reach, 3), marks: marksOf(shown, theme) };
   },
   inverse(shown, ghost, theme) {
     const c = shown.width - 1;
@@ -75,6 +82,19 @@ const BUILD = {
     return { title, lines, scale: decades(lines, 1e-12, 1e4) };
   },
 };
+
+/** With the kept run on top and no dashes: of numbers that jump at each sample, nothing would be seen of what lies below. */
+function keptOnTop(lines) {
+  const isKept = ({ name }) => name.startsWith("kept");
+  const kept = lines.filter(isKept).map((each, k, all) => (k === all.length - 1 ? { ...each, text: "kept run" } : each));
+  return [...lines.filter((each) => !isKept(each)), ...kept].map((each) => ({ ...each, dash: SOLID }));
+}
+
+/** A size that all but a tenth of the later values stay below. */
+function usual(values) {
+  const late = values.slice(values.length >> 1).map(Math.abs).filter(Number.isFinite).sort();
+  return late[Math.floor(0.9 * late.length)] ?? 0;
+}
 
 /** Lines of an error with its parts, where it is divided: below what noise adds, and the same run without noise. */
 function dividedOf({ shares, time }, ghost, lines, theme) {

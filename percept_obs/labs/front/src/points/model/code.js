@@ -3,26 +3,33 @@
 import { imports, list, NOISES } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { OWN } from "./kernels.js";
+import { readP, textOfP } from "./weight.js";
 
 const WEIGHTS = {
   constant: ({ size }) => [size, []],
   scheduled: ({ size, final, duration }) => [`lambda t: ${size} * (${final} / ${size}) ** (t / ${duration})`, []],
-  typed: ({ P }, { written }) => [`lambda t: ${written[P].python.P ?? "P"}`, []],
-  lyapunov: ({ size, decrease }) => [`lyapunov(${size}, ${decrease})`, ["lyapunov"]],
-  riccati: ({ size, forgetting }) => [`riccati(${size}, ${forgetting})`, ["riccati"]],
+  typed: (_, typed) => [typed.varies ? `lambda t: ${typed.text}` : typed.text, []],
+  lyapunov: ({ size, decrease }, { text = size }) => [`lyapunov(${text}, ${decrease})`, ["lyapunov"]],
+  riccati: ({ size, forgetting }, { text = size }) => [`riccati(${text}, ${forgetting})`, ["riccati"]],
 };
+
+/** What is typed for P, in Python, for a state of so many entries. */
+function typedP(model, settings, n) {
+  const { block, varies, python } = readP(model, settings);
+  return { varies, text: block === 1 || block === n ? python : `np.kron(np.eye(${n / block}), ${python})` };
+}
 
 export function pythonOf({ settings, truth, n, points, names: states }, model) {
   const { error } = model;
   const own = settings.state === OWN;
   const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
-  const [P, weights] = WEIGHTS[settings.weight](settings, model);
+  const [P, weights] = WEIGHTS[settings.weight](settings, typedP(model, settings, n));
   const helpers = new Set(weights);
   const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
   const start = rounded(truth.subarray(0, n));
   const lines = [
     ...(own ? [] : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
-    ...(settings.weight === "typed" ? [`P = ${settings.size}`] : []),
+    ...(textOfP(settings) ? [`P = ${settings.size}`] : []),
     ...(own ? [] : movedAs(settings, model)),
     ...formOf(settings, points, names, helpers),
     `# the state is ${states.join(", ")}`,
@@ -48,7 +55,8 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
     ...(isTyped(settings) && { "percept_obs.system.motion": ["TIME as t"], sympy: model.written[settings.motion].functions }),
   };
   const math = String(P).includes("math.") ? "import math\n\n" : "";
-  return `${math}${settings.start === "error" ? "import numpy as np\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+  const numpy = settings.start === "error" || String(P).includes("np.") ? "import numpy as np\n\n" : "";
+  return `${math}${numpy}${imports(wanted)}\n${lines.join("\n")}\n`;
 }
 
 /** How camera and body move, changed as it was typed. */

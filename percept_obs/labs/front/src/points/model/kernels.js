@@ -5,35 +5,37 @@ import { derived } from "../../common/model/derived.js";
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { typedModule } from "../../common/model/typed.js";
 import { textsOfP, textsOfX } from "./sparse.js";
+import { isComputed, isFull, misfit, textOfP } from "./weight.js";
 
 /** The name of a state that somebody brought. */
 export const OWN = "own";
 
-/** Kinds of a P that is computed as the observer goes. */
-const COMPUTED = ["lyapunov", "riccati"];
-
 /** The layout of what is followed together: points that share nothing unknown are followed one by one. */
-export function layoutFollowed({ states }, { state, points }) {
-  const together = state === "independent" ? 1 : points.length;
-  return states[state].layouts[together - 1];
+export function layoutFollowed(model, settings) {
+  const { state, points } = settings;
+  const together = state === "independent" && !isFull(model, settings) ? 1 : points.length;
+  return model.states[state].layouts[together - 1];
 }
 
 /** All functions of a model; none follow after it has been opened. */
 export class PointsKernels extends PrintedKernels {
   needed(settings) {
     const { states, locate, point, written } = this.model;
-    const { state, motion, weight, P } = settings;
+    const { state, motion, points } = settings;
     const [typed] = typedModule(this.model, motion);
     const coefficients = typed ? written?.[motion]?.states?.[state] : states[state].coefficients;
     const moved = { ...typed, key: typed ? `${state} ${typed.key}` : state, texts: { coefficients } };
-    return [{ key: "points", texts: { locate, point } }, moved, ...this.rates(settings), ...(weight === "typed" ? typedModule(this.model, P) : [])];
+    const why = misfit(this.model, settings, states[state].layouts[points.length - 1].names.length);
+    if (why) return [{ key: why, texts: {}, refusal: why }];
+    return [{ key: "points", texts: { locate, point } }, moved, ...this.rates(settings), ...typedModule(this.model, textOfP(settings))];
   }
 
   /** The rates of what is followed together, and those of a P that is computed. */
   rates(settings) {
     const layout = layoutFollowed(this.model, settings);
     const n = layout.names.length;
-    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n)) });
-    return [printed("x", textsOfX), ...(COMPUTED.includes(settings.weight) ? [printed("P", textsOfP)] : [])];
+    const full = isFull(this.model, settings);
+    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n, full)) });
+    return [printed("x", textsOfX), ...(isComputed(settings) ? [printed(full ? "all of P" : "P", textsOfP)] : [])];
   }
 }

@@ -2,11 +2,11 @@
 // The observer of many points: the same numbers as track() in Python.
 
 import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
-import { typedRows } from "../../common/model/typed.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { layoutFollowed } from "./kernels.js";
 import { product, pseudoInverse } from "./symmetric.js";
+import { inversesOf, isComputed, isFull, startOfP } from "./weight.js";
 
 /** Follows what a camera has recorded. */
 export class Observer {
@@ -28,7 +28,7 @@ export class Observer {
       ...steps,
       held: this.held(scene, recording, steps),
       coefficients: this.camera.known(scene, "observer", [step], steps.places),
-      inverses: inversesOf(settings, steps.places, scene.functions),
+      inverses: this.inverses(scene, steps.places),
     };
     const start = new Float64Array(n);
     if (settings.start === "error") {
@@ -45,6 +45,14 @@ export class Observer {
     const divergedAt = Math.min(...ends);
     for (let k = 0; k < time.length; k++) if (time[k] >= divergedAt) estimate.fill(NaN, k * n, k * n + n);
     return { estimate, divergedAt: divergedAt < Infinity ? divergedAt : null };
+  }
+
+  /** The inverse of a P that is given, made anew when what it depends on changes. */
+  inverses({ settings, functions, n }, places) {
+    const { memory, model } = this.camera;
+    const { weight, size, final, P, period, duration, step } = settings;
+    const key = [weight, size, final, weight === "typed" && [P, n], period, duration, step];
+    return memory.once("inverse of P", key, () => inversesOf(model, settings, places, functions));
   }
 
   /** What the observer takes for the images between samples: a row for each instant of each step. */
@@ -83,16 +91,17 @@ export class Observer {
     const { grid, index, steps, held, coefficients, inverses } = inputs;
     const own = layout.names.length;
     const count = layout.begins.length - 1;
-    const law = lawOf(settings, own);
+    const begun = isComputed(settings) ? startOfP(this.camera.model, settings, own, scene.functions) : null;
+    const law = lawOf(settings, isFull(this.camera.model, settings), begun, own);
     let x = start.slice(states, states + own);
-    const P = law.computed ? unit(own, settings.size) : null;
+    const P = begun?.slice() ?? null;
     const began = settings.start === "rays" ? firstSights(outputs, time.length, points, first, count) : new Map();
     const stops = [...new Set([0, ...began.keys(), time.length - 1])].sort((a, b) => a - b);
     const seen = new Set();
     for (let s = 0; s < stops.length; s++) {
       const sample = stops[s];
       if (began.has(sample)) {
-        this.onRays(scene, { layout, own, first }, outputs.subarray(2 * sample * points), began.get(sample), seen, x, P);
+        this.onRays(scene, { layout, own, first }, outputs.subarray(2 * sample * points), began.get(sample), seen, x, P, begun);
         began.get(sample).forEach((k) => seen.add(k));
       }
       for (let i = 0; i < own; i++) estimate[sample * n + states + i] = x[i];
@@ -104,7 +113,7 @@ export class Observer {
         steps: steps.subarray(from, to),
         coefficients: coefficients.subarray(EACH * from * width),
         width,
-        inverses: inverses.length > 1 ? inverses.subarray(EACH * from) : inverses,
+        inverses: inverses.stays ? inverses : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.block ** 2) },
         images: held.subarray((EACH + 1) * 2 * points * from),
         points,
         first,
@@ -121,7 +130,7 @@ export class Observer {
   }
 
   /** Put points on their rays by the states that no point seen before uses; P starts anew for these. */
-  onRays({ settings, functions }, { layout, own, first }, images, fresh, seen, x, P) {
+  onRays({ settings, functions }, { layout, own, first }, images, fresh, seen, x, P, begun) {
     const { begins, states } = layout;
     const used = (points) => new Set(points.flatMap((k) => states.slice(begins[k], begins[k + 1])));
     const taken = used([...seen].filter((k) => !fresh.includes(k)));
@@ -145,26 +154,15 @@ export class Observer {
     for (const i of free) {
       for (let j = 0; j < own; j++) P[i * own + j] = P[j * own + i] = 0;
     }
-    for (const i of free) P[i * own + i] = settings.size;
+    for (const i of free) for (const j of free) P[i * own + j] = begun[i * own + j];
   }
 }
 
 /** How P moves, where it is computed. */
-function lawOf({ weight, size, forgetting, decrease }, n) {
-  if (weight === "riccati") return { computed: true, information: 1, forgetting, pull: unit(n, forgetting * size) };
-  if (weight === "lyapunov") return { computed: true, information: 0, forgetting: 0, pull: unit(n, -decrease) };
-  return { computed: false, information: 0, forgetting: 0, pull: null };
-}
-
-/** The inverse of a P that is given, as a multiple of the identity. */
-function inversesOf({ weight, size, final, duration }, places, { typed }) {
-  if (weight === "typed") {
-    const numbers = [...new Array(9).fill(0), size];
-    const rows = typedRows(typed, numbers, places);
-    return Float64Array.from(places, (_, k) => 1 / rows[numbers.length * k + 9]);
-  }
-  if (weight !== "scheduled") return Float64Array.of(1 / size);
-  return Float64Array.from(places, (t) => 1 / (size * (final / size) ** (t / duration)));
+function lawOf({ weight, forgetting, decrease }, full, begun, n) {
+  if (weight === "riccati") return { computed: true, full, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
+  if (weight === "lyapunov") return { computed: true, full, information: 0, forgetting: 0, pull: unit(n, -decrease) };
+  return { computed: false, full, information: 0, forgetting: 0, pull: null };
 }
 
 /** The samples at which points are first seen, with these points. */

@@ -5,6 +5,7 @@ import { button, element } from "../../common/page/controls.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
 import { OWN } from "../model/kernels.js";
+import { isComputed, textOfP } from "../model/weight.js";
 import { PointList } from "./point_list.js";
 
 /** What P begins with when a kind is chosen. */
@@ -33,7 +34,7 @@ export const WORDS = {
 export const NAMES = {
   state: "what the state holds", points: "the points", hidden: "when points are hidden", turning: "how the camera turns",
   spin: "how the body turns", input: "the input", velocity: "the velocity that is added", motion: "the motion that is typed",
-  weight: "the kind of P", size: "P", P: "the P that is typed",
+  weight: "the kind of P", size: "P", P: "the P that is typed", P0: "the P at the beginning that is typed",
   final: "P at the end", decrease: "the decrease q", forgetting: "the forgetting λ", start: "where the estimate starts",
   depth: "the depth at which it starts", error: "the error at which it starts", noise: "noise", dropout: "lost samples",
   view: "how far the camera sees", hold: "what is held between samples", step: "the longest step", window: "the window", pictures: "the charts",
@@ -78,10 +79,15 @@ export class Panel extends Fieldsets {
     const kind = this.choice("weight", { besides: (value) => ({ size: OWN_SIZE[value] }) });
     const size = this.number("size");
     const words = size.querySelector("label span");
-    const name = () => (words.textContent = this.lab.settings.weight === "constant" ? "P, times the identity" : "P at the beginning");
+    const name = () => {
+      const { settings } = this.lab;
+      const plain = settings.weight === "constant" ? "P, times the identity" : "P at the beginning";
+      words.textContent = textOfP(settings) ? "P in what is typed" : plain;
+    };
     this.controls.push({ row: size, show: name });
     const rest = [
-      this.onlyIf(({ weight }) => weight === "typed", this.typed("P", "P = 1 + exp(-t)", "P = ")),
+      this.onlyIf(({ weight }) => weight === "typed", this.typed("P", "P = [1, 1, 1 + exp(-t)]", "P = ")),
+      this.onlyIf(isComputed, this.typed("P0", "P = [P, P, P/4]", "P = ")),
       this.numberIf("final", ({ weight }) => weight === "scheduled"),
       this.numberIf("decrease", ({ weight }) => weight === "lyapunov"),
       this.numberIf("forgetting", ({ weight }) => weight === "riccati"),

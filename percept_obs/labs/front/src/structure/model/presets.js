@@ -8,7 +8,7 @@ export const PRESETS = presetsOf([
     title: "Speedometer",
     question:
       "The object rests. Of the camera's velocity only v_c1 is known, as if somebody had read a speedometer. " +
-      "Does the camera learn how far away the object is, and how it moves itself?",
+      "Do the pictures tell how far away the object is, and how the camera itself moves?",
     answers: ["Both", "Only how far away the object is", "Neither"],
     right: 0,
     sketch: true,
@@ -16,8 +16,8 @@ export const PRESETS = presetsOf([
       {
         changes: { pictures: ["unknowns", "range", "determinant"] },
         answer:
-          "Both, within half a second (corollary 1). Only the known velocity v_c1 is in metres, and so it tells the scale: " +
-          "you find it in the determinant.",
+          "Both, within half a second (corollary 1). Only the known velocity v_c1 is in metres, so the scale comes from it: " +
+          "v_c1 stands in the determinant.",
       },
       {
         button: "Now v_c1 is zero",
@@ -30,8 +30,8 @@ export const PRESETS = presetsOf([
     name: "story",
     title: "Which story?",
     question:
-      "The picture of the object slides aside. Has the camera moved, or the object? Leave v_c2 and v_p2 unknown, and " +
-      "know all the rest. Can an observer tell?",
+      "The picture of the object slides aside. Has the camera moved, or the object? v_c2 and v_p2 are unknown, and " +
+      "all the rest is known. Can an observer tell?",
     answers: ["Yes", "No, whatever the observer", "Only if the camera turns"],
     right: 1,
     changes: { v_c: [-0.44, -0.47, 0], v_p: [-0.22, -0.23, 0] },
