@@ -131,6 +131,22 @@ def test_under_the_stated_policy_a_worker_computes_what_python_computes(browser)
     page.close()
 
 
+def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported(browser):
+    page = opened(browser, observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'self'", answered)
+    page.wait_for_function(DRAWN)
+    page.evaluate("""() => {
+        const [{ widget }] = window.perceptObsLabs;
+        const get = widget.get;
+        widget.get = (name) => (name === "_esm" ? undefined : get(name));  // as in marimo
+    }""")
+    page.evaluate(TOUCH)
+    page.wait_for_function(BESIDE)
+    rested(page)
+    assert [worker.url for worker in page.workers] == ["http://lab.test/lab.js"]
+    assert_equals_python(state(page))
+    page.close()
+
+
 def test_where_a_policy_forbids_workers_the_page_computes(browser):
     page = opened(browser, observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'none'", answered)
     page.wait_for_function(DRAWN)

@@ -196,7 +196,7 @@ export class Live extends Showing {
   /** Compute beside the page, from the first touch on: at the first picture nobody waits. */
   hire() {
     const bundle = this.widget.get("_esm");
-    if (this.worker || !bundle || typeof Worker === "undefined") return;
+    if (this.worker || typeof Worker === "undefined") return;
     const [kind, texts, model] = ["kind", "texts", "model"].map((name) => this.widget.get(name));
     this.worker = openBeside({ bundle, kind, texts, model }, {
       onReady: ({ ask }) => {

@@ -139,7 +139,7 @@ export class SettingsMap extends Picture {
     this.begin();
     const { here, lab, sweep, there } = this;
     const bundle = lab.widget.get("_esm");
-    if (this.worker || !bundle || typeof Worker === "undefined") return;
+    if (this.worker || typeof Worker === "undefined") return;
     const [kind, texts, model] = ["kind", "texts", "model"].map((name) => lab.widget.get(name));
     this.worker = openBeside({ bundle, kind, texts, model }, {
       onReady: ({ ask }) => {
