@@ -132,7 +132,7 @@ export class Showing extends Following {
     this.time.point(cursor);
     this.view.time(cursor);
     const now = performance.now();
-    if (this.view.playing() && now - this.read < BETWEEN_READINGS) return;
+    if ((this.held || this.view.playing()) && now - this.read < BETWEEN_READINGS) return;
     this.read = now;
     this.view.read(cursor === null || shown.refusal ? "" : this.parts.readingAt(shown, cursor));
   }
