@@ -5,8 +5,7 @@ import { slackOf } from "../../common/model/tables.js";
 import { ENTRIES } from "./flow.js";
 import { spectrum } from "./symmetric.js";
 
-/** Numbers of the windows that are looked at, at rest and while a hand moves: each is as many as there are states. */
-const [MOST_NUMBERS, MOVING_NUMBERS] = [1500, 600];
+const MOST_NUMBERS = 1500;
 
 /**
  * Smallest and largest eigenvalue of the integral of Phi^T S Phi over windows that begin at samples, and the whole
@@ -22,7 +21,7 @@ export function windowsOf({ layout, model, n, time, images, kindOf, flows, back,
   const ends = endsOf(time, window);
   const matrix = (first, room) => between(gathered, blocks, first, ends[first], n, kindOf, back, room);
   const room = memory.room("matrix", n * n);
-  const every = Math.max(1, Math.ceil((ends.length * n) / (whole ? MOST_NUMBERS : MOVING_NUMBERS)));
+  const every = Math.max(1, Math.ceil((ends.length * n) / MOST_NUMBERS));
   const found = new Map();
   const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k, room), n, model.unseen, blocks.parts)).get(k);
   for (let k = 0; k < ends.length; k += every) look(k);
