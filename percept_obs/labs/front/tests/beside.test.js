@@ -100,14 +100,14 @@ test("when nobody is left beside the page, it computes by itself and nobody wait
 });
 
 test("while a hand moves fewer samples are drawn: of those in sight most, each as it is at rest, and whatever alternates is seen", () => {
-  const count = 8001;
+  const count = 9001;
   const time = Float64Array.from({ length: count }, (_, k) => 0.01 * k);
   const alternating = Float64Array.from(time, (_, k) => (k % 2 ? 1 : -1));
   const estimate = Float64Array.from({ length: 18 * count }, (_, k) => k);
   const resets = time.slice();
   const result = { settings: { error: [0] }, time, runs: [{ estimate, error: alternating, resets }], errors: [alternating], shares: { quiet: time, time, added: time }, bound: null, whole: true };
   const room = (_, length) => new Float64Array(length);
-  for (const sight of [{ low: 0, high: 80, cursor: 33.335 }, { low: 20, high: 28, cursor: 21 }]) {
+  for (const sight of [{ low: 0, high: 90, cursor: 33.335 }, { low: 20, high: 28, cursor: 21 }]) {
     const found = thinned(result, sight, room);
     const [run] = found.runs;
     const at = Array.from(found.time, (value) => Math.round(100 * value));
