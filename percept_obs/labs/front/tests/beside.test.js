@@ -9,6 +9,7 @@ import { Runner } from "../src/common/model/runner.js";
 import { serve } from "../src/common/model/serving.js";
 import { packed } from "../src/common/model/packing.js";
 import { partIn } from "../src/common/model/space.js";
+import { thinned } from "../src/common/model/thinned.js";
 import { entriesOf, textsOfP } from "../src/points/model/sparse.js";
 import { loadHere } from "./load_here.js";
 
@@ -25,18 +26,19 @@ function asking() {
 test("while one task is under way only the latest of the others waits", () => {
   const { latest, tasks, told } = asking();
   const [first, second, third] = [1, 2, 3].map((gain) => ({ gain, kept: null }));
-  assert.equal(latest.want(first, false), false);
-  assert.equal(latest.want(second, false), false);
-  assert.equal(latest.want(third, false), false);
-  assert.deepEqual(tasks, [{ settings: first, whole: false }]);
+  const sight = { low: 0, high: 1, cursor: null };
+  assert.equal(latest.want(first, false, sight), false);
+  assert.equal(latest.want(second, false, sight), false);
+  assert.equal(latest.want(third, false, sight), false);
+  assert.deepEqual(tasks, [{ settings: first, whole: false, sight }]);
   latest.take({ shown: { whole: false, value: 1 }, ghost: null });
   assert.equal(latest.shown.settings, first);
-  assert.deepEqual(tasks[1], { settings: third, whole: false });
+  assert.deepEqual(tasks[1], { settings: third, whole: false, sight });
   latest.take({ shown: { whole: false, value: 3 } });
   assert.equal(latest.shown.settings, third);
   assert.equal(latest.want(third, false), true);
   assert.equal(latest.want(third, true), false);
-  assert.deepEqual(tasks[2], { settings: third, whole: true });
+  assert.deepEqual(tasks[2], { settings: third, whole: true, sight: undefined });
   assert.equal(latest.want(third, false), true);
   assert.deepEqual(told, [undefined, undefined]);
 });
@@ -97,6 +99,35 @@ test("when nobody is left beside the page, it computes by itself and nobody wait
   assert.equal(latest.shown.here, true);
 });
 
+test("while a hand moves fewer samples are drawn: of those in sight most, each as it is at rest, and whatever alternates is seen", () => {
+  const count = 9001;
+  const time = Float64Array.from({ length: count }, (_, k) => 0.01 * k);
+  const alternating = Float64Array.from(time, (_, k) => (k % 2 ? 1 : -1));
+  const estimate = Float64Array.from({ length: 18 * count }, (_, k) => k);
+  const resets = time.slice();
+  const result = { settings: { error: [0] }, time, runs: [{ estimate, error: alternating, resets }], errors: [alternating], shares: { quiet: time, time, added: time }, bound: null, whole: true };
+  const room = (_, length) => new Float64Array(length);
+  for (const sight of [{ low: 0, high: 90, cursor: 33.335 }, { low: 20, high: 28, cursor: 21 }]) {
+    const found = thinned(result, sight, room);
+    const [run] = found.runs;
+    const at = Array.from(found.time, (value) => Math.round(100 * value));
+    assert.equal(found.whole, false);
+    assert.ok(at.length < 0.5 * count && at.every((k, j) => j === 0 || k > at[j - 1]));
+    assert.deepEqual([at[0], at.at(-1)], [0, count - 1]);
+    assert.ok(at.includes(Math.floor(100 * sight.cursor)));
+    at.forEach((k, j) => assert.deepEqual([found.time[j], run.error[j], run.estimate[18 * j], run.estimate[18 * j + 17]], [time[k], alternating[k], 18 * k, 18 * k + 17]));
+    assert.equal(found.errors[0], run.error);
+    assert.deepEqual([run.resets, found.shares.time, found.shares.added, found.settings, found.bound], [resets, time, time, result.settings, null]);
+    assert.equal(found.shares.quiet.length, at.length);
+    const even = run.error.filter((value) => value < 0).length / at.length;
+    assert.ok(even > 0.4 && even < 0.6, `${even} of the samples are even`);
+    const gaps = at.slice(1).map((k, j) => [at[j], k - at[j]]).filter(([k]) => time[k] >= sight.low && time[k] < sight.high);
+    assert.ok(Math.max(...gaps.map(([, gap]) => gap)) <= (sight.low ? 1 : 12));
+  }
+  const few = { time: time.subarray(0, 300), whole: true };
+  assert.equal(thinned(few, { low: 0, high: 3, cursor: null }, room), few);
+});
+
 /** A worker's side that is spoken to as a page would, with copies; it gives all that it has answered. */
 async function served(messages) {
   const answers = [];
@@ -112,7 +143,7 @@ async function served(messages) {
     run(settings, functions, whole) {
       if (settings.gain < 0) throw new Error("the gain is negative");
       runs.push(settings.gain);
-      return { settings, whole, value: functions.factor * settings.gain };
+      return { settings, whole, time: [0, 1], value: functions.factor * settings.gain };
     }
 
     completed(result) {
@@ -144,9 +175,9 @@ test("a worker answers each message, runs what is kept once, completes what it h
     { settings, whole: false }, { settings, whole: true }, { settings: { gain: 2, kept }, whole: false }, { settings: { gain: -1, kept: null }, whole: true },
   ]);
   assert.deepEqual(answers[0], { ready: true });
-  assert.deepEqual(answers[1], { shown: { settings: null, whole: false, value: 2 }, ghost: { settings: kept, whole: true, value: 10 } });
-  assert.deepEqual(answers[2], { shown: { settings: null, whole: true, value: 2 } });
-  assert.deepEqual(answers[3], { shown: { settings: null, whole: false, value: 4 } });
+  assert.deepEqual(answers[1], { shown: { settings: null, whole: false, time: [0, 1], value: 2 }, ghost: { settings: kept, whole: true, time: [0, 1], value: 10 } });
+  assert.deepEqual(answers[2], { shown: { settings: null, whole: true, time: [0, 1], value: 2 } });
+  assert.deepEqual(answers[3], { shown: { settings: null, whole: false, time: [0, 1], value: 4 } });
   assert.deepEqual(answers[4], { error: "the gain is negative" });
   assert.deepEqual(runs, [5, 1, "completed", 2]);
 });

@@ -93,7 +93,7 @@ test("a symmetric matrix's eigenvalues are found, all of them and the extreme on
   const matrix = Float64Array.from({ length: 16 }, (_, k) =>
     values.reduce((sum, value, m) => sum + value * Q((k / 4) | 0, m) * Q(m, k % 4), 0),
   );
-  const found = spectrum(matrix.slice(), 4, 1e-6);
+  const found = spectrum(matrix, 4, 1e-6, [[0, 1, 2, 3]]);
   assert.ok(Math.abs(found.smallest) < 1e-12 && Math.abs(found.largest - 5) < 1e-12);
   assert.equal(found.missed, 2);
   eigen(matrix, 4).forEach(({ value, vector }, m) => {
@@ -103,8 +103,11 @@ test("a symmetric matrix's eigenvalues are found, all of them and the extreme on
       assert.ok(Math.abs(image - value * vector[i]) < 1e-14);
     });
   });
-  assert.deepEqual(spectrum(Float64Array.of(3), 1, 1e-6), { smallest: 3, largest: 3, missed: 0 });
-  assert.equal(spectrum(new Float64Array(9), 3, 1e-6).missed, 3);
+  assert.deepEqual(spectrum(Float64Array.of(3), 1, 1e-6, [[0]]), { smallest: 3, largest: 3, missed: 0 });
+  assert.equal(spectrum(new Float64Array(9), 3, 1e-6, [[0, 1, 2]]).missed, 3);
+  const apart = Float64Array.of(2, 0, 1, 0, 0, 5e-9, 0, 0, 1, 0, 2, 0, 0, 0, 0, 7);
+  const [together, inParts] = [[[0, 1, 2, 3]], [[0, 2], [1], [3]]].map((parts) => spectrum(apart, 4, 1e-8, parts));
+  for (const name of ["smallest", "largest", "missed"]) assert.ok(Math.abs(together[name] - inParts[name]) < 1e-12, name);
 });
 
 test("the pseudo-inverse gives the smallest solution, and the nearest where there is none", () => {

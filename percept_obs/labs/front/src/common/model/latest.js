@@ -1,7 +1,8 @@
 // @ts-check
 // The latest result of settings that a hand moves: found here, or beside the page, where one task at a time is under way.
 
-/** @typedef {{settings: any, whole: boolean, spare?: ArrayBuffer[]}} Task  settings of which all is wanted, or only what is drawn, and buffers for their result */
+/** @typedef {import("./thinned.js").Sight} Sight */
+/** @typedef {{settings: any, whole: boolean, sight?: Sight, spare?: ArrayBuffer[]}} Task  settings of which all is wanted, or only what is drawn in a sight, and buffers for their result */
 
 /** What was found last.  Once there is something beside the page to ask, of all tasks that wait only the latest is sent. */
 export class Latest {
@@ -32,8 +33,8 @@ export class Latest {
   }
 
   /** Find what is shown of settings, and say whether it is there; if it is not, `onFound` is called when it is. */
-  want(settings, whole) {
-    const task = { settings, whole };
+  want(settings, whole, /** @type {Sight | undefined} */ sight = undefined) {
+    const task = { settings, whole, sight };
     if (this.has(task)) return true;
     if (!this.beside) {
       Object.assign(this, this.results.of(settings, whole));

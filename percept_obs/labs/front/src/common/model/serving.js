@@ -1,18 +1,23 @@
 // @ts-check
 // The worker's side of computing beside the page: the same engines, and an answer to each message.
 
+import { Memory } from "./memory.js";
 import { packed } from "./packing.js";
 import { Results } from "./results.js";
 import { same } from "./settings.js";
 import { modelOf } from "./texts.js";
+import { thinned } from "./thinned.js";
 
-/** Answer messages; `computing` gives the Kernels and the Engine of a lab by its kind: the first one opens a lab, each of the others has settings, of which a result is sent back. */
+/** Answer messages; `computing` gives the Kernels and the Engine of a lab by its kind: the first one opens a lab, each of the others has settings, of which a result is sent back: all of it, or as much as is drawn while a hand moves. */
 export function serve(computing, scope) {
   const opened = { model: /** @type {any} */ (null), kernels: /** @type {any} */ (null), results: /** @type {any} */ (null) };
   /** @type {{settings: any, kept: any, ghost: any}} */
   const last = { settings: null, kept: null, ghost: null };
   /** @type {ArrayBuffer[]} those that came back */
   const rooms = [];
+
+  const memory = new Memory();
+  const room = (part, length) => memory.room(part, length);
 
   async function open({ kind, texts, model: given }) {
     const { Kernels, Engine } = computing(kind);
@@ -22,7 +27,7 @@ export function serve(computing, scope) {
     scope.postMessage({ ready: true });
   }
 
-  async function answer({ settings: copy, whole, written, spare = [] }) {
+  async function answer({ settings: copy, whole, sight, written, spare = [] }) {
     rooms.push(...spare);
     Object.assign((opened.model.written ??= {}), written);
     // Messages are copies; what is known already is found by the very object.
@@ -31,8 +36,9 @@ export function serve(computing, scope) {
     Object.assign(last, { settings, kept: settings.kept });
     await Promise.all([settings, settings.kept].filter(Boolean).map((each) => opened.kernels.prepare(each)));
     const { shown, ghost } = opened.results.of(settings, whole);
-    const { data, room } = packed({ ...shown, settings: null }, rooms);
-    scope.postMessage({ shown: data, room, ...(ghost !== last.ghost && { ghost }) }, [room]);
+    const drawn = whole ? shown : thinned(shown, sight, room);
+    const { data, room: filled } = packed({ ...drawn, settings: null }, rooms);
+    scope.postMessage({ shown: data, room: filled, ...(ghost !== last.ghost && { ghost }) }, [filled]);
     last.ghost = ghost;
   }
 

@@ -40,11 +40,13 @@ export class FramedImage extends Picture {
   }
 
   /** The square that stays while a hand moves something and after: a choice, or a press on "Fit", takes another one. */
-  squareFor(wanted) {
+  squareFor(squareOf) {
     const { square, lab } = this;
+    if (square && lab.held) return square;
+    const wanted = squareOf();
     if (!square) return wanted;
     const there = showsToo(square, wanted);
-    const chosen = this.choices !== lab.choices && !lab.held;
+    const chosen = this.choices !== lab.choices;
     if (chosen) this.choices = lab.choices;
     this.fitting.hidden = there || chosen;
     return there || !chosen ? square : wanted;
@@ -52,7 +54,7 @@ export class FramedImage extends Picture {
 
   /** Paint inside a square, and put handles in their places. */
   paint(squareOf, theme, { inside, outside = (_pen, _frame) => {}, room = 0 }, placesIn) {
-    const square = this.squareFor(squareOf());
+    const square = this.squareFor(squareOf);
     this.square = square;
     const frame = { ...placed(this, square, theme.font, room), lineWidth: theme.width };
     const pen = this.context;

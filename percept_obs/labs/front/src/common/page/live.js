@@ -219,7 +219,7 @@ export class Live extends Showing {
       this.wait(settings);
       return false;
     }
-    return this.latest.want(settings, this.speaking);
+    return this.latest.want(settings, this.speaking, { ...this.span, cursor: this.state.cursor });
   }
 
   /** Draw the latest that was found, which is computed only when settings have changed. */

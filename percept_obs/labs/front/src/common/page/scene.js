@@ -14,6 +14,7 @@ import { ghostMark, label, pointMark, rimMark } from "./marks.js";
 
 const CAPTION = "Scene in metres; y1, y2 as in the image";
 const EDGE = 14;
+const NEAR = 1;
 const KEY_TURN = 0.1;
 const PIXEL_TURN = 0.01;
 const [CLOSEST, FARTHEST] = [32, 0.25];
@@ -109,8 +110,8 @@ export class Scene extends Picture {
     const inSight = (track) => (track.range ?? range).map((k) => Math.min(k, track.distances.length - 1));
     const paths = scene.tracks.map((track) => ({ track, positions: positionsOf(track, scene.ray, inSight(track)) }));
     const sure = paths.filter(({ track }) => !track.of);
-    const wanted = ballAround(boxAround((sure.length ? sure : paths).map(({ positions }) => positions)));
-    const ball = this.lab.held && this.ball ? this.ball : keptBall(this.ball, wanted);
+    const wanted = () => ballAround(boxAround((sure.length ? sure : paths).map(({ positions }) => positions)));
+    const ball = this.lab.held && this.ball ? this.ball : keptBall(this.ball, wanted());
     this.ball = ball;
     const frame = frameOf(this.look, ball, { ...size, edge: EDGE, zoom: this.zoom });
     const corners = [[8, 8], [size.width - 8, size.height - 8]];
@@ -254,17 +255,28 @@ function line(pen, frame, from, to) {
 /** The way of a point, with gaps where it is nowhere. */
 function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.beginPath();
-  let before = [NaN, NaN];
-  let end = before;
+  const [[left, top], [right, bottom]] = frame.corners;
+  let [x0, y0, inside, endX, endY] = [NaN, NaN, false, NaN, NaN];
+  const piece = (fromX, fromY, toX, toY) => {
+    if (fromX !== endX || fromY !== endY) pen.moveTo(fromX, fromY);
+    pen.lineTo(toX, toY);
+    endX = toX;
+    endY = toY;
+  };
   for (let k = 0; k < positions.length; k += 3) {
-    const place = on(frame, [positions[k], positions[k + 1], positions[k + 2]]);
-    const part = Number.isFinite(before[0] + before[1] + place[0] + place[1]) && partIn(before, place, frame.corners);
-    if (part) {
-      if (part[0] !== end[0] || part[1] !== end[1]) pen.moveTo(part[0], part[1]);
-      pen.lineTo(part[2], part[3]);
-      end = part.slice(2);
+    const x = frame.x(positions[k], positions[k + 1], positions[k + 2]);
+    const y = frame.y(positions[k], positions[k + 1], positions[k + 2]);
+    // Points closer than a pixel do not show.
+    if (Math.abs(x - x0) + Math.abs(y - y0) < NEAR && k + 3 < positions.length) continue;
+    const before = inside;
+    inside = x >= left && x <= right && y >= top && y <= bottom;
+    if (inside && before) piece(x0, y0, x, y);
+    else if (Number.isFinite(x0 + y0 + x + y)) {
+      const part = partIn([x0, y0], [x, y], frame.corners);
+      if (part) piece(...part);
     }
-    before = place;
+    x0 = x;
+    y0 = y;
   }
   const own = kept ? theme.kept : colour;
   pen.strokeStyle = own;

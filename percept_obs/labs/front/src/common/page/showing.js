@@ -132,9 +132,11 @@ export class Showing extends Following {
     this.time.point(cursor);
     this.view.time(cursor);
     const now = performance.now();
-    if (this.view.playing() && now - this.read < BETWEEN_READINGS) return;
+    const nothing = cursor === null || shown.refusal;
+    // Nobody reads sixty texts a second, and the page would lay itself out for each of them.
+    if (!nothing && (this.held || this.view.playing()) && now - this.read < BETWEEN_READINGS) return;
     this.read = now;
-    this.view.read(cursor === null || shown.refusal ? "" : this.parts.readingAt(shown, cursor));
+    this.view.read(nothing ? "" : this.parts.readingAt(shown, cursor));
   }
 
   /** The time that is shown, in what there is to show. */

@@ -89,7 +89,11 @@ export class Panel extends Fieldsets {
         slider({
           ...{ name: `foe y${c + 1}`, label: `FOE, y${c + 1}`, low: -3, high: 3, step: 0.01, least: -1000, most: 1000 },
           get: () => lab.focus()?.[c],
-          set: (value) => lab.moveFoe(lab.focus().with(c, value)),
+          set: (value) => {
+            // What moved before may have put it at infinity, and the panel follows only some times a second.
+            const foe = lab.focus();
+            if (foe) lab.moveFoe(foe.with(c, value));
+          },
           rest: () => lab.rest(),
         }),
       ),

@@ -23,7 +23,7 @@ export function windowsOf({ layout, model, n, time, images, kindOf, flows, back,
   const room = memory.room("matrix", n * n);
   const every = Math.max(1, Math.ceil((ends.length * n) / MOST_NUMBERS));
   const found = new Map();
-  const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k, room), n, model.unseen)).get(k);
+  const look = (k) => found.get(k) ?? found.set(k, spectrum(matrix(k, room), n, model.unseen, blocks.parts)).get(k);
   for (let k = 0; k < ends.length; k += every) look(k);
   look(ends.length - 1);
   const sorted = () => [...found.keys()].sort((a, b) => a - b);
@@ -47,7 +47,10 @@ export function windowsOf({ layout, model, n, time, images, kindOf, flows, back,
   };
 }
 
-/** Pairs of vectors that a point has together: all of them once, and for each point its vectors and its pairs' numbers. */
+/**
+ * Pairs of vectors that a point has together: all of them once, and for each point its vectors and its pairs' numbers;
+ * `parts` are the states of vectors that such pairs join: with others they have no entry in the matrix.
+ */
 function blocksOf({ begins, states }) {
   const all = /** @type {number[][]} */ ([]);
   const numbers = new Map();
@@ -62,7 +65,17 @@ function blocksOf({ begins, states }) {
     const pairs = vectors.flatMap((u, i) => vectors.slice(i).map((v) => [u, v, numberOf(u, v)]));
     return { vectors, pairs: Int32Array.from(pairs.flat()) };
   });
-  return { all, ofPoints };
+  return { all, ofPoints, parts: partsOf(all) };
+}
+
+/** States of the vectors that pairs join, for each group of vectors by itself. */
+function partsOf(pairs) {
+  let groups = /** @type {Set<number>[]} */ ([]);
+  for (const pair of pairs) {
+    const joined = groups.filter((group) => pair.some((vector) => group.has(vector)));
+    groups = [...groups.filter((group) => !joined.includes(group)), new Set([...pair, ...joined.flatMap((group) => [...group])])];
+  }
+  return groups.map((group) => [...group].sort((u, v) => u - v).flatMap((vector) => [3 * vector, 3 * vector + 1, 3 * vector + 2]));
 }
 
 /** Integrals from the first sample to each, nine numbers a block. */

@@ -4,11 +4,31 @@ const PRECISION = 1e-13;
 const SWEEPS = 30;
 
 /**
- * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix, which is
- * used up, tridiagonal, and halving an interval finds them by counting.
+ * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix
+ * tridiagonal, and halving an interval finds them by counting.
+ *
+ * @param {number[][]} parts  numbers of rows that have no entry with those of another part: each part is a matrix by itself
  */
-export function spectrum(matrix, n, share) {
-  const { diagonal, beside } = tridiagonal(matrix, n);
+export function spectrum(matrix, n, share, parts) {
+  const found = parts.map((rows) => tridiagonal(partOf(matrix, n, rows), rows.length));
+  const ends = found.map(extremes);
+  const smallest = Math.min(...ends.map(([least]) => least));
+  const largest = Math.max(...ends.map(([, most]) => most));
+  const limit = share * Math.max(largest, 1e-300);
+  const missed = found.reduce((sum, { diagonal, beside }) => sum + countBelow(diagonal, beside, limit), 0);
+  return { smallest, largest, missed };
+}
+
+function partOf(matrix, n, rows) {
+  const found = new Float64Array(rows.length ** 2);
+  let at = 0;
+  for (const i of rows) for (const j of rows) found[at++] = matrix[i * n + j];
+  return found;
+}
+
+/** Smallest and largest eigenvalue of a tridiagonal matrix. */
+function extremes({ diagonal, beside }) {
+  const n = diagonal.length;
   let [low, high] = [Infinity, -Infinity];
   for (let i = 0; i < n; i++) {
     const reach = Math.abs(beside[i - 1] ?? 0) + Math.abs(beside[i] ?? 0);
@@ -16,7 +36,7 @@ export function spectrum(matrix, n, share) {
     high = Math.max(high, diagonal[i] + reach);
   }
   const precision = PRECISION * Math.max(Math.abs(low), Math.abs(high));
-  const [smallest, largest] = [0, n - 1].map((which) => {
+  return [0, n - 1].map((which) => {
     let [from, to] = [low, high];
     while (to - from > precision) {
       const middle = (from + to) / 2;
@@ -26,10 +46,9 @@ export function spectrum(matrix, n, share) {
     }
     return (from + to) / 2;
   });
-  return { smallest, largest, missed: countBelow(diagonal, beside, share * Math.max(largest, 1e-300)) };
 }
 
-/** Diagonal, and entries beside it, of a tridiagonal matrix with the same eigenvalues. */
+/** Diagonal, and entries beside it, of a tridiagonal matrix with the same eigenvalues; the matrix is used up. */
 function tridiagonal(a, n) {
   const v = new Float64Array(n);
   const w = new Float64Array(n);

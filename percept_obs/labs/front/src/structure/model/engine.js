@@ -1,6 +1,6 @@
 // The whole of a run: object, camera, observers. The same numbers as record() and track() in Python.
 
-import { columnOf } from "../../common/model/derived.js";
+import { columnOf, derived } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { EACH, instants, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
@@ -57,10 +57,10 @@ export class StructureEngine extends Runner {
   relativeError(result, estimate) {
     const { truth, choice, width, time } = result;
     const ones = new Float64Array(time.length).fill(1);
-    const inverseOf = (rows) => {
+    const inverseOf = (rows) => derived(rows, "inverse where d_s is positive", () => {
       const scale = quantityOf(result, rows, "d_s");
       return columnOf(rows, width, 2).map((value, k) => scale[k] * value);
-    };
+    });
     const [right, inverse] = choice.unknown.includes("d_s") ? [truth, estimate].map(inverseOf) : [ones, ones];
     const error = distanceError(right, inverse, estimate, width);
     const { speed } = result;
