@@ -13,13 +13,18 @@ from typing import Any
 from uuid import uuid4
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy"}
-LANES_OPTIONS = OPTIONS | {"nogil": True, "fastmath": {"contract"}}
-"""For runs side by side: threads beside each other, and a product and a sum rounded once, in no other order."""
+CONTRACTED = OPTIONS | {"fastmath": {"contract"}}
+"""With a product and a sum rounded once, in no other order."""
+
+LANES_OPTIONS = CONTRACTED | {"nogil": True}
+"""For runs side by side: threads beside each other."""
 
 
 # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
 @lru_cache(maxsize=512)
-def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[..., Any]:
+def machine_code(
+    text: str, signature: Any, of_lanes: bool = False, contracted: bool = False
+) -> Callable[..., Any]:
     """The last function of a text in machine code; it may call those before it.
 
     numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
@@ -29,7 +34,7 @@ def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[
     import numba
     from platformdirs import user_cache_path
 
-    options = LANES_OPTIONS if of_lanes else OPTIONS
+    options = LANES_OPTIONS if of_lanes else CONTRACTED if contracted else OPTIONS
     text = f'"""A loop of percept_obs, which numba compiles with {options}."""\n\n{text}'
     content = text.encode()
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))

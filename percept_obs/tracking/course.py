@@ -37,7 +37,7 @@ class Course:
     hold: Hold
     longest_hold: float
 
-    @property
+    @cached_property
     def steps(self) -> Array:
         """Lengths of the steps in seconds, shape (N,)."""
         return np.diff(self.grid)
@@ -47,6 +47,10 @@ class Course:
         """The times at which the steps look at known signals, shape (N EACH + 1,)."""
         return instants(self.grid)
 
+    def at_samples(self, rows: Array) -> Array:
+        """Those of rows at the steps' ends, shape (N + 1, ...), that stand at the samples, shape (K, ...)."""
+        return rows if len(rows) == len(self.index) else rows[self.index]
+
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
         arriving = np.full((len(self.grid), samples.shape[1]), np.nan)
@@ -54,7 +58,7 @@ class Course:
         return arriving
 
     def held(self, filled: bool) -> Array:
-        """Outputs at the instants of every step, shape (N, EACH + 1, ...).
+        """Outputs at the instants of every step, shape (N, EACH + 1, ...), or (N, 1, ...) if they last for the step.
 
         Parameters
         ----------
@@ -63,10 +67,12 @@ class Course:
         """
         recording, time = self.recording, self.recording.time
         outputs = _bridged(recording, self.hold) if filled else recording.outputs
+        if self.hold == "zero" and len(self.grid) == len(time) and self.longest_hold == math.inf:
+            return outputs[:-1, None]
         interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
         before = outputs[interval][:, None]
         if self.hold == "zero":
-            held = np.repeat(before, EACH + 1, axis=1)
+            held = before
         elif self.hold == "first":
             begin, length = time[interval], np.diff(time)[interval]
             share = (by_step(self.instants) - begin[:, None]) / length[:, None]

@@ -149,7 +149,9 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     form, recording, index = observer.form, along.recording, along.index
     believed = believed or recording.motion
     _refuse_misfits(along, observer, believed)
-    columns = [recording.names.index(name) for name in form.measured]
+    columns: Any = [recording.names.index(name) for name in form.measured]
+    if columns == list(range(len(recording.names))):
+        columns = slice(None)  # all of them, as they are
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, along.grid)
     known = _known(along, believed)
@@ -159,26 +161,31 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
         given,
         dict(zip(form.parameters, known[0].tolist(), strict=True)),
     )
-    arriving = along.arriving(samples)
-    arriving[0, [name not in given for name in form.measured]] = np.nan  # a sample that is the start corrects nothing
+    arriving = np.empty((0, len(form.measured)))
+    if observer.equations.update:
+        arriving = along.arriving(samples)
+        arriving[0, [name not in given for name in form.measured]] = np.nan  # one that is the start corrects nothing
     table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
-    states = trace.states[index]
+    states = along.at_samples(trace.states)
     at_samples = known if len(known) == 1 else known[EACH * index]
-    inputs = (*states.T, *last_samples(samples).T, *at_samples.T)
-    estimate, unobservable = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
+    estimate, unobservable = _estimates(observer, states, samples, at_samples, recording.elapsed)
     diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
-    resets = along.grid[trace.resets]
+    resets = along.grid[np.flatnonzero(trace.resets)]
     return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
-def _estimates(observer: Observer, inputs: Sequence[Array], time: Array, first: Array) -> tuple[Array, Indices]:
+def _estimates(
+    observer: Observer, states: Array, samples: Array, known: Array, time: Array
+) -> tuple[Array, Indices]:
     """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
-    They follow from state, outputs and parameters at the samples, the seconds since the first one, and the first one.
+    They follow from state, outputs and parameters at the samples, and the seconds since the first one.
     """
-    form = observer.form
-    symbols = (*observer.equations.state, *form.x1, *form.parameters)
+    form, state = observer.form, observer.equations.state
+    if not observer.unobservable and observer.estimate == state[: len(observer.estimate)]:
+        return states[:, : len(observer.estimate)], np.zeros(len(time), dtype=int)
+    symbols, inputs = (*state, *form.x1, *form.parameters), (*states.T, *last_samples(samples).T, *known.T)
     measured, hidden = (np.array([form.coordinates.index(symbol) for symbol in x]) for x in (form.x1, form.x2))
     unobservable = np.zeros(len(time), dtype=int)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
@@ -186,7 +193,7 @@ def _estimates(observer: Observer, inputs: Sequence[Array], time: Array, first: 
         if observer.unobservable:
             symbols = (*symbols, elapsed, *first_innovation(form))
             conditions = [where.condition for where in observer.unobservable]
-            begun = np.broadcast_to(first - estimate[0, measured], (len(time), len(measured)))
+            begun = np.broadcast_to(samples[0] - estimate[0, measured], (len(time), len(measured)))
             found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
             for k, holds in reversed(list(enumerate(found, 1))):
                 unobservable[holds != 0] = k
