@@ -71,8 +71,6 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     ([0.0, 0.33, 0.67, 1.0], [0, 3])
     """
     intervals = np.diff(times)
-    if intervals.min(initial=longest) > 0 and intervals.max(initial=0.0) <= longest * (1 + STEP_ROUNDING):
-        return times, np.arange(len(times))
     limit(float((intervals / longest).sum()), "steps", "take longer steps or a shorter time")
     counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - STEP_ROUNDING)), 0).astype(int)
     index = np.concatenate([[0], np.cumsum(counts)])

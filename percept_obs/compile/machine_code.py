@@ -22,9 +22,7 @@ LANES_OPTIONS = CONTRACTED | {"nogil": True}
 
 # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
 @lru_cache(maxsize=512)
-def machine_code(
-    text: str, signature: Any, of_lanes: bool = False, contracted: bool = False
-) -> Callable[..., Any]:
+def machine_code(text: str, signature: Any, of_lanes: bool = False, contracted: bool = False) -> Callable[..., Any]:
     """The last function of a text in machine code; it may call those before it.
 
     numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
