@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -221,7 +221,7 @@ class Observer:
         ValueError
             If a name is unknown, a value is not finite, or a parameter is missing.
         """
-        return state_at_start(self, outputs, given, parameters or {})
+        return state_at_start(self, outputs, given, (parameters or {}).items())
 
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
@@ -263,9 +263,9 @@ def state_at_start(
     observer: Observer,
     outputs: Mapping[str, float],
     given: Mapping[str, float],
-    parameters: Mapping[sp.Symbol, float],
+    parameters: Iterable[tuple[sp.Symbol, float]],
 ) -> Array:
-    """What `Observer.initial_state` gives, of values whose kinds have been looked at."""
+    """What `Observer.initial_state` gives, of values whose kinds have been looked at; few starts need parameters."""
     form = observer.form
     names = [symbol.name for symbol in form.coordinates]
     wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]

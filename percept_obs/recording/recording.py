@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.border import checked, warn
-from percept_obs.compile import Array, Flags
+from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.doubts import doubts
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
@@ -180,6 +180,11 @@ class Recording:
     def intervals(self) -> Array:
         """Seconds from each sample to the next, shape (K - 1,)."""
         return readonly(np.diff(self.time))
+
+    @cached_property
+    def places(self) -> Indices:
+        """0 to K - 1, the places of the samples where each ends a step."""
+        return np.arange(len(self.time))
 
     @cached_property
     def longest_interval(self) -> float:

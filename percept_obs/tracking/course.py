@@ -95,7 +95,7 @@ class Course:
 def laid_out(recording: Recording, step: float, hold: Hold, longest_hold: float) -> Course:
     """A recording in steps no longer than given, one from each sample to the next where that is short enough."""
     if recording.longest_interval <= step * (1 + STEP_ROUNDING):
-        return Course(recording, recording.time, np.arange(len(recording.time)), hold, longest_hold)
+        return Course(recording, recording.time, recording.places, hold, longest_hold)
     return Course(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 

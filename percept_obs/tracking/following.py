@@ -160,7 +160,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
         observer,
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
         given,
-        dict(zip(form.parameters, known[0].tolist(), strict=True)),
+        zip(form.parameters, known[0].tolist(), strict=True),
     )
     arriving = np.empty((0, len(form.measured)))
     if observer.equations.update:
