@@ -149,4 +149,5 @@ def _compiled(equations: Equations) -> Callable[..., int]:
     given = types.Array(types.float64, 1, "C", readonly=True)  # which takes arrays that may be written to as well
     signature = (*[given] * 6, types.boolean, types.float64[::1], types.boolean[::1])
     text = f"import math\n\n\n{source(equations, 'python')}"
-    return machine_code(text, signature, contracted=not equations.switches)
+    # a reset needs a state within rounding of its bound at a step's end to move; a jump is crossed all the time
+    return machine_code(text, signature, "exact" if equations.switches else "contracted")
