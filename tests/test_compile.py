@@ -2,8 +2,10 @@
 
 import builtins
 import os
+import pickle
 import subprocess
 import sys
+from dataclasses import fields
 from functools import cache, partial
 
 import numpy as np
@@ -352,6 +354,15 @@ def test_names_that_are_words_of_a_language_do_not_matter():
 def test_equations_that_do_not_close_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         Equations(*arguments)
+
+
+def test_equations_take_no_hash_to_another_process():
+    equations = Equations((x,), (-x,))
+    hash(equations)
+    copy = pickle.loads(pickle.dumps(equations))
+    assert vars(copy).keys() == {field.name for field in fields(Equations)}
+    assert copy == equations
+    assert hash(copy) == hash(equations)
 
 
 def test_equations_show_flow_update_and_reset():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -76,7 +77,11 @@ class Equations:
     @cached_property
     def _hash(self) -> int:
         """Looked up for every run, and made of many expressions."""
-        return hash(tuple(getattr(self, field.name) for field in fields(self)))
+        return hash(tuple(self.__getstate__().values()))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process is told: texts, and so expressions, have another hash there."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def switches(self) -> bool:
