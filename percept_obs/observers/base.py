@@ -275,21 +275,23 @@ def state_at_start(
     if unseen:
         raise ValueError(f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output")
     asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
-    estimates, first, used = _symbols_of_start(observer.start, form.coordinates, form.x1)
-    known = {hat: asked[name] for name, hat in zip(names, estimates, strict=True)}
-    known |= {symbol: float(name not in given) for name, symbol in zip(form.measured, first, strict=True)}
-    if not known.keys() >= set(used):
-        known |= {symbol: outputs[symbol.name] for symbol in form.x1} | observer.gain_values | dict(parameters)
-    missing = [str(symbol) for symbol in used if symbol not in known]
-    if missing:
-        raise ValueError(f"the start of the {observer.name} observer needs {', '.join(missing)}; pass parameters=")
-    return at_once(used, observer.start, [known[symbol] for symbol in used])
+    values = [*map(asked.__getitem__, names), *(float(name not in given) for name in form.measured)]
+    known, others = _symbols_of_start(observer.start, form.coordinates, form.x1)
+    if others:
+        found = {symbol: outputs[symbol.name] for symbol in form.x1} | observer.gain_values | dict(parameters)
+        missing = [str(symbol) for symbol in others if symbol not in found]
+        if missing:
+            raise ValueError(f"the start of the {observer.name} observer needs {', '.join(missing)}; pass parameters=")
+        values += [found[symbol] for symbol in others]
+    return at_once(known, observer.start, values)
 
 
 @lru_cache(maxsize=512)
-def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> tuple[Symbols, Symbols, Symbols]:
-    """Symbols of the estimates asked for and of what is a first sample, and all that the start uses, by their names."""
-    return hats(coordinates), first_seen(x1), tuple(sorted(sp.Tuple(*start).free_symbols, key=str))
+def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> tuple[Symbols, Symbols]:
+    """Symbols of the estimates asked for, of what is a first sample, and of what else the start uses; and the last."""
+    own = (*hats(coordinates), *first_seen(x1))
+    others = tuple(sorted(sp.Tuple(*start).free_symbols - set(own), key=str))
+    return (*own, *others), others
 
 
 @checked

@@ -172,7 +172,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     at_samples = known if len(known) == 1 else known[EACH * index]
     estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed)
     diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
-    resets = along.grid[np.flatnonzero(trace.resets)]
+    resets = along.grid[trace.resets.nonzero()[0]]
     return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
@@ -272,7 +272,8 @@ def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates
 
 def _known(along: Course, believed: Motion) -> Array:
     """Parameters of motion and view at the instants of the steps."""
-    constant, view = believed.signal is not None and believed.signal.constant, along.recording.view
-    rows = believed.known(along.grid[:1] if constant else along.instants)
+    rows, view = believed.constants, along.recording.view
+    if rows is None:
+        rows = believed.known(along.instants)
     shape = [view.values[symbol] for symbol in view.parameters]
     return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))]) if shape else rows
