@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from percept_obs.compile import Trace, source
+from percept_obs.compile.integrator import EACH
 
 
 def solve_in_node(node, equations, start, table, gains):
     """What `percept_obs.compile.solve` does, in JavaScript."""
     size, count = len(equations.state), len(table.steps) + 1
-    blocks = (start, table.steps, table.measured, table.parameters, table.samples, gains)
+    measured = np.broadcast_to(table.measured, (count - 1, EACH + 1, len(equations.measured)))  # as in the page
+    blocks = (start, table.steps, measured, table.parameters, table.samples, gains)
     flat = [[None if np.isnan(v) else v for v in np.ravel(np.asarray(b, dtype=float)).tolist()] for b in blocks]
     task = {
         "source": source(equations, "javascript"),

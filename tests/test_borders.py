@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from examples import BOTH
+from numpy.typing import ArrayLike
 
 from percept_obs import (
     BehindCamera,
@@ -29,7 +30,7 @@ from percept_obs import (
     scenarios,
     track,
 )
-from percept_obs.border import TooMuchWork, WrongKind, expression
+from percept_obs.border import TooMuchWork, WrongKind, checked, expression
 from percept_obs.observers import lao
 from percept_obs.points import PointsScenario, independent_points
 from percept_obs.points.scenarios import moving_body
@@ -213,3 +214,23 @@ def test_degrees_are_asked_for():
         record(Scenario("turns", turning, (1, 0, 2), 1, pinhole()), camera=Camera(0.1))
     assert told[0].filename == __file__
     rigid([0, 0, 20], np.zeros(3), np.zeros(3))
+
+
+def test_an_array_is_looked_at_once_by_the_type_of_its_entries():
+    @checked
+    def total(values: ArrayLike, pair: tuple[float, float] = (0.0, 0.0)) -> float:
+        return float(np.sum(values)) + sum(pair)
+
+    @checked
+    def mean(values: ArrayLike) -> float:
+        return float(np.mean(values))
+
+    for function in (total, mean):
+        assert function(np.ones(2)) == function(np.ones(2)) == function(np.ones(2))
+        with pytest.raises(WrongKind, match="values is"):
+            function(np.array(["1", "2"]))
+        with pytest.raises(WrongKind, match="values is"):
+            function(np.array([1, "2"], dtype=object))
+    assert total(np.ones(2), np.ones(2)) == 4
+    with pytest.raises(WrongKind, match="pair is"):
+        total(np.ones(2), np.ones(3))

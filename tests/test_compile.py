@@ -2,8 +2,10 @@
 
 import builtins
 import os
+import pickle
 import subprocess
 import sys
+from dataclasses import fields
 from functools import cache, partial
 
 import numpy as np
@@ -77,6 +79,36 @@ def test_python_and_numba_agree(name, outputs):
     python, compiled = (track(recording, observer, ZERO, language=language) for language in ("python", "numba"))
     np.testing.assert_allclose(compiled.state, python.state, rtol=1e-12, atol=1e-12)
     assert compiled.resets.tolist() == python.resets.tolist()
+
+
+@pytest.mark.slow
+def test_a_product_and_a_sum_rounded_once_move_no_reset():
+    observer, draw, counted = observer_of("identifier_based", "y1"), np.random.default_rng(5), 0
+    recording = record(scenarios.ma2005_eq35(), 5, NOISY, seed=3)
+    for _ in range(30):
+        driven = observer.with_gains(gain=draw.uniform(2, 30), bound=draw.uniform(0.5, 3))
+        start = draw.uniform(-1, 1, 3)
+        python, compiled = (track(recording, driven, start, language=language) for language in ("python", "numba"))
+        assert compiled.resets.tolist() == python.resets.tolist()
+        counted += len(python.resets)
+    assert counted > 1000
+
+
+def test_only_flows_that_do_not_jump_are_rounded_less_often(monkeypatch):
+    asked = []
+    monkeypatch.setattr(kernels, "machine_code", lambda text, signature, rounding: asked.append(rounding))
+    for flow in (-x, sp.tanh(x), sp.sign(x), sp.Piecewise((x, x > 0), (0, True))):
+        kernels._compiled(Equations((x,), (sp.Rational(13, 7) * flow,)))
+    assert asked == ["contracted", "contracted", "exact", "exact"]
+
+
+def test_outputs_that_last_for_a_step_are_given_once():
+    equations, rows = Equations((x,), (u - x,), (u,)), np.linspace(0, 1, 40)[:, None, None]
+    each = Table(np.full(40, 0.1), np.repeat(rows, EACH + 1, axis=1), np.zeros((1, 0)), np.empty((0, 1)))
+    once = Table(each.steps, rows, each.parameters, each.samples)
+    there, here = (solve(equations, [1.0], table, (), "python").states for table in (each, once))
+    assert there.tolist() == here.tolist()
+    assert np.ptp(there) > 0.1
 
 
 @pytest.mark.slow
@@ -322,6 +354,15 @@ def test_names_that_are_words_of_a_language_do_not_matter():
 def test_equations_that_do_not_close_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         Equations(*arguments)
+
+
+def test_equations_take_no_hash_to_another_process():
+    equations = Equations((x,), (-x,))
+    hash(equations)
+    copy = pickle.loads(pickle.dumps(equations))
+    assert vars(copy).keys() == {field.name for field in fields(Equations)}
+    assert copy == equations
+    assert hash(copy) == hash(equations)
 
 
 def test_equations_show_flow_update_and_reset():

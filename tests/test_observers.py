@@ -260,7 +260,7 @@ def test_the_start_is_what_its_expressions_say(make):
         {x.name: at[hat.name] for x, hat in zip(BOTH.coordinates, hats(BOTH.coordinates), strict=True)},
         {s: at[s.name] for s in BOTH.parameters},
     )
-    given = dict.fromkeys(first_seen(BOTH), 0)
+    given = dict.fromkeys(first_seen(BOTH.x1), 0)
     expected = [float(e.subs(values | given).subs(observer.gain_values)) for e in observer.start]
     np.testing.assert_allclose(state, expected, rtol=1e-14)
 

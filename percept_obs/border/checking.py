@@ -15,7 +15,17 @@ from typing import Any, TypeVar, get_args, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.border.kinds import Kind, are_numbers, classes, elements, fits, is_real, with_article, words
+from percept_obs.border.kinds import (
+    Kind,
+    are_numbers,
+    classes,
+    depends_on_entries,
+    elements,
+    fits,
+    is_real,
+    with_article,
+    words,
+)
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
@@ -83,11 +93,11 @@ def _guarded(function: Any, name: str, annotated: Any = None) -> Any:
 
     @wraps(function)
     def called(*args: Any, **kwargs: Any) -> Any:
-        types = (*map(type, args), *kwargs, *map(type, kwargs.values()))
+        types = (*map(_type_of, args), *kwargs, *map(_type_of, kwargs.values()))
         if types in passed:
             return function(*args, **kwargs)
         given = arguments.checked(args, kwargs)
-        if all(isinstance(each, str) or _tells_all(each) for each in types):
+        if all(isinstance(each, str) or _tells_all(each, arguments) for each in types):
             passed.add(types)
         return function(*given.args, **given.kwargs)
 
@@ -100,8 +110,15 @@ def _only_a_float_fits(value: Any, kind: Any) -> bool:
     return float in alternatives and not any(fits(value, each) for each in alternatives - {kind, float})
 
 
-def _tells_all(kind: Any) -> bool:
+def _type_of(value: Any) -> Any:
+    """The type of a value, or of an array's entries; an array of one number stands for it."""
+    return value.dtype if type(value) is np.ndarray and value.ndim else type(value)
+
+
+def _tells_all(kind: Any, arguments: _Arguments) -> bool:
     """Whether the type of a value alone decides of which kind it is, so that it is looked at once."""
+    if isinstance(kind, np.dtype):
+        return kind.kind in "biuf" and arguments.look_at_no_entries
     return kind in (float, np.float64, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
 
 
@@ -122,6 +139,11 @@ class _Arguments:
         later = {name: import_module(module) for name, module in LATER.items() if f"{name}." in str(self.signature)}
         hints = get_type_hints(self.annotated, localns=later, include_extras=True)
         return {key: kind for key, kind in hints.items() if key in self.signature.parameters}
+
+    @cached_property
+    def look_at_no_entries(self) -> bool:
+        """Whether no kind depends on how many entries an array has or what they are."""
+        return not any(depends_on_entries(kind) for kind in self.kinds.values())
 
     def checked(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> inspect.BoundArguments:
         try:

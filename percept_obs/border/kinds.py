@@ -148,6 +148,16 @@ def _each_fits(value: Any, origin: type, inside: tuple[Any, ...]) -> bool:
     return all(fits(entry, inside[0]) for entry in value)
 
 
+def depends_on_entries(kind: Any) -> bool:
+    """Whether an array may be of a kind by its shape or its entries, and not by their type alone."""
+    if _named(kind) is not None:
+        return kind is not ArrayLike and get_origin(kind) is Annotated
+    origin, inside = _made_of(kind)
+    if origin in (Union, UnionType):
+        return any(map(depends_on_entries, inside))
+    return isinstance(origin, type) and issubclass(origin, Iterable)
+
+
 def words(kind: Any) -> str:
     """What an annotated kind is called."""
     named = _named(kind)

@@ -1,7 +1,7 @@
 """From sympy to code that runs, in Python, numba and JavaScript."""
 
 from percept_obs.compile.arrays import Array, Flags, Indices
-from percept_obs.compile.functions import executed, function_source, python_text, right_hand_side, vectorised
+from percept_obs.compile.functions import at_once, executed, function_source, python_text, right_hand_side, vectorised
 from percept_obs.compile.intermediate import Intermediate, definitions, in_letters, intermediates, written_out
 from percept_obs.compile.kernels import Language, Table, Trace, choose, solve
 from percept_obs.compile.loop import source
@@ -18,6 +18,7 @@ __all__ = [
     "Printed",
     "Table",
     "Trace",
+    "at_once",
     "choose",
     "definitions",
     "executed",

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.border import derived
-from percept_obs.compile.intermediate import definitions
+from percept_obs.compile.intermediate import definitions, written_out
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
@@ -68,6 +70,24 @@ class Equations:
         used = sp.Tuple(*(e for block in blocks for e in block), self.reset_condition).free_symbols
         if used - set(listed):
             raise ValueError(f"the equations use {sorted(map(str, used - set(listed)))}, which nothing provides")
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        """Looked up for every run, and made of many expressions."""
+        return hash(tuple(self.__getstate__().values()))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process is told: texts, and so expressions, have another hash there."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def switches(self) -> bool:
+        """Whether the flow or an update jumps, so that rounding decides on which side a state near the jump is."""
+        expressions = (*self.flow, *(entry for block in self.update for entry in block))
+        return any(written_out(each).has(sp.sign, sp.Piecewise, sp.Heaviside) for each in expressions)
 
     def xreplace(self, rule: Mapping[sp.Basic, sp.Basic]) -> Equations:
         """The same equations with symbols replaced in flow, updates, reset condition and reset."""

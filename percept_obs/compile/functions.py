@@ -37,6 +37,11 @@ def vectorised(
     return evaluate
 
 
+def at_once(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...], values: Sequence[float]) -> Array:
+    """Several expressions at one place, where `vectorised` would take longer to lay out its arrays than to compute."""
+    return np.array(_numpy_function(symbols, expressions)(*map(np.float64, values)), dtype=float)
+
+
 @lru_cache(maxsize=512)
 def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...]) -> Callable[..., tuple[Any, ...]]:
     return sp.lambdify(symbols, expressions, "numpy", cse=_shared)

@@ -55,12 +55,12 @@ class Table:
     ----------
     steps : array of shape (N,)
         Lengths of the steps in seconds.
-    measured : array of shape (N, EACH + 1, m)
-        Measured outputs as they are held at the instants of each step.
+    measured : array of shape (N, EACH + 1, m), or (N, 1, m) when held from each step's start to its end
+        Measured outputs at the instants of each step.
     parameters : array of shape (N EACH + 1, p), or (1, p) when constant
         Known motion and surface at the instants of all steps.
     samples : array of shape (N + 1, m)
-        New samples at the steps' ends (and the first start); NaN where there is none.
+        New samples at the steps' ends (and the first start); NaN where there is none.  Not looked at without updates.
     """
 
     steps: Array
@@ -116,10 +116,8 @@ def solve(
         If numba is asked for and is not installed.
     """
     size, count = len(equations.state), len(table.steps) + 1
-    inputs = [
-        np.array(block, dtype=float).ravel()
-        for block in (start, table.steps, table.measured, table.parameters, table.samples, gains)
-    ]
+    blocks = (start, table.steps, table.measured, table.parameters, table.samples, gains)
+    inputs = [np.asarray(block, dtype=float).ravel() for block in blocks]
     varying = len(table.parameters) > 1
     if choose(language, len(table.steps)) == "python":
         states: Any = [math.nan] * (size * count)
@@ -129,11 +127,12 @@ def solve(
         except (ArithmeticError, ValueError):
             diverged = next(k for k in range(count) if math.isnan(states[size * k]))
     else:
-        states, resets = np.full(size * count, np.nan), np.zeros(count)
+        states, resets = np.empty(size * count), np.zeros(count, dtype=bool)
         diverged = _compiled(equations)(*inputs, varying, states, resets)
+        states[size * diverged if diverged >= 0 else size * count :] = np.nan
     return Trace(
         np.asarray(states).reshape(count, size),
-        np.asarray(resets) != 0,
+        np.asarray(resets, dtype=bool),
         None if diverged < 0 else int(diverged),
     )
 
@@ -143,7 +142,12 @@ def _python(equations: Equations) -> Callable[..., int]:
     return executed(source(equations, "python"))
 
 
+@lru_cache(maxsize=512)
 def _compiled(equations: Equations) -> Callable[..., int]:
-    block = "float64[::1]"
-    signature = f"({', '.join([block] * 6)}, boolean, {block}, {block})"
-    return machine_code(f"import math\n\n\n{source(equations, 'python')}", signature)
+    from numba import types
+
+    given = types.Array(types.float64, 1, "C", readonly=True)  # which takes arrays that may be written to as well
+    signature = (*[given] * 6, types.boolean, types.float64[::1], types.boolean[::1])
+    text = f"import math\n\n\n{source(equations, 'python')}"
+    # a reset needs a state within rounding of its bound at a step's end to move; a jump is crossed all the time
+    return machine_code(text, signature, "exact" if equations.switches else "contracted")

@@ -53,9 +53,19 @@ def source(equations: Equations, language: Printed = "python") -> str:
             first = f"{rows * wide}*k + " if rows else ""
             text.assign(f"{letter}{k}", f"{array}[{first}{row * wide + k}]")
 
+    def load_outputs(instant: int) -> None:
+        for k in range(m):
+            text.assign(f"y{k}", f"measured[{m}*(each*k + {instant}) + {k}]")
+
     def look(instant: int) -> None:
         """Load what is known at one of a step's instants."""
-        load("y", "measured", EACH + 1, instant)
+        if not text.python:  # the page lays out every instant
+            load("y", "measured", EACH + 1, instant)
+        elif instant == 0:
+            load_outputs(0)
+        elif m:
+            with text.block("if", "each > 1"):
+                load_outputs(instant)
         if equations.parameters:
             with text.block("if", "varying"):
                 load("p", "parameters", EACH, instant)
@@ -80,6 +90,8 @@ def source(equations: Equations, language: Printed = "python") -> str:
         for expression, symbol in formulas.fixed.items():
             text.assign(symbol.name, text.print(expression))
         text.assign("row", "0")
+        if m and text.python:
+            text.assign("each", f"{EACH + 1} if len(measured) > {m}*len(steps) else 1")
         update_by_samples()
         keep()
         with text.loop("k", "steps"):

@@ -9,17 +9,25 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, Literal
 from uuid import uuid4
 
-OPTIONS: dict[str, Any] = {"error_model": "numpy"}
-LANES_OPTIONS = OPTIONS | {"nogil": True, "fastmath": {"contract"}}
-"""For runs side by side: threads beside each other, and a product and a sum rounded once, in no other order."""
+Rounding = Literal["exact", "contracted", "lanes"]
+
+_EXACT: dict[str, Any] = {"error_model": "numpy"}
+_CONTRACTED = _EXACT | {"fastmath": {"contract"}}
+OPTIONS: dict[Rounding, dict[str, Any]] = {
+    "exact": _EXACT,
+    "contracted": _CONTRACTED,
+    "lanes": _CONTRACTED | {"nogil": True},
+}
+"""For numba: as Python rounds; a product and a sum rounded once, in no other order; and this in threads beside each
+other, for runs side by side."""
 
 
 # Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
 @lru_cache(maxsize=512)
-def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[..., Any]:
+def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Callable[..., Any]:
     """The last function of a text in machine code; it may call those before it.
 
     numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
@@ -29,7 +37,7 @@ def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[
     import numba
     from platformdirs import user_cache_path
 
-    options = LANES_OPTIONS if of_lanes else OPTIONS
+    options = OPTIONS[rounding]
     text = f'"""A loop of percept_obs, which numba compiles with {options}."""\n\n{text}'
     content = text.encode()
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
@@ -43,8 +51,9 @@ def machine_code(text: str, signature: str, of_lanes: bool = False) -> Callable[
     module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks when it takes the code from the file
     exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
     *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-    for name in others:  # inside a loop over lanes, for a call stops vector instructions
-        setattr(module, name, numba.njit(forceinline=of_lanes, **options)(getattr(module, name)))
+    inside = rounding == "lanes"  # of the loop, for a call stops vector instructions
+    for name in others:
+        setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
     compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
     return compiled
 

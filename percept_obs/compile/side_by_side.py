@@ -160,4 +160,4 @@ def _function_of(loop: LanesLoop, language: Language) -> Callable[..., None]:
     index, indices = "intp[::1]", "intp[:, ::1]"
     own, shared = ", ".join([two] * 4), ", ".join([three] * 3)
     signature = f"({own}, {shared}, {indices}, {one}, {index}, {four}, {one}, float64, float64, intp, {two})"
-    return machine_code(lanes_source(loop, "numba"), signature, of_lanes=True)
+    return machine_code(lanes_source(loop, "numba"), signature, "lanes")

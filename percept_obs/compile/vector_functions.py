@@ -1,7 +1,7 @@
 """Functions without a branch or a table, so that a processor's vector instructions take many arguments together.
 
 This text stands before each loop over runs side by side, where numba compiles it; so it needs nothing but numpy.
-Errors are about 4e-16 of the value.
+Errors are below 5e-16 of the value.
 """
 
 import math
@@ -19,31 +19,29 @@ def some(condition: bool) -> bool:
     return condition
 
 
-def parts(x: float) -> tuple[float, float]:
-    """2^k and e^r - 1 with e^x = 2^k e^r, for x = k log(2) + r from -708 to 709."""
-    big = 6755399441055744.0  # 1.5 * 2^52, above which there are no fractions: k stands in the last bits of the sum
-    shifted = np.float64(x * 1.4426950408889634 + big)
+def parts(z: float) -> tuple[float, float, float]:
+    """2^k, P and Q with e^(2z) = 2^k (Q + P) / (Q - P), for z = k log(2) / 2 + r from -354 to 354.
+
+    P / Q is tanh(r) by Lambert's continued fraction, r / (1 + r^2 / (3 + r^2 / (5 + ... r^2 / 13))).
+    """
+    big = 1.5 * 2.0**52 + 1023.0  # there are no fractions above: k + 1023, the exponent of 2^k, stands in the last bits
+    shifted = np.float64(z * 2.8853900817779268 + big)
     k = shifted - big
-    r = (x - k * 0.6931471803691238) - k * 1.9082149292705877e-10
-    square = r * r  # its terms by pairs, so that few have to wait for others
-    low = (1 / 2 + 1 / 6 * r) + square * (1 / 24 + 1 / 120 * r)
-    middle = (1 / 720 + 1 / 5040 * r) + square * (1 / 40320 + 1 / 362880 * r)
-    high = (1 / 3628800 + 1 / 39916800 * r) + square * (1 / 479001600 + 1 / 6227020800 * r)
-    fourth = square * square
-    tail = low + fourth * (middle + fourth * high)
-    power = np.int64((shifted.view(np.int64) + 1023) << 52).view(np.float64)
-    return power, tail * square + r
+    r = (z - k * 0.3465735901845619) - k * 9.5410746463529385e-11
+    u = r * r
+    P = r * (135135.0 + u * (17325.0 + u * (378.0 + u)))
+    Q = 135135.0 + u * (62370.0 + u * (3150.0 + u * 28.0))
+    return np.int64(shifted.view(np.int64) << 52).view(np.float64), P, Q
 
 
 def exp(x: float) -> float:
     """e^x, 0 below 3e-308 and infinite above 8e307."""
-    power, part = parts(where(x < -708.0, -708.0, where(x > 709.0, 709.0, x)))
-    return where(x > 709.0, math.inf, where(x < -708.0, 0.0, power * part + power))
+    power, P, Q = parts(where(x < -708.0, -354.0, where(x > 709.0, 354.5, x / 2.0)))
+    return where(x > 709.0, math.inf, where(x < -708.0, 0.0, power * ((Q + P) / (Q - P))))
 
 
 def tanh(x: float) -> float:
-    """The hyperbolic tangent, by e^(-2 |x|) - 1."""
-    size = abs(x)
-    power, part = parts(-2.0 * where(size > 22.0, 22.0, size))
-    shrunk = power * part + (power - 1.0)
-    return math.copysign(shrunk / (shrunk + 2.0), x)
+    """The hyperbolic tangent, (e^(2x) - 1) / (e^(2x) + 1)."""
+    power, P, Q = parts(where(x < -22.0, -22.0, where(x > 22.0, 22.0, x)))
+    more, less = power + 1.0, power - 1.0
+    return (less * Q + more * P) / (more * Q + less * P)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
-import numpy as np
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from percept_obs.border import checked
-from percept_obs.compile import Array, right_hand_side, vectorised
-from percept_obs.compile.equations import Equations
+from percept_obs.compile import Array, at_once, right_hand_side
+from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import first_seen, hats
@@ -221,26 +221,7 @@ class Observer:
         ValueError
             If a name is unknown, a value is not finite, or a parameter is missing.
         """
-        names = [symbol.name for symbol in self.form.coordinates]
-        wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]
-        if wrong:
-            raise ValueError(
-                f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}"
-            )
-        unseen = [name for name in self.form.measured if not math.isfinite(outputs.get(name, math.nan))]
-        if unseen:
-            raise ValueError(
-                f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output"
-            )
-        asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
-        known = {symbol: outputs[symbol.name] for symbol in self.form.x1} | self.gain_values | dict(parameters or {})
-        known |= {hat: asked[name] for name, hat in zip(names, hats(self.form.coordinates), strict=True)}
-        seen = zip(self.form.measured, first_seen(self.form), strict=True)
-        known |= {symbol: float(name not in given) for name, symbol in seen}
-        missing = sorted(str(s) for s in sp.Tuple(*self.start).free_symbols - set(known))
-        if missing:
-            raise ValueError(f"the start of the {self.name} observer needs {', '.join(missing)}; pass parameters=")
-        return np.array(vectorised(tuple(known), self.start)(*known.values()))
+        return state_at_start(self, outputs, given, (parameters or {}).items())
 
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
@@ -276,6 +257,41 @@ class Observer:
         """The equations without the terms that the present gains put out."""
         out = {symbol: sp.S.Zero for symbol, value in self.gain_values.items() if value == 0}
         return self.equations.xreplace(out)._repr_latex_()
+
+
+def state_at_start(
+    observer: Observer,
+    outputs: Mapping[str, float],
+    given: Mapping[str, float],
+    parameters: Iterable[tuple[sp.Symbol, float]],
+) -> Array:
+    """What `Observer.initial_state` gives, of values whose kinds have been looked at; few starts need parameters."""
+    form = observer.form
+    names = [symbol.name for symbol in form.coordinates]
+    wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]
+    if wrong:
+        raise ValueError(f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}")
+    unseen = [name for name in form.measured if not math.isfinite(outputs.get(name, math.nan))]
+    if unseen:
+        raise ValueError(f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output")
+    asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
+    values = [*map(asked.__getitem__, names), *(float(name not in given) for name in form.measured)]
+    known, others = _symbols_of_start(observer.start, form.coordinates, form.x1)
+    if others:
+        found = {symbol: outputs[symbol.name] for symbol in form.x1} | observer.gain_values | dict(parameters)
+        missing = [str(symbol) for symbol in others if symbol not in found]
+        if missing:
+            raise ValueError(f"the start of the {observer.name} observer needs {', '.join(missing)}; pass parameters=")
+        values += [found[symbol] for symbol in others]
+    return at_once(known, observer.start, values)
+
+
+@lru_cache(maxsize=512)
+def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> tuple[Symbols, Symbols]:
+    """Symbols of the estimates asked for, of what is a first sample, and of what else the start uses; and the last."""
+    own = (*hats(coordinates), *first_seen(x1))
+    others = tuple(sorted(sp.Tuple(*start).free_symbols - set(own), key=str))
+    return (*own, *others), others
 
 
 @checked

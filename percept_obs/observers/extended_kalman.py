@@ -82,7 +82,7 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     for k, y in enumerate(form.x1):
         gain = P.col(k) / (P[k, k] + R)
         updates.append(state(sp.Matrix(x_hat) + gain * (y - x_hat[k]), P - gain * P.row(k)))
-    spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form)), *(P2 for _ in form.x2))
+    spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form.x1)), *(P2 for _ in form.x2))
     return Derived(state(x_hat, P), state(rate, P_rate), state(x_hat, spread), update=tuple(updates), covariance=P)
 
 

@@ -9,7 +9,7 @@ from sympy.logic.boolalg import Boolean
 from percept_obs.border import checked
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.forms import CanonicalForm
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
 
@@ -32,9 +32,9 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
 
 
-def first_seen(form: PartitionedSystem) -> tuple[sp.Symbol, ...]:
+def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     """Symbols that are 1 where the start of a measured output is its first sample itself, and 0 where it is given."""
-    return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in form.x1)
+    return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in x1)
 
 
 def output_injection(

@@ -90,6 +90,7 @@ def _follow_points(
         began[sighting.first, sighting.point] = True
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
     coefficients, held = form.numbers(along.instants), along.held(filled=False)
+    held = np.broadcast_to(held, (len(held), EACH + 1, *held.shape[2:]))
     spoken = choose(language, len(along.grid) * form.states)
     task = _Task(along, form, matrix, coefficients, held, began, sight, kept, spoken)
     state, P = np.full((len(time), form.states), np.nan), np.zeros((len(kept), form.states, form.states))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from percept_obs.border import checked, warn
-from percept_obs.compile import Array, Flags
+from percept_obs.compile import Array, Flags, Indices
+from percept_obs.recording.doubts import doubts
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
 from percept_obs.recording.track_table import Columns, Unlikely, recordings_in
@@ -20,12 +21,6 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
-
-LARGEST_USUAL = 20.0
-"""Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
-
-HOLE = 10
-"""Times the usual interval of a sampled motion that make a hole in it."""
 
 
 @dataclass(frozen=True)
@@ -117,28 +112,8 @@ class Recording:
         if self.noise_variance is not None and not 0 <= self.noise_variance < np.inf:
             raise ValueError(f"the noise_variance is {self.noise_variance}; a variance is finite and not negative")
         self.motion.known(self.time[[0, -1]])
-        for doubt in self._doubts():
+        for doubt in doubts(self.time, self.outputs, self.names, self.view, self.motion):
             warn(Unlikely(doubt))
-
-    def _doubts(self) -> Iterator[str]:
-        """What is hardly meant: pixels for image coordinates, a hole in the motion."""
-        seen = np.abs(self.outputs[np.isfinite(self.outputs)])
-        if isinstance(self.view, ImagingSurface) and len(seen) and np.median(seen) > LARGEST_USUAL:
-            yield (
-                f"half of the samples of {', '.join(self.names)} lie beyond {LARGEST_USUAL:g} focal lengths, up to "
-                f"{seen.max():.4g}: are they pixels? Subtract the principal point and divide by the focal length"
-            )
-        times = None if self.motion.signal is None else self.motion.signal.times
-        if times is None or len(times) < 3:
-            return
-        gaps = np.diff(times)
-        holes = (gaps > HOLE * np.median(gaps)) & (times[1:] > self.time[0]) & (times[:-1] < self.time[-1])
-        for k in np.flatnonzero(holes)[:1]:
-            yield (
-                f"between {times[k] - self.time[0]:.4g} and {times[k + 1] - self.time[0]:.4g} s after the first sample "
-                f"the motion was not sampled, {gaps[k] / np.median(gaps):.3g} times its usual interval; it is taken to "
-                "change evenly there: cut the recording with between(), or fill the hole"
-            )
 
     def __repr__(self) -> str:
         return (
@@ -151,7 +126,7 @@ class Recording:
         time = self.time
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the recording has times of shape {time.shape}; at least two samples are needed")
-        if not np.isfinite(time).all() or not (np.diff(time) > 0).all():
+        if not np.isfinite(time).all() or not (self.intervals > 0).all():
             k = int(np.argmin(np.diff(time) > 0)) if np.isfinite(time).all() else int(np.argmin(np.isfinite(time)))
             raise ValueError(
                 f"the recording's times must increase strictly and be finite; look at row {k + 1}, "
@@ -200,6 +175,30 @@ class Recording:
     def elapsed(self) -> Array:
         """Seconds since the first sample, shape (K,): the clock in which people are told of times."""
         return self.time - self.time[0]
+
+    @cached_property
+    def intervals(self) -> Array:
+        """Seconds from each sample to the next, shape (K - 1,)."""
+        return readonly(np.diff(self.time))
+
+    @cached_property
+    def places(self) -> Indices:
+        """0 to K - 1, the places of the samples where each ends a step."""
+        return np.arange(len(self.time))
+
+    @cached_property
+    def longest_interval(self) -> float:
+        """The longest of `intervals`."""
+        return float(self.intervals.max())
+
+    @cached_property
+    def last_outputs(self) -> Array:
+        """Each output, or where it was lost the last one before, of the shape of the outputs."""
+        there = np.isfinite(self.outputs)
+        if there.all():
+            return self.outputs
+        rows = np.arange(len(self.time)).reshape(-1, *[1] * (self.outputs.ndim - 1))
+        return readonly(np.take_along_axis(self.outputs, np.maximum.accumulate(np.where(there, rows, 0)), axis=0))
 
     @property
     def seen(self) -> Flags:

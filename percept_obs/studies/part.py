@@ -266,7 +266,7 @@ class Plan:
             *(gain.symbol for gain in observer.gains),
             *form.parameters,
             *hats(form.coordinates),
-            *first_seen(form),
+            *first_seen(form.x1),
         )
         inputs = (*first.T, *gains.T, *known.T, *values.values(), *flags)
         start = np.stack(vectorised(symbols, observer.start)(*inputs), axis=-1)

@@ -83,12 +83,12 @@ class PartitionedSystem:
         """Numbers of the view's symbols."""
         return dict(self.view.values) if self.view else {}
 
-    @property
+    @cached_property
     def measured(self) -> tuple[str, ...]:
         """Names of the measured coordinates."""
         return tuple(symbol.name for symbol in self.x1)
 
-    @property
+    @cached_property
     def hidden(self) -> tuple[str, ...]:
         """Names of the hidden coordinates."""
         return tuple(symbol.name for symbol in self.x2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -58,9 +59,12 @@ class Motion:
     @property
     def values(self) -> dict[sp.Symbol, float]:
         """Numbers of a constant motion's symbols; empty while there are none or they vary."""
-        if self.signal is None or not self.signal.constant:
-            return {}
-        return dict(zip(self.parameters, self.signal.at(0.0)[0].tolist(), strict=True))
+        return {} if self.constants is None else dict(zip(self.parameters, self.constants[0].tolist(), strict=True))
+
+    @cached_property
+    def constants(self) -> Array | None:
+        """Values of `parameters` if they are constant, shape (1, p)."""
+        return self.known(0.0) if self.signal is not None and self.signal.constant else None
 
     def known(self, times: ArrayLike) -> Array:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.

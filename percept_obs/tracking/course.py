@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import EACH, by_step, instants
+from percept_obs.compile.integrator import STEP_ROUNDING, by_step, instants, step_grid
 from percept_obs.recording import Recording
 
 Hold = Literal["zero", "first", "exact"]
@@ -37,15 +37,23 @@ class Course:
     hold: Hold
     longest_hold: float
 
-    @property
+    @cached_property
     def steps(self) -> Array:
         """Lengths of the steps in seconds, shape (N,)."""
-        return np.diff(self.grid)
+        return self.recording.intervals if self._a_step_a_sample else np.diff(self.grid)
 
     @cached_property
     def instants(self) -> Array:
         """The times at which the steps look at known signals, shape (N EACH + 1,)."""
         return instants(self.grid)
+
+    def at_samples(self, rows: Array) -> Array:
+        """Those of rows at the steps' ends, shape (N + 1, ...), that stand at the samples, shape (K, ...)."""
+        return rows if self._a_step_a_sample else rows[self.index]
+
+    @property
+    def _a_step_a_sample(self) -> bool:
+        return len(self.grid) == len(self.recording.time)
 
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
@@ -54,7 +62,7 @@ class Course:
         return arriving
 
     def held(self, filled: bool) -> Array:
-        """Outputs at the instants of every step, shape (N, EACH + 1, ...).
+        """Outputs at the instants of every step, shape (N, EACH + 1, ...), or (N, 1, ...) if they last for the step.
 
         Parameters
         ----------
@@ -63,10 +71,12 @@ class Course:
         """
         recording, time = self.recording, self.recording.time
         outputs = _bridged(recording, self.hold) if filled else recording.outputs
+        if self.hold == "zero" and self._a_step_a_sample and self.longest_hold == math.inf:
+            return outputs[:-1, None]
         interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
         before = outputs[interval][:, None]
         if self.hold == "zero":
-            held = np.repeat(before, EACH + 1, axis=1)
+            held = before
         elif self.hold == "first":
             begin, length = time[interval], np.diff(time)[interval]
             share = (by_step(self.instants) - begin[:, None]) / length[:, None]
@@ -82,19 +92,17 @@ class Course:
         return np.asarray(held)
 
 
-def last_samples(columns: Array) -> Array:
-    """Each sample of columns of shape (K, m), or where it was lost the last one before it."""
-    there = np.isfinite(columns)
-    if there.all():
-        return columns
-    last = np.maximum.accumulate(np.where(there, np.arange(len(columns))[:, None], 0))
-    return np.take_along_axis(columns, last, axis=0)
+def laid_out(recording: Recording, step: float, hold: Hold, longest_hold: float) -> Course:
+    """A recording in steps no longer than given, one from each sample to the next where that is short enough."""
+    if recording.longest_interval <= step * (1 + STEP_ROUNDING):
+        return Course(recording, recording.time, recording.places, hold, longest_hold)
+    return Course(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 
 def _bridged(recording: Recording, hold: Hold) -> Array:
     """The outputs with lost samples replaced: by the last one, or on the line between their neighbours."""
     if hold != "first":
-        return last_samples(recording.outputs)
+        return recording.last_outputs
     columns = []
     for column in recording.outputs.T:
         there = np.isfinite(column)

@@ -13,11 +13,11 @@ from percept_obs.border import Kind, checked, limit, refuse_kind, warn
 from percept_obs.compile import Array, Indices, Language, Table, solve, vectorised
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
-from percept_obs.observers.base import Observer
+from percept_obs.observers.base import Observer, state_at_start
 from percept_obs.observers.inversion import elapsed, first_innovation
-from percept_obs.recording import Recording, step_grid
+from percept_obs.recording import Recording
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.course import Course, Hold, last_samples
+from percept_obs.tracking.course import Course, Hold, laid_out
 from percept_obs.tracking.run import Run
 
 Start = Mapping[str, float] | Sequence[float] | None
@@ -128,7 +128,7 @@ def track(
         f"numbers, from {steps:.3g} steps",
         "track a shorter part, recording.between(begin, end), or take longer steps",
     )
-    along = Course(recording, *step_grid(recording.time, step), hold, longest_hold)
+    along = laid_out(recording, step, hold, longest_hold)
     return follow(observer, along, start, believed, language)
 
 
@@ -149,36 +149,42 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     form, recording, index = observer.form, along.recording, along.index
     believed = believed or recording.motion
     _refuse_misfits(along, observer, believed)
-    columns = [recording.names.index(name) for name in form.measured]
-    samples = recording.outputs[:, columns]
+    places = [recording.names.index(name) for name in form.measured]
+    side_by_side = places == list(range(places[0], places[0] + len(places)))
+    columns: Any = slice(places[0], places[0] + len(places)) if side_by_side else places  # a slice copies nothing
+    samples, filled = recording.outputs[:, columns], recording.last_outputs[:, columns]
     _warn_of_long_steps(observer, along.grid)
     known = _known(along, believed)
     given = named_start(start, form.coordinates)
-    initial = observer.initial_state(
+    initial = state_at_start(
+        observer,
         dict(zip(form.measured, samples[0].tolist(), strict=True)),
         given,
-        dict(zip(form.parameters, known[0].tolist(), strict=True)),
+        zip(form.parameters, known[0].tolist(), strict=True),
     )
-    arriving = along.arriving(samples)
-    arriving[0, [name not in given for name in form.measured]] = np.nan  # a sample that is the start corrects nothing
+    arriving = np.empty((0, len(form.measured)))
+    if observer.equations.update:
+        arriving = along.arriving(samples)
+        arriving[0, [name not in given for name in form.measured]] = np.nan  # one that is the start corrects nothing
     table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
-    states = trace.states[index]
+    states = along.at_samples(trace.states)
     at_samples = known if len(known) == 1 else known[EACH * index]
-    inputs = (*states.T, *last_samples(samples).T, *at_samples.T)
-    estimate, unobservable = _estimates(observer, inputs, recording.time - recording.time[0], samples[0])
+    estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed)
     diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
-    resets = along.grid[trace.resets]
+    resets = along.grid[trace.resets.nonzero()[0]]
     return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
-def _estimates(observer: Observer, inputs: Sequence[Array], time: Array, first: Array) -> tuple[Array, Indices]:
+def _estimates(observer: Observer, states: Array, samples: Array, known: Array, time: Array) -> tuple[Array, Indices]:
     """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
-    They follow from state, outputs and parameters at the samples, the seconds since the first one, and the first one.
+    They follow from state, outputs and parameters at the samples, and the seconds since the first one.
     """
-    form = observer.form
-    symbols = (*observer.equations.state, *form.x1, *form.parameters)
+    form, state = observer.form, observer.equations.state
+    if not observer.unobservable and observer.estimate == state[: len(observer.estimate)]:
+        return states[:, : len(observer.estimate)], np.zeros(len(time), dtype=int)
+    symbols, inputs = (*state, *form.x1, *form.parameters), (*states.T, *samples.T, *known.T)
     measured, hidden = (np.array([form.coordinates.index(symbol) for symbol in x]) for x in (form.x1, form.x2))
     unobservable = np.zeros(len(time), dtype=int)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
@@ -186,7 +192,7 @@ def _estimates(observer: Observer, inputs: Sequence[Array], time: Array, first: 
         if observer.unobservable:
             symbols = (*symbols, elapsed, *first_innovation(form))
             conditions = [where.condition for where in observer.unobservable]
-            begun = np.broadcast_to(first - estimate[0, measured], (len(time), len(measured)))
+            begun = np.broadcast_to(samples[0] - estimate[0, measured], (len(time), len(measured)))
             found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
             for k, holds in reversed(list(enumerate(found, 1))):
                 unobservable[holds != 0] = k
@@ -230,7 +236,7 @@ def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None
             f"the observer measures {', '.join(form.measured)}, but the recording has only "
             f"{', '.join(recording.names)}; measure less: system.measure({', '.join(map(repr, recording.names))})"
         )
-    lost = [n for n in form.measured if np.isnan(recording.outputs[0, recording.names.index(n)])]
+    lost = [n for n in form.measured if math.isnan(recording.outputs[0, recording.names.index(n)])]
     if lost:
         raise DoesNotFit(
             f"the first sample of {', '.join(lost)} was lost, but the {observer.name} observer starts from it; begin "
@@ -253,9 +259,11 @@ def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None
 
 def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
     """Estimates at the start by the names of their coordinates."""
+    if start is None:
+        return {}
     refuse_kind("track", "start", start, Start)
-    if start is None or isinstance(start, Mapping):
-        return {name: float(value) for name, value in (start or {}).items()}
+    if isinstance(start, Mapping):
+        return {name: float(value) for name, value in start.items()}
     names = [symbol.name for symbol in coordinates]
     if len(start) != len(names):
         raise ValueError(f"the start has {len(start)} values; expected {len(names)}: {', '.join(names)}")
@@ -264,6 +272,8 @@ def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates
 
 def _known(along: Course, believed: Motion) -> Array:
     """Parameters of motion and view at the instants of the steps."""
-    rows, view = believed.known(along.grid[:1] if believed.values else along.instants), along.recording.view
+    rows, view = believed.constants, along.recording.view
+    if rows is None:
+        rows = believed.known(along.instants)
     shape = [view.values[symbol] for symbol in view.parameters]
-    return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])
+    return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))]) if shape else rows

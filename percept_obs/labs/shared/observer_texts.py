@@ -60,7 +60,7 @@ def kernel_for_the_page(observer: Observer) -> Texts:
         "gains": [gain.name for gain in observer.gains],
         "run": source(equations, "javascript"),
         "states": len(equations.state),
-        "start": function_source((*known, *hats(form.coordinates), *first_seen(form)), observer.start),
+        "start": function_source((*known, *hats(form.coordinates), *first_seen(form.x1)), observer.start),
         "estimate": function_source((*known, *equations.state), observer.estimate),
         "variances": claimed and function_source(equations.state, tuple(claimed[i, i] for i in range(claimed.rows))),
         "gap": None

@@ -10,7 +10,7 @@ import numpy as np
 
 from percept_obs.border import checked
 from percept_obs.recording import Recording
-from percept_obs.recording.recording import LARGEST_USUAL
+from percept_obs.recording.doubts import LARGEST_USUAL
 from percept_obs.studies.diagnosis.experiments import EXPERIMENTS, FRAMES, Experiment, possible, within_reach
 from percept_obs.studies.diagnosis.explaining import Explained, explain
 
