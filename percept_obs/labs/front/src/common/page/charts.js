@@ -21,6 +21,9 @@ export class TimeChart extends Picture {
     this.figure.append(this.now);
     /** @type {Place | null} */
     this.place = null;
+    /** @type {any[]} lines of a kept run, which lie below all others and stay as they are */
+    this.kept = [];
+    this.keptCount = 0;
   }
 
   /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time that they are drawn on */
@@ -30,15 +33,18 @@ export class TimeChart extends Picture {
     const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
     this.place = place;
     const pen = this.context;
-    this.underlay([title, scale, span, last, theme], (below) => this.axes(below, place, theme, title, last));
-    pen.save();
-    pen.beginPath();
-    pen.rect(place.left, place.top - 1, place.width, place.height + 2);
-    pen.clip();
+    const kept = this.keptOf(lines, theme);
+    this.underlay([title, scale, span, last, theme, this.keptCount], (below) => {
+      this.axes(below, place, theme, title, last);
+      clipTo(below, place);
+      for (const line of kept) strokeLine(below, place, line, theme);
+      below.restore();
+    });
+    clipTo(pen, place);
     for (const region of regions) shade(pen, place, region, theme, first);
     if (level !== undefined) drawLevel(pen, place, level, theme);
     if (band) fillBand(pen, place, band);
-    for (const line of lines) strokeLine(pen, place, line, theme);
+    for (const line of lines.slice(kept.length)) strokeLine(pen, place, line, theme);
     drawResets(pen, place, marks, theme, first);
     drawBars(pen, place, bars);
     for (const event of events) drawEvent(pen, place, event, level, theme);
@@ -46,6 +52,15 @@ export class TimeChart extends Picture {
     for (const line of lines) nameLine(pen, place, line, theme);
     if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, theme);
     pen.restore();
+  }
+
+  /** Those of a kept run before all others; each of them has its number, and so have others in their place. */
+  keptOf(lines, { kept }) {
+    const others = lines.findIndex(({ colour }) => colour !== kept);
+    const found = others < 0 ? lines : lines.slice(0, others);
+    if (found.length !== this.kept.length || found.some(({ values, dash }, k) => values !== this.kept[k].values || dash !== this.kept[k].dash)) this.keptCount += 1;
+    this.kept = found;
+    return found;
   }
 
   /** Mark a time, without drawing anything again. */
@@ -99,6 +114,14 @@ export class TimeChart extends Picture {
   left(clientX) {
     return clientX - this.canvas.getBoundingClientRect().left;
   }
+}
+
+/** Let nothing be drawn outside a place, until the pen is restored. */
+function clipTo(pen, { left, top, width, height }) {
+  pen.save();
+  pen.beginPath();
+  pen.rect(left, top - 1, width, height + 2);
+  pen.clip();
 }
 
 /** Where times and values lie on a canvas. */
