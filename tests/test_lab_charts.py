@@ -133,26 +133,23 @@ def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
         page.focus(control(name))
         page.keyboard.press("Space")
     page.wait_for_function(RESTED)
-    page.wait_for_timeout(100)
+    resolution = "[...window.perceptObsLabs][0].map.found?.resolution"
+    page.wait_for_function(f"{resolution} === 144")
     assert page.inner_text(".legend").split("\n")[-1] == "bound"
     assert "no unbiased observer has a smaller root mean square error" in page.inner_text(".why")
     told = page.get_attribute(".image-plane canvas", "aria-label")
     assert "Map of the bound for points at 5 m, seen for 2 s: the distance to" in told
     assert "least error in % after 2 s, at 5 m" in page.evaluate(WRITTEN)
-    resolution = "[...window.perceptObsLabs][0].map.found?.resolution"
-    assert page.evaluate(resolution) == 144
     page.mouse.move(*centre(page, control("foe")))
     page.mouse.down()
     page.mouse.move(*(place + 30 for place in centre(page, control("foe"))), steps=4)
-    page.wait_for_timeout(100)
-    assert page.evaluate(resolution) == 48
+    page.wait_for_function(f"{resolution} === 48")
     page.mouse.up()
     page.fill(control("noise size number"), "0")
     page.keyboard.press("Enter")
     page.wait_for_function(RESTED)
-    page.wait_for_timeout(100)
+    page.wait_for_function(f"{resolution} === undefined")
     assert "There is no bound without noise" in page.inner_text(".why")
-    assert page.evaluate(resolution) is None
     assert "bound" not in page.inner_text(".legend")
     page.close()
 

@@ -51,20 +51,20 @@ def test_the_scene_turns_by_hand_and_by_keys_and_says_how(page):
     assert frame[1] > 1000
     page.focus(control("scene"))
     page.keyboard.press("ArrowLeft")
-    page.wait_for_timeout(50)
+    page.wait_for_function(DRAWN)
     turned = page.evaluate(PIXELS, "scene")
     assert turned != frame
     assert "turned 49 degrees" in eye.get_attribute("aria-valuetext")
     page.keyboard.press("+")
     page.keyboard.press("Home")
-    page.wait_for_timeout(50)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(PIXELS, "scene") == frame
     x, y = centre(page, control("scene"))
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 40, y - 20, steps=3)
     page.mouse.up()
-    page.wait_for_timeout(50)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(PIXELS, "scene") not in (frame, turned)
     label = page.locator("figure.scene canvas").get_attribute("aria-label")
     assert " m" in label
