@@ -133,7 +133,7 @@ def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
         page.focus(control(name))
         page.keyboard.press("Space")
     page.wait_for_function(RESTED)
-    resolution = "[...window.perceptObsLabs][0].map.found?.resolution"
+    resolution = "() => [...window.perceptObsLabs][0].map.found?.resolution"
     page.wait_for_function(f"{resolution} === 144")
     assert page.inner_text(".legend").split("\n")[-1] == "bound"
     assert "no unbiased observer has a smaller root mean square error" in page.inner_text(".why")
