@@ -61,8 +61,8 @@ export const PRESETS = presetsOf([
         beside: { gain: 10 },
         answer:
           "It is faster, and it follows the noise: the error ends about ten times higher. The kept run has gain 10. The " +
-          "innovation is as large in both runs, for most of it is noise. But each step of the estimate is the innovation " +
-          "times the gain, here times its square: with gain 60 the steps are about 30 times as large.",
+          "innovation is about as large in both runs, for most of it is noise. But each step of the estimate is the innovation " +
+          "times the square of the gain. That is 36 times as large with gain 60, and the steps are about 30 times as large.",
       },
     ],
   },
