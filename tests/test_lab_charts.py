@@ -25,6 +25,16 @@ WRITTEN = """async () => {
     pen.fillText = own;
     return written;
 }"""
+KEPT = """() => {
+    const [{ theme }] = window.perceptObsLabs;
+    const one = new OffscreenCanvas(1, 1).getContext("2d");
+    one.fillStyle = theme.kept;
+    one.fillRect(0, 0, 1, 1);
+    const pixels = (pen, { width, height }) => new Uint32Array(pen.getImageData(0, 0, width, height).data.buffer);
+    const [colour] = pixels(one, one.canvas);
+    const canvas = document.querySelector("figure.chart:not([hidden]) canvas");
+    return pixels(canvas.getContext("2d"), canvas).filter((pixel) => pixel === colour).length;
+}"""
 BIAS = {"outputs": ["y1"], "noise": {"kind": "uniform", "size": 0.01}, "seed": 1}
 ZERO = {"mode": "zero", "values": [0.0, 0.0, 0.0]}
 TURNING = [[0.0, 0.0, 0.1], [0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]
@@ -51,6 +61,20 @@ def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(bro
         page = page_of(browser, **settings)
         assert text in page.evaluate(WRITTEN)
         page.close()
+
+
+def test_the_lines_of_a_kept_run_come_go_and_change_with_it(browser):
+    page = page_of(browser, pictures=["error"], duration=8.0)
+    page.evaluate("() => { for (const fold of document.querySelectorAll('details')) fold.open = true; }")
+    counted = [page.evaluate(KEPT)]
+    for act in ("keep", "keep", "observer sliding_mode", "keep"):
+        page.click(control(act))
+        page.wait_for_function(RESTED)
+        counted.append(page.evaluate(KEPT))
+    none, one, forgotten, unchanged, two = counted
+    assert none == forgotten == unchanged == 0
+    assert two > one > 0
+    page.close()
 
 
 def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_that_so_far(browser):

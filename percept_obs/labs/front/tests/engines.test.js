@@ -9,7 +9,7 @@ import { short } from "../src/common/model/scales.js";
 import { verdict } from "../src/common/model/words.js";
 import { translationTowards } from "../src/observer/model/engine.js";
 import { drawResets } from "../src/common/page/chart_events.js";
-import { fillBand } from "../src/common/page/charts.js";
+import { TimeChart, fillBand } from "../src/common/page/charts.js";
 import { chartOf } from "../src/observer/page/pictures.js";
 import { ENTRIES } from "../src/points/model/flow.js";
 import { windowsOf } from "../src/points/model/gramian.js";
@@ -196,4 +196,18 @@ test("an error that is as large as the tolerance is not yet within it", () => {
 test("a motion that was sampled changes evenly between its samples", () => {
   const motion = { times: [0, 2], rows: [[1], [3]], columns: [Float64Array.of(1, 3)] };
   assert.deepEqual([...knownAt(motion, [7], [0, 1, 2]).rows], [1, 7, 2, 7, 3, 7]);
+});
+
+test("lines of a kept run are drawn anew when they are others, and only then", () => {
+  const chart = { kept: [], keptCount: 0 };
+  const count = (...lines) => {
+    const found = TimeChart.prototype.keptOf.call(chart, lines, { kept: "violet" });
+    return [found.length, chart.keptCount];
+  };
+  const [kept, other, own] = ["violet", "violet", "blue"].map((colour) => ({ colour, values: new Float64Array(2) }));
+  assert.deepEqual(count(own), [0, 0]);
+  assert.deepEqual(count(kept, own), [1, 1]);
+  assert.deepEqual(count({ ...kept }, own), [1, 1]);
+  assert.deepEqual(count(other, own), [1, 2]);
+  assert.deepEqual(count(own, kept), [0, 3]);
 });
