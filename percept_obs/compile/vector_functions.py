@@ -27,6 +27,7 @@ def parts(z: float) -> tuple[float, float, float]:
     big = 1.5 * 2.0**52 + 1023.0  # there are no fractions above: k + 1023, the exponent of 2^k, stands in the last bits
     shifted = np.float64(z * 2.8853900817779268 + big)
     k = shifted - big
+    # log(2) / 2 in two parts; k times the first has no rounding
     r = (z - k * 0.3465735901845619) - k * 9.5410746463529385e-11
     u = r * r
     P = r * (135135.0 + u * (17325.0 + u * (378.0 + u)))
