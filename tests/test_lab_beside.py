@@ -8,7 +8,7 @@ from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import UNFOLD, assert_equals_python, control, rested, state
 from sample_sizes import sampled
 
-from percept_obs.labs import observer_lab, points_lab
+from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -46,6 +46,16 @@ MOVE = """async (count) => {
         lab.moveFoe([1.6 + 0.1 * Math.sin(k / 9), 0.8]);
         await new Promise((resolve) => requestAnimationFrame(resolve));
     }
+}"""
+PLACE = "() => [...window.perceptObsLabs][0].planes[0].handles[0].at"
+KEYS_FASTER_THAN_PICTURES = """() => {
+    const [lab] = window.perceptObsLabs;
+    const { node } = lab.planes[0].handles[0];
+    for (const key of ["ArrowRight", "ArrowRight", "ArrowUp"]) {
+        node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+        lab.paint();  // a picture of the settings before: nothing comes from the worker meanwhile
+    }
+    node.dispatchEvent(new KeyboardEvent("keyup", { key: "ArrowUp", bubbles: true }));
 }"""
 PLAY = """(seconds) => new Promise((resolve) => {
     const [lab] = window.perceptObsLabs;
@@ -171,6 +181,16 @@ def test_while_a_heavy_picture_is_computed_the_page_goes_on(browser):
     assert found["took"] > 300, found
     assert found["longest"] < found["took"] / 2, found
     assert found["turns"] > 20, found
+    page.close()
+
+
+@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
+def test_keys_lose_no_step_where_pictures_are_late(browser, make):
+    page = with_worker(browser, make())
+    before = page.evaluate(PLACE)
+    page.evaluate(KEYS_FASTER_THAN_PICTURES)
+    rested(page)
+    assert [b - a for a, b in zip(before, page.evaluate(PLACE), strict=True)] == pytest.approx([0.02, 0.01])
     page.close()
 
 

@@ -39,6 +39,11 @@ export class Following {
     return this.state.settings;
   }
 
+  /** Whether what is drawn is of settings before the present ones. */
+  get late() {
+    return false;
+  }
+
   /** @returns {any[]} pictures, each with its figure */
   get figures() {
     return [];

@@ -43,7 +43,7 @@ export class Handle {
     const follow = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       const [y1, y2] = this.grip.from;
-      this.onMove([y1 + (event.clientX - this.grip.x) / this.scale, y2 - (event.clientY - this.grip.y) / this.scale]);
+      this.move([y1 + (event.clientX - this.grip.x) / this.scale, y2 - (event.clientY - this.grip.y) / this.scale]);
     };
     const release = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
@@ -59,9 +59,7 @@ export class Handle {
       const step = STEPS[event.key];
       if (step) {
         const size = NUDGE * (event.shiftKey ? LEAP : 1);
-        // Keys may come faster than pictures, and each begins where the one before it has led.
-        this.at = [this.at[0] + step[0] * size, this.at[1] + step[1] * size];
-        this.onMove(this.at);
+        this.move([this.at[0] + step[0] * size, this.at[1] + step[1] * size]);
       } else if (!this.onKey(event)) return;
       this.keyed = true;
       event.preventDefault();
@@ -74,10 +72,19 @@ export class Handle {
     }
   }
 
-  /** Stand at a place, or at the edge of the box nearest to it; without a place, nowhere. */
-  stand(at, frame) {
+  /** Go to a place, where the next step begins: keys may come faster than pictures. */
+  move(place) {
+    this.at = place;
+    this.onMove(place);
+  }
+
+  /**
+   * Stand at a place, or at the edge of the box nearest to it; without a place, nowhere.  A picture that is late, of
+   * settings before the present ones, does not say where the next step begins.
+   */
+  stand(at, frame, late = false) {
     const { node } = this;
-    this.at = at;
+    if (!late) this.at = at;
     node.hidden = !at;
     if (!at) return;
     const { box, scale, x, y } = frame;

@@ -65,7 +65,7 @@ export class FramedImage extends Picture {
     pen.restore();
     outside(pen, frame);
     const places = placesIn(square);
-    this.handles.forEach((handle, k) => handle.stand(places[k], frame));
+    this.handles.forEach((handle, k) => handle.stand(places[k], frame, this.lab.late));
   }
 
   /** The images of the copies that swing along what is not seen. */

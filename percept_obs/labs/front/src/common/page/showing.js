@@ -35,6 +35,10 @@ export class Showing extends Following {
     this.stale = true;
   }
 
+  get late() {
+    return this.shown?.settings !== this.settings;
+  }
+
   get charts() {
     return this.time.charts;
   }
@@ -152,7 +156,7 @@ export class Showing extends Following {
     const { sight } = state.now;
     const { timeline } = this.time;
     // A result of other settings tells another story: the present one is opened when its result is there.
-    const now = shown.settings === this.settings ? { question, choice: this.choices, held: this.held } : { ...timeline, held: true };
+    const now = this.late ? { ...timeline, held: true } : { question, choice: this.choices, held: this.held };
     timeline.follow(whole, this.story(), { ...now, asked: sight?.question === now.question ? sight.span : null });
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
