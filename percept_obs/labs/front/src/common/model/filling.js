@@ -8,7 +8,7 @@ import { modelOf } from "./texts.js";
 /** Milliseconds between two parts of a map that are told. */
 const BETWEEN_PARTS = 90;
 /** Milliseconds after a first picture in which a hand that moves asks for the next map: nothing finer is begun, and the page has its turn. */
-const REST = 25;
+const REST = 40;
 
 /**
  * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first picture has

@@ -5,7 +5,7 @@ import { cellAt, planOf, shareOf, valueIn } from "./axes.js";
 import { baseOf, DIVERGED, EACH_CELL, FIRST, FOLLOWED, NOT_YET, orderOf, THEN } from "./cells.js";
 
 /** Milliseconds in which the first picture of a map is to be there, and what a cell takes as long as that is not known. */
-const SOON = 75;
+const SOON = 40;
 const SLOW = 4;
 
 /**

@@ -146,7 +146,8 @@ export class SettingsMap extends Picture {
         here?.stop();
         there?.from(ask);
         sweep.fill({ ask: (task) => ask({ ...task, written: readOf(task.settings, lab.model) }) });
-        this.again();
+        // Who comes to its controls has the map before choosing to see it.
+        if (lab.shown) this.want(lab.shown);
       },
       onAnswer: (answer) => (answer.error ? lab.fail(new Error(answer.error)) : answer.key ? there?.take(answer) : sweep.take(answer)),
       onGone: () => {},
@@ -163,17 +164,24 @@ export class SettingsMap extends Picture {
     this.there?.want(null);
   }
 
+  /** Ask for the map of what is shown; what its settings compute with, where that is known. */
+  want({ settings, tolerance }) {
+    const functions = this.lab.kernels.of(settings);
+    if (functions) this.sweep.want(settings, functions, tolerance);
+    return functions;
+  }
+
   draw(shown, _ghost, _cursor, theme) {
-    const { figure, lab, sweep } = this;
+    const { figure, sweep } = this;
     const off = shown.settings.over.shows === "nothing";
     if (off !== figure.hidden) {
       figure.hidden = off;
       if (off) this.close();
     }
-    const functions = lab.kernels.of(shown.settings);
-    if (off || !functions) return undefined;
+    if (off) return undefined;
     this.begin();
-    sweep.want(shown.settings, functions, shown.tolerance);
+    const functions = this.want(shown);
+    if (!functions) return undefined;
     const size = this.fit(theme.font);
     const box = boxOf(size);
     if (!this.box || Object.entries(box).some(([side, value]) => this.box?.[side] !== value)) {
