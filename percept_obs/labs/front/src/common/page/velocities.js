@@ -10,8 +10,8 @@ const USUAL = 0.16;
 const [HEAD, SHORTEST] = [6, 2];
 /** Part of an arrow by which others may differ from it and look the same. */
 const ALIKE = 0.05;
-/** Pixels from one name to the next, across and down, from which on they can be read apart. */
-const [WIDE, APART] = [20, 12];
+/** Pixels that a letter is wide, and from one line of text to the next. */
+const [LETTER, APART] = [8, 12];
 export const NAMES = ["½×", "1×", "2×"];
 const MOVING = "at ½×, 1×, 2× distance";
 const STILL = "still at every distance";
@@ -23,30 +23,43 @@ export function drawVelocities(pen, frame, arrows, speed, theme) {
   const seconds = secondsOf(frame, speed);
   arrows.forEach(({ place, velocities, colour }, first) => {
     const from = [frame.x(place[0]), frame.y(place[1])];
-    /** @type {{at: number[], name: string}[]} */
-    const named = [];
-    COPIES.forEach((part, k) => {
+    const named = COPIES.flatMap((part, k) => {
       const to = tipOf(frame, place, velocities[k], seconds);
       // Of many points the first one's arrows have names, and all others are alike.
-      if (!drawArrow(pen, from, to, part === 1 ? 1 : 0.5, colour) || first > 0) return;
+      if (!drawArrow(pen, from, to, part === 1 ? 1 : 0.5, colour) || first > 0) return [];
       const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
-      const at = [0, 1].map((i) => to[i] + (11 * (to[i] - from[i])) / length);
-      const near = named.find((other) => Math.abs(other.at[0] - at[0]) < WIDE && Math.abs(other.at[1] - at[1]) < APART);
-      if (near) near.name += `, ${NAMES[k]}`;
-      else named.push({ at, name: NAMES[k] });
+      return [{ name: NAMES[k], at: [0, 1].map((i) => to[i] + (11 * (to[i] - from[i])) / length) }];
     });
-    for (const { at: [x, y], name } of named) {
-      const left = name.length < 3 || x > from[0] || x < frame.box.left + 60;
-      pen.textBaseline = "middle";
-      pen.textAlign = name.length < 3 ? "center" : left ? "left" : "right";
-      // What would leave the picture stands above the tip.
-      const cut = name.length > 3 && x < from[0] && left;
-      label(pen, name, cut ? frame.box.left + 4 : x, cut ? y - 12 : y, colour, theme);
+    pen.textBaseline = "middle";
+    for (const { name, x, y, align } of readApart(named.map(({ name, at }) => lettering(name, at, from, frame.box)))) {
+      pen.textAlign = align;
+      label(pen, name, x, y, colour, theme);
     }
   });
   const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
   const same = arrows.every(({ velocities: [near, , far] }) => Math.hypot(near[0] - far[0], near[1] - far[1]) < ALIKE * Math.hypot(...near));
   caption(pen, frame, arrows.map(({ place }) => place), [still ? STILL : same ? SAME : MOVING], theme);
+}
+
+/** Where a name stands beside the tip of its arrow, or a joined one inside the picture. */
+function lettering(name, at, from, box) {
+  const single = name.length < 3;
+  const right = !single && at[0] <= from[0] && at[0] >= box.left + 60;
+  // What would leave the picture stands above the tip.
+  const cut = !single && at[0] < from[0] && !right;
+  const [x, y] = cut ? [box.left + 4, at[1] - APART] : at;
+  const width = LETTER * name.length;
+  const left = single ? x - width / 2 : right ? x - width : x;
+  return { name, at, x, y, ends: [left, left + width], align: /** @type {CanvasTextAlign} */ (single ? "center" : right ? "right" : "left"), again: (more) => lettering(`${name}, ${more}`, at, from, box) };
+}
+
+/** Names of which none covers another: those that would are joined. */
+function readApart(named) {
+  for (const [k, one] of named.entries()) {
+    const other = named.slice(k + 1).find(({ ends, y }) => Math.abs(y - one.y) < APART && ends[0] < one.ends[1] && one.ends[0] < ends[1]);
+    if (other) return readApart(named.flatMap((each) => (each === one ? [one.again(other.name)] : each === other ? [] : [each])));
+  }
+  return named;
 }
 
 /**
