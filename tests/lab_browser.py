@@ -28,6 +28,12 @@ lab
 
 WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
 
+COLOURS = "() => [...window.perceptObsLabs][0].theme?.lines.join()"
+
+PAINTED = """async () => {
+    for (let k = 0; k < 3; k++) await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+}"""
+
 OUTSIDE = """() => {
     const lab = document.querySelector('.percept-lab');
     return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
@@ -119,6 +125,11 @@ def rested(page, patience=30):
     page.wait_for_function(RESTED, timeout=1000 * patience)
 
 
+def painted(page):
+    """Wait until what has changed is laid out and handed to the screen, and what that changes as well."""
+    page.evaluate(PAINTED)
+
+
 def state(page, which=0):
     """What a lab of the page shows: settings, estimates, lines drawn, words."""
     return page.evaluate(STATE, which)
@@ -127,9 +138,18 @@ def state(page, which=0):
 def assert_fits(page, width):
     """In a cell of so many pixels nothing of the lab is cut."""
     page.evaluate(WIDTH, f"{width}px")
-    page.wait_for_timeout(200)
+    painted(page)
     assert page.evaluate(OUTSIDE) == []
     page.evaluate(WIDTH, "")
+
+
+def assert_own_colours(page):
+    """In the dark the lab draws in other colours."""
+    light = page.evaluate(COLOURS)
+    page.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    page.wait_for_function(f"(light) => {{ const now = ({COLOURS})(); return now && now !== light; }}", arg=light)
+    page.evaluate("document.body.dataset.jpThemeLight = 'true'")
+    page.wait_for_function(f"(light) => ({COLOURS})() === light", arg=light)
 
 
 def assert_has(lab, settings):

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from lab_alone import DRAWN, opened
-from lab_browser import centre, control
+from lab_browser import centre, control, painted
 
 from percept_obs.labs import observer_lab
 
@@ -134,7 +134,7 @@ def test_axes_hold_still_while_the_hand_is_down_and_the_foe_stays_where_it_is_le
     held = centre(page, control("foe"))
     page.mouse.up()
     page.wait_for_function(RESTED)
-    page.wait_for_timeout(100)
+    painted(page)
     assert math.dist(held, centre(page, control("foe"))) < 3
     assert page.evaluate(SPAN) == [0, 8]
 

@@ -2,7 +2,7 @@
 
 import pytest
 from lab_alone import DRAWN, opened
-from lab_browser import UNFOLD, control
+from lab_browser import UNFOLD, control, painted
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -102,14 +102,14 @@ def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(browser, name, 
         .filter((c) => c.checkVisibility()).map((c) => c.dataset.control)"""
     wanted = set(page.evaluate(wide))
     page.set_viewport_size({"width": width, "height": 800})
-    page.wait_for_timeout(100)
+    painted(page)
     seen = set()
     for view in ("image-plane", "scene"):
         page.click(control(f"tab {view}"))
         for tab in TABS:
             page.click(control(f"tab {tab}"))
             assert page.get_attribute(control(f"tab {tab}"), "aria-pressed") == "true"
-            page.wait_for_timeout(50)
+            painted(page)
             assert page.evaluate(CUT) == []
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             seen |= set(page.evaluate(wide))

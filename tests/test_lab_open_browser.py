@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lab_alone import DRAWN, following, opened
-from lab_browser import control
+from lab_browser import control, painted
 from test_lab_open import CALM, MOTION, cubic, slanted
 
 from percept_obs import Camera, Scenario, affine, pinhole, record
@@ -90,7 +90,7 @@ def test_frames_stand_behind_the_track_of_ones_own_recording(browser, tmp_path):
     page.wait_for_function(DRAWN)
     page.wait_for_function("() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.values()].some(Boolean)")
     page.wait_for_function(DRAWN)
-    page.wait_for_timeout(100)
+    painted(page)
     assert page.evaluate(PIXEL) > 40
     kept = "() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.keys()].map((key) => key.split(' ').at(-1))"
     page.evaluate("() => [...window.perceptObsLabs][0].point(3.9)")

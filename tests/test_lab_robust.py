@@ -8,6 +8,7 @@ from lab_browser import (
     assert_equals_python,
     assert_fits,
     assert_has,
+    assert_own_colours,
     control,
     moved_by_keyboard,
     rested,
@@ -24,7 +25,6 @@ from percept_obs.system.surfaces import BehindCamera
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 CHUNKS, SAMPLES = 2, 4000
-COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
 @pytest.fixture(scope="module")
@@ -139,9 +139,4 @@ def test_a_kernel_text_that_fails_to_load_is_told(fresh):
 
 
 def test_dark_and_light_have_their_own_colours(fresh):
-    light = fresh.evaluate(COLOURS)
-    fresh.evaluate("document.body.dataset.jpThemeLight = 'false'")
-    fresh.wait_for_timeout(200)
-    dark = fresh.evaluate(COLOURS)
-    fresh.evaluate("document.body.dataset.jpThemeLight = 'true'")
-    assert light[1] != dark[1]
+    assert_own_colours(fresh)

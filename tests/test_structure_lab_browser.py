@@ -6,6 +6,7 @@ from lab_browser import (
     UNFOLD,
     assert_fits,
     assert_has,
+    assert_own_colours,
     control,
     drag_by_keys,
     drag_by_mouse,
@@ -26,7 +27,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 START = control("ybar")
 TOLD = ".unknowns .told"
-COLOURS = "() => { const [lab] = window.perceptObsLabs; return [lab.theme.ink, ...lab.theme.lines]; }"
 
 
 @pytest.fixture(scope="module")
@@ -201,12 +201,7 @@ def test_the_lab_fits_its_cell(fresh, width):
 
 
 def test_dark_and_light_have_their_own_colours(fresh):
-    light = fresh.evaluate(COLOURS)
-    fresh.evaluate("document.body.dataset.jpThemeLight = 'false'")
-    fresh.wait_for_timeout(200)
-    dark = fresh.evaluate(COLOURS)
-    fresh.evaluate("document.body.dataset.jpThemeLight = 'true'")
-    assert light[1] != dark[1]
+    assert_own_colours(fresh)
 
 
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):
