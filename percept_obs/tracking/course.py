@@ -57,6 +57,8 @@ class Course:
 
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
+        if self._a_step_a_sample:
+            return samples.copy()
         arriving = np.full((len(self.grid), samples.shape[1]), np.nan)
         arriving[self.index] = samples
         return arriving
