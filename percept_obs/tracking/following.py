@@ -12,11 +12,11 @@ import sympy as sp
 
 from percept_obs.border import Kind, checked, limit, refuse_kind, warn
 from percept_obs.compile import Array, Indices, Language, Table, choose, solve, vectorised
-from percept_obs.compile.equations import Equations, Symbols
+from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
 from percept_obs.compile.rows import Rows, by_row
 from percept_obs.observers.base import Observer, state_at_start
-from percept_obs.observers.inversion import elapsed, first_innovation
+from percept_obs.observers.inversion import Unobservable, elapsed, first_innovation
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
@@ -188,37 +188,44 @@ def _estimates(
     They follow from state, outputs and parameters at the samples, and the seconds since the first one.
     """
     form, state, wide = observer.form, observer.equations.state, len(observer.estimate)
-    unobservable = np.zeros(len(time), dtype=int)
+    seen = np.zeros(len(time), dtype=int)
     if not observer.unobservable and observer.estimate == state[:wide]:
-        return states[:, :wide], unobservable
+        return states[:, :wide], seen
     tables, numbers = [states, samples, time[:, None]], [gain.value for gain in observer.gains]
     if len(known) > 1:
         tables.append(known)
     else:
         numbers += known[0].tolist()
-    conditions = tuple(where.condition for where in observer.unobservable)
-    read = _reader(observer.equations, form, (*observer.estimate, *conditions), len(known) > 1, language)
-    if not conditions:
-        return read(tables, np.array(numbers)), unobservable
+    read = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
+    if not observer.unobservable:
+        return read(tables, np.array(numbers)), seen
     measured, hidden = ([form.coordinates.index(symbol) for symbol in part] for part in (form.x1, form.x2))
-    nothing = [0.0] * len(measured)
-    first = read([table[:1] for table in tables], np.array([*numbers, *nothing]))[0]
+    first = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(len(measured))]))[0]
     found = read(tables, np.array([*numbers, *(samples[0] - first[measured])]))
-    for k in reversed(range(len(conditions))):
-        unobservable[found[:, wide + k] != 0] = k + 1
-    estimate = found[:, :wide]
-    estimate[np.ix_(unobservable > 0, hidden)] = np.nan
+    estimate, unobservable = found[:, :wide], found[:, wide].astype(int)
+    estimate[np.ix_(unobservable.nonzero()[0], hidden)] = np.nan
     return estimate, unobservable
 
 
 @lru_cache(maxsize=512)
 def _reader(
-    equations: Equations, form: PartitionedSystem, expressions: tuple[sp.Basic, ...], varying: bool, language: Language
+    equations: Equations,
+    form: PartitionedSystem,
+    estimate: Expressions,
+    unobservable: tuple[Unobservable, ...],
+    varying: bool,
+    language: Language,
 ) -> Rows:
-    """What reads estimates and conditions off the rows of state, outputs, elapsed time and varying parameters."""
-    tables, constants = (equations.state, form.x1, (elapsed,)), (*equations.gains, *([] if varying else form.parameters))
-    begun = first_innovation(form) if len(expressions) > len(form.coordinates) else ()
-    return by_row((*tables, form.parameters) if varying else tables, (*constants, *begun), expressions, language)
+    """What reads the estimate, and which condition hides it, off state, outputs, elapsed time and varying parameters.
+
+    Its constants are the gains, the other parameters and, where something hides the estimate, the first innovation.
+    """
+    tables = (equations.state, form.x1, (elapsed,), *([form.parameters] if varying else []))
+    constants = (*equations.gains, *(() if varying else form.parameters))
+    if unobservable:
+        which = sp.Piecewise(*((k, where.condition) for k, where in enumerate(unobservable, 1)), (0, True))
+        estimate, constants = (*estimate, which), (*constants, *first_innovation(form))
+    return by_row(tables, constants, estimate, language)
 
 
 def _warn_of_long_steps(observer: Observer, grid: Array, steps: Array) -> None:
