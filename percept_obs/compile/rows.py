@@ -14,6 +14,7 @@ from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.functions import vectorised
 from percept_obs.compile.kernels import Language
+from percept_obs.compile.lanes import LANES
 from percept_obs.compile.loop import take_out
 from percept_obs.compile.machine_code import machine_code
 from percept_obs.compile.text import Text
@@ -22,7 +23,9 @@ Rows = Callable[[Sequence[Array], Array], Array]
 
 
 @lru_cache(maxsize=512)
-def by_row(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language) -> Rows:
+def by_row(
+    tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language
+) -> Rows:
     """A function of tables and constants for several expressions.
 
     Parameters
@@ -64,29 +67,45 @@ def by_row(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[s
     machine = machine_code(_source(tables, constants, expressions), signature, "lanes")
 
     def in_machine_code(arrays: Sequence[Array], numbers: Array) -> Array:
+        count = len(arrays[0])
+        if count < LANES:
+            last_again = np.minimum(np.arange(LANES), count - 1)
+            arrays = [array[last_again] for array in arrays]
         values = np.empty((len(arrays[0]), len(expressions)))
         machine(*arrays, numbers, values)
-        return values
+        return values[:count]
 
     return in_machine_code
 
 
 def _source(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...]) -> str:
-    """Text of the loop over the rows; what depends on constants only stands before it."""
+    """Text of the loop over the rows, `LANES` of them together; what depends on constants only stands before it."""
     text, fixed, arguments = Text("lanes"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
-    places = {s: f"{array}[row, {k}]" for array, table in zip(arguments, tables, strict=True) for k, s in enumerate(table)}
+    places = {s: f"{name}_part[i, {k}]" for name, of in zip(arguments, tables, strict=True) for k, s in enumerate(of)}
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate((*places, *constants))}
-    lasting = {names[symbol] for symbol in constants}
-    left = [take_out(e.xreplace(names), lasting, fixed) for e in expressions]
+    left = [take_out(e.xreplace(names), {names[symbol] for symbol in constants}, fixed) for e in expressions]
+    used = [symbol for symbol in places if any(e.has(names[symbol]) for e in left)]
+    work = [f"work[{k}, i]" for k in range(len(used) + len(left))]
     with text.function("run", [*arguments, "numbers", "values"]):
+        text.assign("work", f"np.empty(({len(work)}, {LANES}))")
         for k, symbol in enumerate(constants):
             text.assign(names[symbol].name, f"numbers[{k}]")
         for expression, name in fixed.items():
             text.assign(name.name, text.print(expression))
-        with text.loop("row", "values"):
-            for symbol, place in places.items():
-                text.assign(names[symbol].name, place)
-            text.formulas(left, "e")
-            for k in range(len(expressions)):
-                text.store(f"values[row, {k}]", f"e{k}")
+        with text.over(f"range(0, len(values), {LANES})"):
+            text.assign("row", f"min(i, len(values) - {LANES})")
+            for array in (*arguments, "values"):
+                text.assign(f"{array}_part", f"{array}[row:row + {LANES}]")
+            with text.over(f"range({LANES})"):
+                for place, symbol in zip(work, used, strict=False):
+                    text.store(place, places[symbol])
+            with text.over(f"range({LANES})"):
+                for place, symbol in zip(work, used, strict=False):
+                    text.assign(names[symbol].name, place)
+                text.formulas(left, "e")
+                for k, place in enumerate(work[len(used) :]):
+                    text.store(place, f"e{k}")
+            with text.over(f"range({LANES})"):
+                for k, place in enumerate(work[len(used) :]):
+                    text.store(f"values_part[i, {k}]", place)
     return f"{inspect.getsource(vector_functions)}\n\n{text}"

@@ -156,7 +156,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     side_by_side = places == list(range(places[0], places[0] + len(places)))
     columns: Any = slice(places[0], places[0] + len(places)) if side_by_side else places  # a slice copies nothing
     samples, filled = recording.outputs[:, columns], recording.last_outputs[:, columns]
-    _warn_of_long_steps(observer, along.grid, along.steps)
+    _warn_of_long_steps(observer, along)
     known = _known(along, believed)
     given = named_start(start, form.coordinates)
     initial = state_at_start(
@@ -228,19 +228,19 @@ def _reader(
     return by_row(tables, constants, estimate, language)
 
 
-def _warn_of_long_steps(observer: Observer, grid: Array, steps: Array) -> None:
+def _warn_of_long_steps(observer: Observer, along: Course) -> None:
     """Tell before the run, from gains and times alone, when a step will no longer resolve the observer."""
     if observer.fastest is None:
         return
-    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(grid[1:] - grid[0])
-    late = np.flatnonzero(rate * steps >= LARGEST_STEP_RATE)
+    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(along.elapsed[1:])
+    late = np.flatnonzero(rate * along.steps >= LARGEST_STEP_RATE)
     if len(late):
         k = late[0]
         told = TOO_LONG.format(
-            time=f"{grid[k] - grid[0]:.3g}",
+            time=f"{along.elapsed[k]:.3g}",
             name=observer.name,
             rate=f"{rate[k]:.4g}",
-            step=f"{steps[k]:.3g}",
+            step=f"{along.steps[k]:.3g}",
             limit=f"{LARGEST_STEP_RATE:g}",
             remedy=observer.fastest.remedy,
             shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
