@@ -196,15 +196,18 @@ def _estimates(
         tables.append(known)
     else:
         numbers += known[0].tolist()
-    read = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
-    if not observer.unobservable:
-        return read(tables, np.array(numbers)), seen
-    measured, hidden = ([form.coordinates.index(symbol) for symbol in part] for part in (form.x1, form.x2))
-    first = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(len(measured))]))[0]
-    found = read(tables, np.array([*numbers, *(samples[0] - first[measured])]))
-    estimate, unobservable = found[:, :wide], found[:, wide].astype(int)
-    estimate[np.ix_(unobservable.nonzero()[0], hidden)] = np.nan
-    return estimate, unobservable
+    read, begun = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
+    if begun:
+        first = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(begun)]))[0]
+        off = [form.coordinates.index(symbol) for symbol in form.x1]
+        numbers += (samples[0] - first[off]).tolist()
+    found = read(tables, np.array(numbers))
+    estimate = found[:, :wide]
+    if observer.unobservable:
+        seen = found[:, wide].astype(int)
+        for symbol in form.x2:
+            estimate[seen != 0, form.coordinates.index(symbol)] = np.nan
+    return estimate, seen
 
 
 @lru_cache(maxsize=512)
@@ -215,17 +218,16 @@ def _reader(
     unobservable: tuple[Unobservable, ...],
     varying: bool,
     language: Language,
-) -> Rows:
+) -> tuple[Rows, int]:
     """What reads the estimate, and which condition hides it, off state, outputs, elapsed time and varying parameters.
 
-    Its constants are the gains, the other parameters and, where something hides the estimate, the first innovation.
+    Its constants are the gains, the other parameters and so many first innovations, where they matter.
     """
     tables = (equations.state, form.x1, (elapsed,), *([form.parameters] if varying else []))
-    constants = (*equations.gains, *(() if varying else form.parameters))
-    if unobservable:
-        which = sp.Piecewise(*((k, where.condition) for k, where in enumerate(unobservable, 1)), (0, True))
-        estimate, constants = (*estimate, which), (*constants, *first_innovation(form))
-    return by_row(tables, constants, estimate, language)
+    which = sp.Piecewise(*((k, where.condition) for k, where in enumerate(unobservable, 1)), (0, True))
+    begun = tuple(e for e in first_innovation(form) if which.has(*first_innovation(form)))
+    constants = (*equations.gains, *(() if varying else form.parameters), *begun)
+    return by_row(tables, constants, (*estimate, *([which] if unobservable else [])), language), len(begun)
 
 
 def _warn_of_long_steps(observer: Observer, along: Course) -> None:
