@@ -189,8 +189,9 @@ def _estimates(
     """
     form, state, wide = observer.form, observer.equations.state, len(observer.estimate)
     seen = np.zeros(len(time), dtype=int)
-    if not observer.unobservable and observer.estimate == state[:wide]:
-        return states[:, :wide], seen
+    first = state.index(observer.estimate[0]) if observer.estimate[0] in state else 0
+    if not observer.unobservable and observer.estimate == state[first : first + wide]:
+        return states[:, first : first + wide], seen
     tables, numbers = [states, samples, time[:, None]], [gain.value for gain in observer.gains]
     if len(known) > 1:
         tables.append(known)
@@ -198,9 +199,8 @@ def _estimates(
         numbers += known[0].tolist()
     read, begun = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
     if begun:
-        first = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(begun)]))[0]
-        off = [form.coordinates.index(symbol) for symbol in form.x1]
-        numbers += (samples[0] - first[off]).tolist()
+        (row,) = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(begun)]))
+        numbers += (samples[0] - row[[form.coordinates.index(symbol) for symbol in form.x1]]).tolist()
     found = read(tables, np.array(numbers))
     estimate = found[:, :wide]
     if observer.unobservable:
