@@ -20,6 +20,7 @@ from percept_obs import Camera, Uniform, ekf, ibo, record, scenarios, smo, track
 from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source, vector_functions
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
+from percept_obs.compile.rows import by_row
 from percept_obs.figures import look
 from percept_obs.labs.printing import INTEGRATOR, LOOKS
 from percept_obs.observers import OBSERVERS, linear_approximation
@@ -79,6 +80,19 @@ def test_python_and_numba_agree(name, outputs):
     python, compiled = (track(recording, observer, ZERO, language=language) for language in ("python", "numba"))
     np.testing.assert_allclose(compiled.state, python.state, rtol=1e-12, atol=1e-12)
     assert compiled.resets.tolist() == python.resets.tolist()
+    np.testing.assert_allclose(compiled.estimate, python.estimate, rtol=1e-10, atol=1e-11)
+    assert compiled.unobservable.tolist() == python.unobservable.tolist()
+
+
+@pytest.mark.slow
+def test_rows_are_read_alike_in_numpy_and_in_machine_code_however_many_there_are():
+    which = sp.Piecewise((1, x > u), (2, x > y), (0, True))
+    expressions = (y, sp.tanh(k * u) / y, sp.exp(-k) + sp.sinh(x), u > y, which)
+    python, compiled = (by_row(((x, u), (y,)), (k,), expressions, language) for language in ("python", "numba"))
+    for count in (1, 5, 16, 37):
+        table = np.random.default_rng(count).uniform(-1, 1, (count, 4))
+        given = [table[:, 1:3], table[:, 3:]], np.array([0.7])
+        np.testing.assert_allclose(compiled(*given), python(*given), rtol=1e-14, atol=1e-15)
 
 
 @pytest.mark.slow

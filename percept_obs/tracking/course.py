@@ -43,6 +43,11 @@ class Course:
         return self.recording.intervals if self._a_step_a_sample else np.diff(self.grid)
 
     @cached_property
+    def elapsed(self) -> Array:
+        """Seconds from the first sample to the ends of the steps, shape (N + 1,)."""
+        return self.recording.elapsed if self._a_step_a_sample else self.grid - self.grid[0]
+
+    @cached_property
     def instants(self) -> Array:
         """The times at which the steps look at known signals, shape (N EACH + 1,)."""
         return instants(self.grid)
@@ -57,6 +62,8 @@ class Course:
 
     def arriving(self, samples: Array) -> Array:
         """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
+        if self._a_step_a_sample:
+            return samples.copy()
         arriving = np.full((len(self.grid), samples.shape[1]), np.nan)
         arriving[self.index] = samples
         return arriving

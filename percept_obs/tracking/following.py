@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import singledispatch
+from functools import lru_cache, singledispatch
 from typing import Annotated, Any
 
 import numpy as np
+import sympy as sp
 
 from percept_obs.border import Kind, checked, limit, refuse_kind, warn
-from percept_obs.compile import Array, Indices, Language, Table, solve, vectorised
-from percept_obs.compile.equations import Symbols
+from percept_obs.compile import Array, Indices, Language, Table, choose, solve, vectorised
+from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
+from percept_obs.compile.rows import Rows, by_row
 from percept_obs.observers.base import Observer, state_at_start
-from percept_obs.observers.inversion import elapsed, first_innovation
+from percept_obs.observers.inversion import Unobservable, elapsed, first_innovation
 from percept_obs.recording import Recording
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course, Hold, laid_out
 from percept_obs.tracking.run import Run
@@ -153,7 +156,7 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
     side_by_side = places == list(range(places[0], places[0] + len(places)))
     columns: Any = slice(places[0], places[0] + len(places)) if side_by_side else places  # a slice copies nothing
     samples, filled = recording.outputs[:, columns], recording.last_outputs[:, columns]
-    _warn_of_long_steps(observer, along.grid)
+    _warn_of_long_steps(observer, along)
     known = _known(along, believed)
     given = named_start(start, form.coordinates)
     initial = state_at_start(
@@ -167,53 +170,79 @@ def _follow(observer: Observer, along: Course, start: Start, believed: Motion | 
         arriving = along.arriving(samples)
         arriving[0, [name not in given for name in form.measured]] = np.nan  # one that is the start corrects nothing
     table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
+    language = choose(language, len(along.steps))
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = along.at_samples(trace.states)
     at_samples = known if len(known) == 1 else known[EACH * index]
-    estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed)
+    estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed, language)
     diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
     resets = along.grid[trace.resets.nonzero()[0]]
     return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
 
 
-def _estimates(observer: Observer, states: Array, samples: Array, known: Array, time: Array) -> tuple[Array, Indices]:
+def _estimates(
+    observer: Observer, states: Array, samples: Array, known: Array, time: Array, language: Language
+) -> tuple[Array, Indices]:
     """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
 
     They follow from state, outputs and parameters at the samples, and the seconds since the first one.
     """
-    form, state = observer.form, observer.equations.state
-    if not observer.unobservable and observer.estimate == state[: len(observer.estimate)]:
-        return states[:, : len(observer.estimate)], np.zeros(len(time), dtype=int)
-    symbols, inputs = (*state, *form.x1, *form.parameters), (*states.T, *samples.T, *known.T)
-    measured, hidden = (np.array([form.coordinates.index(symbol) for symbol in x]) for x in (form.x1, form.x2))
-    unobservable = np.zeros(len(time), dtype=int)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
-        estimate = np.stack(vectorised(symbols, observer.estimate, observer.gain_values)(*inputs), axis=-1)
-        if observer.unobservable:
-            symbols = (*symbols, elapsed, *first_innovation(form))
-            conditions = [where.condition for where in observer.unobservable]
-            begun = np.broadcast_to(samples[0] - estimate[0, measured], (len(time), len(measured)))
-            found = vectorised(symbols, conditions, observer.gain_values)(*inputs, time, *begun.T)
-            for k, holds in reversed(list(enumerate(found, 1))):
-                unobservable[holds != 0] = k
-            estimate[np.ix_(unobservable > 0, hidden)] = np.nan
-    return estimate, unobservable
+    form, state, wide = observer.form, observer.equations.state, len(observer.estimate)
+    seen = np.zeros(len(time), dtype=int)
+    first = state.index(observer.estimate[0]) if observer.estimate[0] in state else 0
+    if not observer.unobservable and observer.estimate == state[first : first + wide]:
+        return states[:, first : first + wide], seen
+    tables, numbers = [states, samples, time[:, None]], [gain.value for gain in observer.gains]
+    if len(known) > 1:
+        tables.append(known)
+    else:
+        numbers += known[0].tolist()
+    read, begun = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
+    if begun:
+        (row,) = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(begun)]))
+        numbers += (samples[0] - row[[form.coordinates.index(symbol) for symbol in form.x1]]).tolist()
+    found = read(tables, np.array(numbers))
+    estimate = found[:, :wide]
+    if observer.unobservable:
+        seen = found[:, wide].astype(int)
+        for symbol in form.x2:
+            estimate[seen != 0, form.coordinates.index(symbol)] = np.nan
+    return estimate, seen
 
 
-def _warn_of_long_steps(observer: Observer, grid: Array) -> None:
+@lru_cache(maxsize=512)
+def _reader(
+    equations: Equations,
+    form: PartitionedSystem,
+    estimate: Expressions,
+    unobservable: tuple[Unobservable, ...],
+    varying: bool,
+    language: Language,
+) -> tuple[Rows, int]:
+    """What reads the estimate, and which condition hides it, off state, outputs, elapsed time and varying parameters.
+
+    Its constants are the gains, the other parameters and so many first innovations, where they matter.
+    """
+    tables = (equations.state, form.x1, (elapsed,), *([form.parameters] if varying else []))
+    which = sp.Piecewise(*((k, where.condition) for k, where in enumerate(unobservable, 1)), (0, True))
+    begun = tuple(e for e in first_innovation(form) if which.has(*first_innovation(form)))
+    constants = (*equations.gains, *(() if varying else form.parameters), *begun)
+    return by_row(tables, constants, (*estimate, *([which] if unobservable else [])), language), len(begun)
+
+
+def _warn_of_long_steps(observer: Observer, along: Course) -> None:
     """Tell before the run, from gains and times alone, when a step will no longer resolve the observer."""
     if observer.fastest is None:
         return
-    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(grid[1:] - grid[0])
-    steps = np.diff(grid)
-    late = np.flatnonzero(rate * steps >= LARGEST_STEP_RATE)
+    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(along.elapsed[1:])
+    late = np.flatnonzero(rate * along.steps >= LARGEST_STEP_RATE)
     if len(late):
         k = late[0]
         told = TOO_LONG.format(
-            time=f"{grid[k] - grid[0]:.3g}",
+            time=f"{along.elapsed[k]:.3g}",
             name=observer.name,
             rate=f"{rate[k]:.4g}",
-            step=f"{steps[k]:.3g}",
+            step=f"{along.steps[k]:.3g}",
             limit=f"{LARGEST_STEP_RATE:g}",
             remedy=observer.fastest.remedy,
             shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
