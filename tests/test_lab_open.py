@@ -1,7 +1,6 @@
 """An observer, a surface, a motion that somebody brings are computed by the page as by Python, or refused first."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,6 +19,7 @@ from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
+from percept_obs.labs.structure.samples import MOST_SAMPLES
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
@@ -230,7 +230,7 @@ def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings
         make(**settings)
 
 
-TIMES = np.array([0.0, 0.13, 0.4, 0.71])
+TIMES = np.array([0.0, 0.133, 0.4, 0.71])
 VARYING = {
     "expressions of time": affine(
         sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]
@@ -248,10 +248,12 @@ def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(
     lab = observer_lab(scenario, period=0.04, window=0.2)
     assert bool(lab.settings["motion"]) == (kind == "expressions of time")
     settings = lab.settings
-    (answer,) = run_in_node(node, lab, [settings])
-    (run,) = lab.runs(settings).values()
-    assert_same_recording(answer, run.recording)
-    assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
+    # the steps of both periods are as many, and stand elsewhere
+    tasks = [lab.check({**settings, "period": 0.02}), settings]
+    for task, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        (run,) = lab.runs(task).values()
+        assert_same_recording(answer, run.recording)
+        assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
     asked = record(scenario, camera=Camera(0.04))
     # a function is taken as samples every 10 ms
     np.testing.assert_allclose(run.recording.truth, asked.truth, rtol=0, atol=1e-6 if kind == "a function" else 1e-9)
@@ -386,7 +388,88 @@ def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(no
     (answer,) = structure_in_node(node, lab, [lab.settings])
     found = as_array(answer["runs"]["identifier_based"]["estimate"], 5)
     np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
-    swings = replace(mine, motion=rigid((0, 0, 0), lambda t: [0.2, 0.0, t], (0.05, 0.0, 0.1)))
-    for wrong, reason in ((swings, "varies"), (PerspectiveSystem(affine(), pinhole()).measure("y1"), "scaled inverse")):
-        with pytest.raises(ValueError, match=reason):
-            structure_lab(wrong)
+    with pytest.raises(ValueError, match="scaled inverse"):
+        structure_lab(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+
+
+STAMPS = np.array([0.0, 0.013, 0.1, 0.17, 0.3])
+MEASURED = np.column_stack([-0.2 - 0.1 * np.sin(9 * STAMPS), 0.3 - STAMPS, 0 * STAMPS])
+
+
+def velocities(v_c=MEASURED, times=STAMPS):
+    """Velocities that a robot has measured; its object moves along an axis."""
+    return rigid([0.1, 0.0, -0.2], v_c, np.column_stack([0 * STAMPS, 0.2 * STAMPS, 0 * STAMPS])[: len(v_c)], times)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same_run(node):
+    motion = velocities()
+    choice = StructureAndMotion(("d_s", "v_c2", "v_p3"), zero=("v_c3", "v_p1"))
+    place = (0.5, 0.4, 4.0)
+    moved = rigid((0.1, 0, 0), lambda t: [0.2 + t, 0.1, 0.0], lambda t: [0.0, 0.1 * t, 0.0])
+    mine, other = (
+        StructureScenario("mine", m, place, 0.25, pinhole(), scale=2.0, choice=choice) for m in (motion, moved)
+    )
+    labs = [structure_lab(given, period=0.01, step=0.005) for given in (motion, mine, other)]
+    changes = (
+        {"observers": ["ideal", "identifier_based"], "noise": {"kind": "uniform", "size": 1e-4, "depth": 1e-5}},
+        {"unknown": ["v_p1", "v_c2"], "hold": "exact", "period": 0.02},
+        {"velocities": "set"},
+    )
+    assert [lab.settings["duration"] for lab in labs] == [0.3, 0.25, 0.25]
+    for lab, given in zip(labs, (motion, motion, moved), strict=True):
+        assert lab.settings["velocities"] == "samples"
+        tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
+        for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+            namespace = {"motion": given}
+            exec(answer["code"], namespace)
+            for name, run in structure_runs(settings, samples=lab._samples).items():
+                assert_same_recording(answer, run.recording)
+                found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
+                np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
+                assert answer["summary"]["verdicts"][name] == run.verdict(settings["tolerance"])
+                copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+                assert copied.verdict(settings["tolerance"]) == run.verdict(settings["tolerance"])
+                # the lab takes a function as samples every 10 ms
+                near = 1e-4 if given is moved else 1e-9
+                np.testing.assert_allclose(copied.estimate, run.estimate, rtol=near, atol=near)
+
+
+def test_of_structure_samples_stay_apart_from_what_is_set():
+    lab = structure_lab(velocities(), unknown=["d_s", "v_p1"])
+    assert unknowns_of(lab.settings, lab._samples).zero == ("v_c3", "v_p3")
+    assert unknowns_of({**lab.settings, "velocities": "set"}, lab._samples).zero == ("v_c3", "v_p2", "v_p3")
+    assert lab.model["opening"]["velocities"] == "samples"
+    assert lab.model["standard"]["velocities"] == "set"
+    lab.summary = {"serial": 1}
+    assert "last tenth of the run" in lab.analysis["sentences"][0]
+    still = structure_lab(rigid([0.1, 0, 0], [0.2, 0, 0.1], [0, 0, 0]))
+    assert (still.settings["velocities"], still.settings["v_c"]) == ("set", [0.2, 0.0, 0.1])
+
+
+BROKEN = np.where(MEASURED > 0.2, np.nan, MEASURED)
+MANY = np.arange(MOST_SAMPLES + 1) / 100
+
+
+@pytest.mark.parametrize(
+    ("bring", "settings", "reason"),
+    [
+        (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
+        (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
+        (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
+        (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
+        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "have one sample, at 0 s; bring two at least"),
+        (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
+        (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
+        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the velocities are sampled up to 0.3 s only; shorten the"),
+        (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
+        (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
+        (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
+        (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
+        (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
+    ],
+)
+def test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do(bring, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        structure_lab(bring(), **settings)

@@ -14,6 +14,9 @@ MAPPED = (
 )
 """What a map may go over besides gains."""
 
+LONGEST = 100.0
+"""Seconds that a run lasts at most."""
+
 VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
 STANDARD_GAINS: dict[str, dict[str, float]] = {
     "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
@@ -46,6 +49,13 @@ SCHEMA = Schema(
     v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
     w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
+    velocities=Choice(
+        "set",
+        ("set",),
+        label="Velocities",
+        about='"set" by the numbers and expressions here, or "samples", where you bring some',
+        reason='there is "samples" too where the lab is opened with rigid(w, v_c, v_p, times)',
+    ),
     motion=typed_setting("v_c1 = 0.2 cos(t)^3; w3 = 0.1 sin(2t)"),
     rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),
     noise=noise(
@@ -56,7 +66,7 @@ SCHEMA = Schema(
     drift=Number(0.0, -1, 1, (-0.001, 0.001), 1e-5, unit="1/s", label="drift of ȳ3"),
     seed=SEED,
     period=Number(1e-3, 1e-4, 1, (1e-4, 0.1), unit="s"),
-    duration=Number(3.0, 0.1, 100, (1, 60), 0.5, unit="s"),
+    duration=Number(3.0, 0.1, LONGEST, (1, 60), 0.5, unit="s"),
     hold=Choice("first", ("zero", "first", "exact")),
     step=Number(1e-3, 1e-5, 0.1, (1e-4, 0.01), unit="s", label="longest step", about="the observers' longest step"),
     start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),
