@@ -17,9 +17,9 @@ from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
+from percept_obs.labs.shared.samples import MOST_SAMPLES
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
-from percept_obs.labs.structure.samples import MOST_SAMPLES
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
@@ -459,10 +459,10 @@ MANY = np.arange(MOST_SAMPLES + 1) / 100
         (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
         (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
         (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
-        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "have one sample, at 0 s; bring two at least"),
+        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
         (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
         (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
-        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the velocities are sampled up to 0.3 s only; shorten the"),
+        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
         (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
         (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
         (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),

@@ -10,7 +10,7 @@ from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.offer import Offer
 from percept_obs.labs.observer.texts import BLOCKS
-from percept_obs.labs.shared.sampling import table_for_the_page
+from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.labs.shared.typed_motion import MOST, read_motion
 from percept_obs.recording import Recording, Scenario

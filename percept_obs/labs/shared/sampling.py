@@ -5,9 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.labs.shared.schema import Settings
 from percept_obs.recording import Camera, Recording, Scenario, record
-from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import BehindCamera
 
 
@@ -27,15 +25,6 @@ def as_far_as_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
     if count < 2:
         raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
     return record(scenario, times[count - 1], camera, seed)
-
-
-def table_for_the_page(motion: Motion, begun: float = 0.0) -> Settings:
-    """A sampled motion in numbers, with times from when it began."""
-    signal = motion.signal
-    assert signal is not None
-    assert not callable(signal.samples)
-    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
-    return {"times": times, "rows": signal.samples.tolist()}
 
 
 MOST_WORK = 300_000

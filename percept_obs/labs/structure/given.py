@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from percept_obs.labs.shared.brought import same_system
+from percept_obs.labs.shared.samples import times_of
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.labs.structure.samples import sampled
 from percept_obs.labs.structure.settings import LONGEST, STANDARD
@@ -71,8 +72,6 @@ def _of_scenario(scenario: StructureScenario) -> Settings:
 def _of_motion(motion: Motion, duration: float | None = None) -> tuple[Settings, Motion | None]:
     """The numbers of constant velocities; of others their samples, for as long as they last."""
     if samples := sampled(motion, duration):
-        assert samples.signal is not None
-        assert samples.signal.times is not None
-        return {"velocities": "samples", "duration": min(float(samples.signal.times[-1]), LONGEST)}, samples
+        return {"velocities": "samples", "duration": min(float(times_of(samples)[-1]), LONGEST)}, samples
     w, v_c, v_p = motion.known(0.0).reshape(3, 3).tolist()
     return {"w": w, "v_c": v_c, "v_p": v_p, "v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3}, None

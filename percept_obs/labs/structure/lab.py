@@ -19,6 +19,7 @@ from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_
 from percept_obs.labs.shared.common_settings import gains, offering, over
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
+from percept_obs.labs.shared.samples import looks_at, samples_for_the_page
 from percept_obs.labs.shared.sampling import (
     as_far_as_seen,
     exact_path,
@@ -31,9 +32,8 @@ from percept_obs.labs.shared.sampling import (
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.given import Given, opening_of
-from percept_obs.labs.structure.samples import for_the_page as samples_for_the_page
-from percept_obs.labs.structure.samples import looks_at, refuse_samples, zero_in
-from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
+from percept_obs.labs.structure.samples import refuse_samples, zero_in
+from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.observers import Observer
@@ -60,8 +60,6 @@ MOST_STEPS = 200_000
 
 LOOK_WORK = 16
 """What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
-
-_WITH_SAMPLES = replace(SCHEMA["velocities"], names=("set", "samples"), reason="")
 
 
 class StructureLab(Lab):
@@ -118,7 +116,7 @@ class StructureLab(Lab):
         self.schema = Schema(
             SCHEMA
             | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
-            | ({"velocities": _WITH_SAMPLES} if self._samples else {})
+            | ({"velocities": VELOCITIES} if self._samples else {})
         )
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(
@@ -128,7 +126,7 @@ class StructureLab(Lab):
             opening,
             texts=with_texts("structure_lab", self._added),
             own={name: make.for_the_page() for name, make in self._own.items()},
-            samples=self._samples and samples_for_the_page(self._samples),
+            samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
             pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,
@@ -185,7 +183,8 @@ class StructureLab(Lab):
         fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
         moved = exact_path(duration, settings["period"], fastest)
         if _swings(settings) or samples:
-            moved += LOOK_WORK * max(looks(duration, fastest, swings), looks_at(samples, duration))
+            least = looks_at(samples, duration) if samples else 0
+            moved += LOOK_WORK * max(looks(duration, fastest, swings), least)
         if refusal := too_short(duration, settings["period"]) or too_fast(moved):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]

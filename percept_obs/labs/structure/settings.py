@@ -1,5 +1,7 @@
 """What may be set in the lab of structure and motion."""
 
+from dataclasses import replace
+
 from percept_obs.labs.shared.common_settings import KEPT, SEED, noise, over
 from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -31,6 +33,14 @@ _SWING: Settings = {"unit": "m/s", "usual": (-0.5, 0.5), "step": 0.01}
 _PLACE: Settings = {"usual": (-1, 1), "step": 0.01}
 _CAMERA, _OBJECT = ([f"{letter}{axis}" for axis in (1, 2, 3)] for letter in ("v_c", "v_p"))
 
+VELOCITIES = Choice(
+    "set",
+    ("set", "samples"),
+    label="Velocities",
+    about='"set" by the numbers and expressions here, or "samples", where you bring some',
+)
+"""Where the true velocities come from, in a lab that has samples."""
+
 SCHEMA = Schema(
     unknown=Names([], QUANTITIES, 0, about=f"names of what is not known, of {', '.join(QUANTITIES)}"),
     earlier=Flag(about="whether a known d_s was estimated in an earlier stage, so that theta holds d_s v"),
@@ -49,11 +59,9 @@ SCHEMA = Schema(
     v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
     w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
-    velocities=Choice(
-        "set",
-        ("set",),
-        label="Velocities",
-        about='"set" by the numbers and expressions here, or "samples", where you bring some',
+    velocities=replace(
+        VELOCITIES,
+        names=("set",),
         reason='there is "samples" too where the lab is opened with rigid(w, v_c, v_p, times)',
     ),
     motion=typed_setting("v_c1 = 0.2 cos(t)^3; w3 = 0.1 sin(2t)"),

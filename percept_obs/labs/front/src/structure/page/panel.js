@@ -48,7 +48,7 @@ export class StructurePanel extends Fieldsets {
       this.first(
         choice.body,
         this.fieldset("Observers", choices),
-        this.fieldset("Move these", this.lit(this.numberIf("v_c.0", areSet), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
+        this.fieldset("Move these", ...this.source(), this.lit(this.numberIf("v_c.0", areSet), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
       ),
       topic("cases", "The paper's cases", choice.table()),
       topic("gains", "All gains", ...groups),
@@ -64,6 +64,13 @@ export class StructurePanel extends Fieldsets {
     this.body = element("div", { class: "panel" }, ...body);
   }
 
+  /** Whether the velocities are set or sampled, where there are samples. */
+  source() {
+    const { lab, model: { samples } } = this;
+    const besides = (value) => (value === "samples" ? { motion: "", duration: Math.min(lab.settings.duration, samples.times.at(-1)) } : {});
+    return samples ? [this.choice("velocities", { besides })] : [];
+  }
+
   motion() {
     const { lab } = this;
     const varying = checkbox({
@@ -75,8 +82,6 @@ export class StructurePanel extends Fieldsets {
         lab.change({ v_c_swing: [size, size, -size], v_p_swing: [0, 0, 0] }, true);
       },
     });
-    const { samples } = this.model;
-    const chosen = (value) => (value === "samples" ? { motion: "", duration: Math.min(lab.settings.duration, samples.times.at(-1)) } : {});
     const rest = [1, 2].map((k) => this.lit(this.number(`v_c.${k}`), `v_c${k + 1}`));
     const set = [
       ...rest,
@@ -87,7 +92,6 @@ export class StructurePanel extends Fieldsets {
       ...this.litList("w"),
     ];
     return [
-      ...(samples ? [this.choice("velocities", { besides: chosen })] : []),
       this.number("scale"),
       this.onlyIf(areSet, element("div", {}, ...set)),
       ...this.each("ybar"),
