@@ -12,9 +12,10 @@ from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
 from structure_settings import CASES as STRUCTURE_CASES
 
-from percept_obs import rigid
+from percept_obs import affine, rigid
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.shared.saved import STARTER, library_of, page_of, place_of
+from percept_obs.points import independent_points
 
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 B = "b=0.4,0.3,0.3"
@@ -370,6 +371,24 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
         shown = page(there, f"#structure=1;{told}")
         shown.wait_for_function("() => document.querySelector('.notice').textContent")
         assert reason in shown.inner_text(".notice")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
+    times = np.linspace(0, 4, 21)
+    b = np.column_stack([np.cos(times), np.sin(times), 0 * times])
+    shown = page(of_one(points_lab(independent_points(affine(np.zeros((3, 3)), b, times), 2))))
+    duration = shown.locator(control("duration number"))
+    duration.fill("5")
+    assert duration.get_attribute("aria-invalid") == "true"
+    shown.check(control("state independent"))
+    rested_at(shown, 0, "state", "independent")
+    duration.fill("5")
+    rested_at(shown, 0, "duration", 5)
+    shown.check(control("state own"))
+    rested_at(shown, 0, "duration", 4)
+    assert shown.inner_text(".notice") == "The samples of your motion end at 4 s."
 
 
 @pytest.mark.browser

@@ -10,6 +10,7 @@ from lab_settings import as_array, run_in_node, whole_model
 from points_settings import run_in_node as points_in_node
 from structure_settings import structure_in_node
 from test_lab_engine import assert_same_run
+from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
 
 from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
@@ -24,7 +25,7 @@ from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
-from percept_obs.points import PointsForm
+from percept_obs.points import PointsForm, independent_points
 from percept_obs.structure import ImpossibleChoice, StructureAndMotion, StructureScenario
 from percept_obs.system.motion import TIME, linear
 from percept_obs.system.perspective import PerspectiveSystem
@@ -231,6 +232,7 @@ def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings
 
 
 TIMES = np.array([0.0, 0.133, 0.4, 0.71])
+STAMPS = np.array([0.0, 0.013, 0.1, 0.17, 0.3])
 VARYING = {
     "expressions of time": affine(
         sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]
@@ -331,6 +333,9 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
         exec(answer["code"], namespace)
         np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
     for brought, settings, reason in (
+        (of_samples(STAMPS[1:]), {}, "from 0.013 to 0.3 s, but a run of the lab begins at 0 s"),
+        (of_samples(STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
+        (of_samples(), {"duration": 9.0}, "lasts 9 s, but the motion is sampled up to 2.4 s only; shorten"),
         (own_form(coupled=True), {}, "only blocks of 3 x 3 on its diagonal"),
         (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
         (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
@@ -338,6 +343,33 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     ):
         with pytest.raises(ValueError, match=reason):
             points_lab(brought, **settings)
+
+
+def of_samples(times=8 * STAMPS):
+    """Two points that move by measured coefficients."""
+    A = np.sin(times)[:, None, None] * np.array([[0, -0.2, 0.1], [0.2, 0, 0], [-0.1, 0, 0.05]])
+    b = np.column_stack([0.5 * np.cos(9 * times), 0.1 * times, 0 * times])
+    return independent_points(affine(A, b, times), 2)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_points_a_motion_in_samples_agrees(node):
+    form = of_samples()
+    lab = points_lab(form, period=0.1, step=0.05, window=0.5)
+    assert lab.settings["duration"] == 2.4
+    changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
+    tasks = [lab.check({**lab.settings, **change}) for change in changes]
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings, form)
+        assert_same_points(answer, run)
+        assert_same_gramian(answer, settings, run.recording)
+        namespace = {"form": form}
+        exec(answer["code"], namespace)
+        assert namespace["run"].verdict() == run.verdict() == answer["summary"]["verdict"]
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    lab.summary = {"serial": 1}
+    assert lab.analysis["sentences"]
 
 
 @pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
@@ -392,7 +424,6 @@ def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(no
         structure_lab(PerspectiveSystem(affine(), pinhole()).measure("y1"))
 
 
-STAMPS = np.array([0.0, 0.013, 0.1, 0.17, 0.3])
 MEASURED = np.column_stack([-0.2 - 0.1 * np.sin(9 * STAMPS), 0.3 - STAMPS, 0 * STAMPS])
 
 
@@ -434,6 +465,11 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
                 # the lab takes a function as samples every 10 ms
                 near = 1e-4 if given is moved else 1e-9
                 np.testing.assert_allclose(copied.estimate, run.estimate, rtol=near, atol=near)
+    scale = labs[0].check({**labs[0].settings, "unknown": ["d_s", "v_c1", "v_c2"]})
+    (answer,) = structure_in_node(node, labs[0], [scale])
+    with pytest.raises(ImpossibleChoice, match="none is known that is not zero") as refused:
+        unknowns_of(scale, labs[0]._samples)
+    assert answer["refusal"] == str(refused.value)
 
 
 def test_of_structure_samples_stay_apart_from_what_is_set():

@@ -15,6 +15,11 @@ LOOKS_A_SAMPLE = 15
 """How often Python's solver looks at a motion between two of its samples, at least."""
 
 
+def is_sampled(motion: Motion) -> bool:
+    """Whether numbers of a motion are known at some times."""
+    return motion.signal is not None and motion.signal.times is not None
+
+
 def refuse_unfit(motion: Motion) -> None:
     """Raise a ValueError for samples that are too few or too many, or that do not begin at 0 s."""
     times = times_of(motion)
