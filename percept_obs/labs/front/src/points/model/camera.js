@@ -1,9 +1,9 @@
 // Points in motion and the camera that sees them: the same numbers as record() in Python.
 
 import { clockOf, errorOf } from "../../common/model/camera.js";
-import { derived } from "../../common/model/derived.js";
+import { sampledAt } from "../../common/model/derived.js";
 import { draws } from "../../common/model/random.js";
-import { instants, knownAt, withColumns } from "../../common/model/tables.js";
+import { instants } from "../../common/model/tables.js";
 import { ENTRIES, flowOf, kindsOf } from "./flow.js";
 import { product, pseudoInverse } from "./symmetric.js";
 
@@ -124,7 +124,7 @@ export function coefficientsAt({ states }, { state, turning, spin, input, veloci
   const rows = new Float64Array(places.length * width);
   const out = new Float64Array(width);
   const x = Float64Array.of(0, turning, spin, input, ...velocity);
-  const given = samples && knownAt(derived(samples, "columns", () => withColumns(samples)), [], places);
+  const given = samples && sampledAt(samples, places);
   for (let k = 0; k < places.length; k++) {
     x[0] = places[k];
     rows.set(coefficients(given ? given.rows.subarray(k * given.width, (k + 1) * given.width) : x, out), k * width);

@@ -1,9 +1,9 @@
 // What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
-import { derived } from "../../common/model/derived.js";
+import { sampledAt } from "../../common/model/derived.js";
 import { serialOf } from "../../common/model/memory.js";
-import { instants, knownAt, withColumns } from "../../common/model/tables.js";
+import { instants } from "../../common/model/tables.js";
 import { isTyped } from "../../common/model/typed.js";
 
 const NAMES = ["v_c", "v_p"];
@@ -43,8 +43,7 @@ export class StructureCamera extends PointCamera {
 
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
   velocities(settings, { swinging, typed }, times) {
-    const { samples } = this.model;
-    if (isSampled(settings)) return knownAt(derived(samples, "columns", () => withColumns(samples)), [], times);
+    if (isSampled(settings)) return sampledAt(this.model.samples, times);
     const varying = varies(settings);
     const count = varying ? times.length : 1;
     const rows = new Float64Array(9 * count);

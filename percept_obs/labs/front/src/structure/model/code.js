@@ -46,11 +46,12 @@ export function pythonOf(shown, model) {
     ...brought.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
-  return `${varies(settings) && !isSampled(settings) ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
+  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
 }
 
 function motionIn(settings, model) {
-  if (isSampled(settings)) return ["# motion = rigid(...), the velocities in samples that you gave to the lab"];
+  if (isSampled(settings)) return ["# motion = rigid(...), the velocities that you gave to the lab"];
   if (isTyped(settings)) return motionThatIsTyped(settings, model);
   if (varies(settings)) return motionThatSwings(settings, model.phases);
   const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(valuesAtStart(settings, which, model)));
