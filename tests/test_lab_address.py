@@ -3,6 +3,7 @@
 import json
 import subprocess
 
+import numpy as np
 import pytest
 from hostile_messages import messages
 from lab_alone import DRAWN
@@ -11,8 +12,10 @@ from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
 from structure_settings import CASES as STRUCTURE_CASES
 
+from percept_obs import affine, rigid
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.shared.saved import STARTER, library_of, page_of, place_of
+from percept_obs.points import independent_points
 
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 B = "b=0.4,0.3,0.3"
@@ -323,6 +326,69 @@ def test_a_hostile_address_leaves_the_page_at_its_opening_state(page):
     shown.select_option(control("surface"), "plane")
     shown.wait_for_function("() => location.hash.includes('surface=plane') && location.hash.length < 200")
     assert shown.locator(".notice").is_hidden()
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
+    times = np.linspace(0, 2, 21)
+    v_c = np.column_stack([-0.2 - 0.1 * np.sin(times), -0.2 + 0 * times, 0 * times])
+    lab = structure_lab(rigid([0, 0, 0], v_c, [0, 0, 0], times))
+    text = of_one(lab)
+    shown = page(text)
+    slider, source, duration = (shown.locator(control(name)) for name in ("v_c1", "velocities", "duration number"))
+    assert slider.is_hidden()
+    curve = "() => Array.from([...window.perceptObsLabs][0].shown.truth)"
+    measured = shown.evaluate(curve)
+    np.testing.assert_allclose(measured, np.ravel(next(iter(lab.run().values())).truth), rtol=1e-9, atol=1e-9)
+    duration.fill("2.5")
+    assert duration.get_attribute("aria-invalid") == "true"
+    source.select_option("set")
+    rested_at(shown, 0, "velocities", "set")
+    assert slider.is_visible()
+    assert shown.evaluate(curve) != measured
+    duration.fill("2.5")
+    rested_at(shown, 0, "duration", 2.5)
+    source.select_option("samples")
+    rested_at(shown, 0, "duration", 2)
+    assert shown.evaluate(curve) == measured
+    shown.wait_for_function("() => location.hash.includes('velocities=samples')")
+    link = shown.url.partition("#")[2]
+    for velocities in ("set", "set", "samples"):
+        shown.click(control("undo"))
+        rested_at(shown, 0, "velocities", velocities)
+    shown.click(control("corollary 1"))
+    rested_at(shown, 0, "velocities", "set")
+    shown.click(control("reset"))
+    rested_at(shown, 0, "velocities", "samples")
+    assert shown.evaluate(SETTINGS, 0) == lab.settings
+    rested_at(page(text, "#" + link), 0, "velocities", "samples")
+    for there, told, reason in (
+        (text, "velocities=samples;duration=3", "The velocities are sampled up to 2 s only"),
+        (text, "velocities=samples;motion=t", "The velocities are those of your samples, and none can be typed"),
+        (of_one(structure_lab()), link.partition(";")[2], 'is "samples"; it must be one of set'),
+    ):
+        shown = page(there, f"#structure=1;{told}")
+        shown.wait_for_function("() => document.querySelector('.notice').textContent")
+        assert reason in shown.inner_text(".notice")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
+    times = np.linspace(0, 4, 21)
+    b = np.column_stack([np.cos(times), np.sin(times), 0 * times])
+    shown = page(of_one(points_lab(independent_points(affine(np.zeros((3, 3)), b, times), 2))))
+    duration = shown.locator(control("duration number"))
+    duration.fill("5")
+    assert duration.get_attribute("aria-invalid") == "true"
+    shown.check(control("state independent"))
+    rested_at(shown, 0, "state", "independent")
+    duration.fill("5")
+    rested_at(shown, 0, "duration", 5)
+    shown.check(control("state own"))
+    rested_at(shown, 0, "duration", 4)
+    assert shown.inner_text(".notice") == "The samples of your motion end at 4 s."
 
 
 @pytest.mark.browser

@@ -1,7 +1,6 @@
 """An observer, a surface, a motion that somebody brings are computed by the page as by Python, or refused first."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from lab_settings import as_array, run_in_node, whole_model
 from points_settings import run_in_node as points_in_node
 from structure_settings import structure_in_node
 from test_lab_engine import assert_same_run
+from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
 
 from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
@@ -18,13 +18,14 @@ from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
+from percept_obs.labs.shared.samples import MOST_SAMPLES
 from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import hats, innovation, output_injection
-from percept_obs.points import PointsForm
+from percept_obs.points import PointsForm, independent_points
 from percept_obs.structure import ImpossibleChoice, StructureAndMotion, StructureScenario
 from percept_obs.system.motion import TIME, linear
 from percept_obs.system.perspective import PerspectiveSystem
@@ -230,7 +231,8 @@ def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings
         make(**settings)
 
 
-TIMES = np.array([0.0, 0.13, 0.4, 0.71])
+TIMES = np.array([0.0, 0.133, 0.4, 0.71])
+STAMPS = np.array([0.0, 0.013, 0.1, 0.17, 0.3])
 VARYING = {
     "expressions of time": affine(
         sp.Matrix(3, 3, lambda i, j: sp.sin(TIME) / 5 * (i - j)), [0.1, sp.cos(2 * TIME), 0.05]
@@ -248,10 +250,12 @@ def test_a_scenario_whose_motion_varies_is_the_same_in_the_page_and_as_recorded(
     lab = observer_lab(scenario, period=0.04, window=0.2)
     assert bool(lab.settings["motion"]) == (kind == "expressions of time")
     settings = lab.settings
-    (answer,) = run_in_node(node, lab, [settings])
-    (run,) = lab.runs(settings).values()
-    assert_same_recording(answer, run.recording)
-    assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
+    # the steps of both periods are as many, and stand elsewhere
+    tasks = [lab.check({**settings, "period": 0.02}), settings]
+    for task, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        (run,) = lab.runs(task).values()
+        assert_same_recording(answer, run.recording)
+        assert_same_run(answer["runs"]["identifier_based"], run, 1e-9)
     asked = record(scenario, camera=Camera(0.04))
     # a function is taken as samples every 10 ms
     np.testing.assert_allclose(run.recording.truth, asked.truth, rtol=0, atol=1e-6 if kind == "a function" else 1e-9)
@@ -329,6 +333,9 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
         exec(answer["code"], namespace)
         np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
     for brought, settings, reason in (
+        (of_samples(STAMPS[1:]), {}, "from 0.013 to 0.3 s, but a run of the lab begins at 0 s"),
+        (of_samples(STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
+        (of_samples(), {"duration": 9.0}, "lasts 9 s, but the motion is sampled up to 2.4 s only; shorten"),
         (own_form(coupled=True), {}, "only blocks of 3 x 3 on its diagonal"),
         (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
         (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
@@ -336,6 +343,33 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     ):
         with pytest.raises(ValueError, match=reason):
             points_lab(brought, **settings)
+
+
+def of_samples(times=8 * STAMPS):
+    """Two points that move by measured coefficients."""
+    A = np.sin(times)[:, None, None] * np.array([[0, -0.2, 0.1], [0.2, 0, 0], [-0.1, 0, 0.05]])
+    b = np.column_stack([0.5 * np.cos(9 * times), 0.1 * times, 0 * times])
+    return independent_points(affine(A, b, times), 2)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_points_a_motion_in_samples_agrees(node):
+    form = of_samples()
+    lab = points_lab(form, period=0.1, step=0.05, window=0.5)
+    assert lab.settings["duration"] == 2.4
+    changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
+    tasks = [lab.check({**lab.settings, **change}) for change in changes]
+    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+        run = run_of_points(settings, form)
+        assert_same_points(answer, run)
+        assert_same_gramian(answer, settings, run.recording)
+        namespace = {"form": form}
+        exec(answer["code"], namespace)
+        assert namespace["run"].verdict() == run.verdict() == answer["summary"]["verdict"]
+        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    lab.summary = {"serial": 1}
+    assert lab.analysis["sentences"]
 
 
 @pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
@@ -386,7 +420,92 @@ def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(no
     (answer,) = structure_in_node(node, lab, [lab.settings])
     found = as_array(answer["runs"]["identifier_based"]["estimate"], 5)
     np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
-    swings = replace(mine, motion=rigid((0, 0, 0), lambda t: [0.2, 0.0, t], (0.05, 0.0, 0.1)))
-    for wrong, reason in ((swings, "varies"), (PerspectiveSystem(affine(), pinhole()).measure("y1"), "scaled inverse")):
-        with pytest.raises(ValueError, match=reason):
-            structure_lab(wrong)
+    with pytest.raises(ValueError, match="scaled inverse"):
+        structure_lab(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+
+
+MEASURED = np.column_stack([-0.2 - 0.1 * np.sin(9 * STAMPS), 0.3 - STAMPS, 0 * STAMPS])
+
+
+def velocities(v_c=MEASURED, times=STAMPS):
+    """Velocities that a robot has measured; its object moves along an axis."""
+    return rigid([0.1, 0.0, -0.2], v_c, np.column_stack([0 * STAMPS, 0.2 * STAMPS, 0 * STAMPS])[: len(v_c)], times)
+
+
+@pytest.mark.slow
+@pytest.mark.node
+def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same_run(node):
+    motion = velocities()
+    choice = StructureAndMotion(("d_s", "v_c2", "v_p3"), zero=("v_c3", "v_p1"))
+    place = (0.5, 0.4, 4.0)
+    moved = rigid((0.1, 0, 0), lambda t: [0.2 + t, 0.1, 0.0], lambda t: [0.0, 0.1 * t, 0.0])
+    mine, other = (
+        StructureScenario("mine", m, place, 0.25, pinhole(), scale=2.0, choice=choice) for m in (motion, moved)
+    )
+    labs = [structure_lab(given, period=0.01, step=0.005) for given in (motion, mine, other)]
+    changes = (
+        {"observers": ["ideal", "identifier_based"], "noise": {"kind": "uniform", "size": 1e-4, "depth": 1e-5}},
+        {"unknown": ["v_p1", "v_c2"], "hold": "exact", "period": 0.02},
+        {"velocities": "set"},
+    )
+    assert [lab.settings["duration"] for lab in labs] == [0.3, 0.25, 0.25]
+    for lab, given in zip(labs, (motion, motion, moved), strict=True):
+        assert lab.settings["velocities"] == "samples"
+        tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
+        for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+            namespace = {"motion": given}
+            exec(answer["code"], namespace)
+            for name, run in structure_runs(settings, samples=lab._samples).items():
+                assert_same_recording(answer, run.recording)
+                found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
+                np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
+                assert answer["summary"]["verdicts"][name] == run.verdict(settings["tolerance"])
+                copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
+                assert copied.verdict(settings["tolerance"]) == run.verdict(settings["tolerance"])
+                # the lab takes a function as samples every 10 ms
+                near = 1e-4 if given is moved else 1e-9
+                np.testing.assert_allclose(copied.estimate, run.estimate, rtol=near, atol=near)
+    scale = labs[0].check({**labs[0].settings, "unknown": ["d_s", "v_c1", "v_c2"]})
+    (answer,) = structure_in_node(node, labs[0], [scale])
+    with pytest.raises(ImpossibleChoice, match="none is known that is not zero") as refused:
+        unknowns_of(scale, labs[0]._samples)
+    assert answer["refusal"] == str(refused.value)
+
+
+def test_of_structure_samples_stay_apart_from_what_is_set():
+    lab = structure_lab(velocities(), unknown=["d_s", "v_p1"])
+    assert unknowns_of(lab.settings, lab._samples).zero == ("v_c3", "v_p3")
+    assert unknowns_of({**lab.settings, "velocities": "set"}, lab._samples).zero == ("v_c3", "v_p2", "v_p3")
+    assert lab.model["opening"]["velocities"] == "samples"
+    assert lab.model["standard"]["velocities"] == "set"
+    lab.summary = {"serial": 1}
+    assert "last tenth of the run" in lab.analysis["sentences"][0]
+    still = structure_lab(rigid([0.1, 0, 0], [0.2, 0, 0.1], [0, 0, 0]))
+    assert (still.settings["velocities"], still.settings["v_c"]) == ("set", [0.2, 0.0, 0.1])
+
+
+BROKEN = np.where(MEASURED > 0.2, np.nan, MEASURED)
+MANY = np.arange(MOST_SAMPLES + 1) / 100
+
+
+@pytest.mark.parametrize(
+    ("bring", "settings", "reason"),
+    [
+        (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
+        (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
+        (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
+        (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
+        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
+        (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
+        (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
+        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
+        (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
+        (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
+        (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
+        (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
+        (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
+    ],
+)
+def test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do(bring, settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        structure_lab(bring(), **settings)

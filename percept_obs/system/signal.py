@@ -55,10 +55,15 @@ class Signal:
                 raise ValueError(f"{len(samples)} rows of samples need as many times; only one row is a constant")
             return
         times = frozen(np.asarray(self.times, dtype=float), "the signal's times")
-        if times.shape != (len(samples),) or not (np.diff(times) > 0).all():
+        if times.shape != (len(samples),):
             raise ValueError(
-                f"the signal has {len(samples)} rows of samples and times of shape {times.shape}; "
-                "give one time a row, strictly increasing"
+                f"the signal has {len(samples)} rows of samples and times of shape {times.shape}; give one time a row"
+            )
+        if not (increasing := np.diff(times) > 0).all():
+            before, after = times[np.argmin(increasing) :][:2].tolist()
+            raise ValueError(
+                f"the signal's times go from {before:.6g} to {after:.6g} s; sort the samples, so that the times "
+                "are strictly increasing"
             )
         object.__setattr__(self, "times", times)
 

@@ -29,7 +29,6 @@ from percept_obs.labs.observer.tracks import (
     VARIES,
     fitting,
     refused_for,
-    table_for_the_page,
     table_of,
     track_for_the_page,
     typed_text,
@@ -39,6 +38,7 @@ from percept_obs.labs.observer.words import excitation_in_words, has_words, run_
 from percept_obs.labs.shared.brought import brought
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.offered import SHAPES, numbers_of, shaped_surface
+from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.sampling import (
     as_far_as_seen,
     exact_path,

@@ -10,6 +10,7 @@ from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.offer import Offer
 from percept_obs.labs.observer.texts import BLOCKS
+from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.labs.shared.typed_motion import MOST, read_motion
 from percept_obs.recording import Recording, Scenario
@@ -36,15 +37,6 @@ def track_for_the_page(recording: Recording, motion: str, surface: str, offer: O
         "kind": motion,
         "refused": refused_for(recording.motion, offer, "recording's"),
     }
-
-
-def table_for_the_page(motion: Motion, begun: float = 0.0) -> dict[str, Any]:
-    """A sampled motion in numbers, with times from when it began."""
-    signal = motion.signal
-    assert signal is not None
-    assert not callable(signal.samples)
-    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
-    return {"times": times, "rows": signal.samples.tolist()}
 
 
 def fitting(recording: Recording, surface: str) -> Settings:

@@ -11,7 +11,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
-from percept_obs.labs.points.settings import PICTURES, SCHEMA
+from percept_obs.labs.points.settings import LONGEST, PICTURES, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -33,6 +33,7 @@ from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
+from percept_obs.labs.shared.samples import is_sampled, looks_at, refuse_longer, times_of
 from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
@@ -69,7 +70,8 @@ class PointsLab(Lab):
     Parameters
     ----------
     form : PointsForm, optional
-        A form of your own that can be chosen as well, with a motion in numbers or expressions of time.
+        A form of your own that can be chosen as well, with a motion in numbers, expressions of time, or samples, such
+        as ``independent_points(affine(A, b, times), 2)``.
     **settings
         Those to open with, such as ``state="independent"``:
 
@@ -95,6 +97,8 @@ class PointsLab(Lab):
             printed = {"": {**model, "states": {**model["states"], "own": own_state_for_the_page(form)}}}
             self.schema = Schema({**SCHEMA, "state": offering(SCHEMA["state"], (*STATES, "own"))})
             opening |= {"state": "own", "points": _spread(form.points), "hidden": [None] * form.points}
+            if is_sampled(form.motion):
+                opening["duration"] = min(float(times_of(form.motion)[-1]), LONGEST)
         super().__init__(
             "points_lab",
             settings,
@@ -151,6 +155,8 @@ class PointsLab(Lab):
                 raise ValueError(f"there are {points} points; it must be {self._form.points}, as in your own form")
             if settings["motion"].strip():
                 raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
+            if is_sampled(self._form.motion):
+                refuse_longer(self._form.motion, settings["duration"])
         _refuse_motion(settings)
         refuse_P(settings, self._states(settings))
         for k, times in enumerate(hidden, 1):
@@ -173,7 +179,10 @@ class PointsLab(Lab):
         A, _ = form.coefficients(times)
         paths = 2 if settings["hold"] == "exact" else 1
         swings = swinging_at(form.numbers, times) if settings["motion"].strip() else 0.0
-        moved = LOOK_WORK * paths * looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()), swings)
+        looked = looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()), swings)
+        if is_sampled(form.motion):
+            looked = max(looked, looks_at(form.motion, settings["duration"]))
+        moved = LOOK_WORK * paths * looked
         each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
         _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
         beyond = [refusal] if (refusal := too_fast(moved)) else beyond

@@ -8,6 +8,9 @@ from percept_obs.labs.shared.typed_motion import typed_setting
 
 PICTURES = ("error", "depth", "points", "gramian")
 WEIGHTS = ("constant", "scheduled", "typed", "lyapunov", "riccati")
+LONGEST = 120.0
+"""Seconds that a run lasts at most."""
+
 _SHARE: Settings = {"low": -10, "high": 10, "usual": (-2, 2), "step": 0.05}
 _SIZE = (1.0, 1e-4, 1e4, (0.001, 100))
 _PLACES = [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9], [-0.5, 0.8, 2.7]]
@@ -58,7 +61,7 @@ SCHEMA = Schema(
     view=Number(2.0, 0.1, 100, (0.2, 4), 0.05, label="sees |y| up to"),
     hold=Choice("zero", ("zero", "first", "exact")),
     step=Number(0.05, 1e-3, 0.1, (0.002, 0.1), unit="s", label="longest step", about="the observer's longest step"),
-    duration=Number(30.0, 1, 120, (4, 60), 1, unit="s"),
+    duration=Number(30.0, 1, LONGEST, (4, 60), 1, unit="s"),
     window=Number(8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about="window of the Gramian"),
     pictures=Names(["error", "depth", "gramian"], PICTURES, label="Time charts", about="those that are shown"),
     kept=KEPT,

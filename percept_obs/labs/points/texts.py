@@ -11,6 +11,7 @@ import sympy as sp
 from percept_obs.compile import function_source
 from percept_obs.labs.shared.markup import dotted, formula, markup, row
 from percept_obs.labs.shared.printed import Parts, Texts
+from percept_obs.labs.shared.samples import is_sampled, refuse_unfit, samples_for_the_page
 from percept_obs.labs.shared.typed_motion import Typed
 from percept_obs.points import PointsForm, body_with_origin, independent_points, point_block, rigid_body
 from percept_obs.points.kernel import arrays
@@ -120,7 +121,8 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
     Raises
     ------
     ValueError
-        If the page cannot move it: its motion is not known, is sampled, or couples vectors of three states.
+        If the page cannot move it: its motion is not known, a function that is not printed, samples that do not suit a
+        run, or couples vectors of three states.
     """
     motion, n = form.motion, form.states
     rows, columns = form.layout.rows, form.layout.columns
@@ -129,19 +131,25 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
             f"the form has {n} states and {form.points} points; the lab moves vectors of three states, each by itself, "
             f"of at most {MOST_POINTS} points: order the states so that A has only blocks of 3 x 3 on its diagonal"
         )
+    sampled = is_sampled(motion)
+    if sampled:
+        refuse_unfit(motion)
+    given = motion.parameters if sampled else (TIME, *SHARES)
     expressions = tuple(expression.xreplace(motion.values) for expression in form.layout.expressions)
-    left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - {TIME}))
+    left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - set(given)))
     if left:
         raise ValueError(
-            f"the form's motion has no expression in time for {', '.join(left)}; give numbers, or expressions of TIME"
+            f"the form's motion has no expression in time for {', '.join(left)}; give numbers, samples with their "
+            "times, or expressions of TIME"
         )
     if form.surface != SURFACE:
         raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")
     layout = {**_arrays(form, n, form.points), "names": list(form.names)}
     return {
-        "coefficients": function_source((TIME, *SHARES), expressions),
+        "coefficients": function_source(given, expressions),
         "width": len(expressions),
         "layouts": [*[None] * (form.points - 1), layout],
+        **({"samples": samples_for_the_page(motion)} if sampled else {}),
     }
 
 

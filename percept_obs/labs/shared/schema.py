@@ -108,13 +108,14 @@ class Number(Kind):
 
 @dataclass(frozen=True)
 class Choice(Kind):
-    """One of several names."""
+    """One of several names; `reason` says why there are no others, where that is not plain."""
 
     opening: str = ""
     names: Sequence[str] = ()
+    reason: str = ""
 
     def _expected(self) -> str:
-        return f"one of {', '.join(self.names)}"
+        return f"one of {', '.join(self.names)}{self.reason and f'; {self.reason}'}"
 
     def _allows(self, value: Any) -> bool:
         return isinstance(value, str) and value in self.names

@@ -1,20 +1,23 @@
-"""What somebody brings to the structure lab: a choice of unknowns, its form, or a scenario."""
+"""What somebody brings to the structure lab: a choice of unknowns, its form, a scenario, or velocities."""
 
 from __future__ import annotations
 
 from percept_obs.labs.shared.brought import same_system
+from percept_obs.labs.shared.samples import times_of
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.labs.structure.settings import STANDARD
+from percept_obs.labs.structure.samples import sampled
+from percept_obs.labs.structure.settings import LONGEST, STANDARD
 from percept_obs.labs.structure.texts import PHASES
 from percept_obs.structure import StructureAndMotion, StructureScenario
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import Motion
 
-Given = StructureAndMotion | PartitionedSystem | StructureScenario
-"""A choice, a form of one, or a scenario, which has one."""
+Given = StructureAndMotion | PartitionedSystem | StructureScenario | Motion
+"""A choice, a form of one, a scenario, which has one, or the velocities of camera and object."""
 
 
-def opening_of(given: Given) -> Settings:
-    """The settings that a lab of it opens with.
+def opening_of(given: Given) -> tuple[Settings, Motion | None]:
+    """The settings that a lab of it opens with, and the velocities in samples, if it brings some.
 
     Raises
     ------
@@ -24,20 +27,24 @@ def opening_of(given: Given) -> Settings:
     Examples
     --------
     >>> from percept_obs.structure import StructureAndMotion
-    >>> opening_of(StructureAndMotion(("d_s", "v_p1"), zero=("v_p2",)))["unknown"]
+    >>> opening_of(StructureAndMotion(("d_s", "v_p1"), zero=("v_p2",)))[0]["unknown"]
     ['d_s', 'v_p1']
     """
     if isinstance(given, StructureScenario):
-        return _of_choice(given.choice) | _of_scenario(given)
+        settings, samples = _of_motion(given.motion, given.duration)
+        return _of_choice(given.choice) | settings | _of_scenario(given), samples
+    if isinstance(given, Motion):
+        return _of_motion(given)
     choice = given.view if isinstance(given, PartitionedSystem) else given
     if not isinstance(choice, StructureAndMotion):
         raise ValueError(
-            f"form is {given!r}; it must be a StructureAndMotion, its form, or a StructureScenario, for this lab is of "
-            "a point with a scaled inverse depth; bring other forms to observer_lab or points_lab"
+            f"form is {given!r}; it must be a StructureAndMotion, its form, a StructureScenario, or a motion from "
+            "rigid, for this lab is of a point with a scaled inverse depth; bring other forms to observer_lab or "
+            "points_lab"
         )
     if isinstance(given, PartitionedSystem) and not same_system(given, choice.form):
         raise ValueError(f"the form is not that of its {choice.name}; bring StructureAndMotion(...).form as it is")
-    return _of_choice(choice)
+    return _of_choice(choice), None
 
 
 def _of_choice(choice: StructureAndMotion) -> Settings:
@@ -52,19 +59,19 @@ def _of_choice(choice: StructureAndMotion) -> Settings:
 
 
 def _of_scenario(scenario: StructureScenario) -> Settings:
-    """Where its point begins and how it moves."""
-    signal = scenario.motion.signal
+    """Where its point begins, and how long it is seen."""
     if scenario.surface.name != "pinhole":
         raise ValueError(f"the scenario is on the {scenario.surface.name}; this lab is on the pinhole")
-    if signal is None or not signal.constant:
-        raise ValueError(
-            "the scenario's motion varies; bring its choice, and give what varies in expressions of time, such as "
-            'motion="v_c1 = 0.3 cos(t)"'
-        )
-    numbers = scenario.motion.known(0.0)[0].tolist()
     X, Y, Z = map(float, scenario.position)
     return {
         **{"ybar": [X / Z, Y / Z, 1 / (scenario.scale * Z)], "scale": float(scenario.scale)},
-        **{"w": numbers[:3], "v_c": numbers[3:6], "v_p": numbers[6:], "v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3},
         "duration": float(scenario.duration),
     }
+
+
+def _of_motion(motion: Motion, duration: float | None = None) -> tuple[Settings, Motion | None]:
+    """The numbers of constant velocities; of others their samples, for as long as they last."""
+    if samples := sampled(motion, duration):
+        return {"velocities": "samples", "duration": min(float(times_of(samples)[-1]), LONGEST)}, samples
+    w, v_c, v_p = motion.known(0.0).reshape(3, 3).tolist()
+    return {"w": w, "v_c": v_c, "v_p": v_p, "v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3}, None

@@ -19,6 +19,7 @@ from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_
 from percept_obs.labs.shared.common_settings import gains, offering, over
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
+from percept_obs.labs.shared.samples import looks_at, samples_for_the_page
 from percept_obs.labs.shared.sampling import (
     as_far_as_seen,
     exact_path,
@@ -31,7 +32,8 @@ from percept_obs.labs.shared.sampling import (
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
 from percept_obs.labs.structure.given import Given, opening_of
-from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS
+from percept_obs.labs.structure.samples import refuse_samples, zero_in
+from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.words import late_errors
 from percept_obs.observers import Observer
@@ -67,8 +69,10 @@ class StructureLab(Lab):
 
     Parameters
     ----------
-    form : StructureAndMotion, its form, or StructureScenario, optional
-        A choice or a scenario of your own, with which the lab opens.
+    form : StructureAndMotion, its form, StructureScenario, or Motion, optional
+        A choice or a scenario of your own, with which the lab opens, or the velocities of camera and object from
+        `rigid`.  Those that are sampled, ``rigid(w, v_c, v_p, times)``, can be chosen beside those that the lab sets;
+        a scenario's functions of time are sampled every 10 ms.
     observers : list, optional
         Names, and observers of your own: functions of a form, such as `percept_obs.observers.family.family` makes.
     **settings
@@ -82,14 +86,24 @@ class StructureLab(Lab):
     >>> lab = structure_lab(duration=5)
     >>> lab.settings["duration"]
     5.0
+
+    Velocities that a robot has measured, in m/s at times in s that begin at 0:
+
+    >>> import numpy as np
+    >>> from percept_obs import rigid
+    >>> times = np.linspace(0, 4, 41)
+    >>> v_c = np.column_stack([np.sin(times), 0.2 + 0 * times, -0.1 * times])
+    >>> lab = structure_lab(rigid([0, 0, 0], v_c, [0, 0, 0], times), unknown=["v_p1", "v_p2"])
+    >>> lab.settings["velocities"], lab.settings["duration"]
+    ('samples', 4.0)
     """
 
     schema = SCHEMA
     title = "Structure and motion"
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
-        if form is not None:
-            settings = opening_of(form) | settings
+        found, self._samples = ({}, None) if form is None else opening_of(form)
+        settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._own = (None, {}) if observers is None else brought(observers, ours)
         if asked is not None:
@@ -100,7 +114,9 @@ class StructureLab(Lab):
         standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
         named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(
-            SCHEMA | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
+            SCHEMA
+            | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
+            | ({"velocities": VELOCITIES} if self._samples else {})
         )
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
         super().__init__(
@@ -110,6 +126,7 @@ class StructureLab(Lab):
             opening,
             texts=with_texts("structure_lab", self._added),
             own={name: make.for_the_page() for name, make in self._own.items()},
+            samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
             pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,
@@ -121,7 +138,7 @@ class StructureLab(Lab):
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
-        return runs(self.settings, self._own)
+        return runs(self.settings, self._own, self._samples)
 
     def typed(self, text: str) -> Typed:
         """The motion that a text describes; a ValueError if it cannot be read."""
@@ -141,6 +158,8 @@ class StructureLab(Lab):
             raise ValueError(
                 f"{steps:.3g} steps are too many; shorten the duration, or take at most {MOST_STEPS} steps"
             )
+        if samples := _used(settings, self._samples):
+            refuse_samples(samples, settings)
         if settings["motion"].strip():
             typed_in(settings, "motion", BLOCKS).refuse_poles(
                 settings["duration"], lambda times: _velocities(settings, times)
@@ -156,14 +175,16 @@ class StructureLab(Lab):
         settings = self.settings
         duration = settings["duration"]
         turning, swings = np.abs([settings["w"]]), settings["rate"]
-        if settings["motion"].strip():
+        samples = _used(settings, self._samples)
+        if settings["motion"].strip() or samples:
             times = np.linspace(0, duration, INSTANTS)
-            known = motion_of(settings).known
+            known = motion_of(settings, samples).known
             turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
         fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
         moved = exact_path(duration, settings["period"], fastest)
-        if _swings(settings):
-            moved += LOOK_WORK * looks(duration, fastest, swings)
+        if _swings(settings) or samples:
+            least = looks_at(samples, duration) if samples else 0
+            moved += LOOK_WORK * max(looks(duration, fastest, swings), least)
         if refusal := too_short(duration, settings["period"]) or too_fast(moved):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]
@@ -172,7 +193,7 @@ class StructureLab(Lab):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = runs({**settings, "observers": told}, self._own) if told else {}
+                found = runs({**settings, "observers": told}, self._own, self._samples) if told else {}
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
@@ -216,8 +237,13 @@ def _steps(settings: Settings) -> float:
     return float(settings["duration"] / min(settings["period"], settings["step"]))
 
 
-def unknowns_of(settings: Settings) -> StructureAndMotion:
-    """What is unknown; what is known and stays 0 is known to be zero."""
+def _used(settings: Settings, samples: Motion | None) -> Motion | None:
+    """The samples, where the settings use them."""
+    return samples if settings["velocities"] == "samples" else None
+
+
+def unknowns_of(settings: Settings, samples: Motion | None = None) -> StructureAndMotion:
+    """What is unknown; what is known and stays 0 is known to be zero, as it is where there are samples."""
     values = {
         f"{name}{axis}": settings[name][axis - 1] or settings[f"{name}_swing"][axis - 1]
         for name in ("v_c", "v_p")
@@ -226,15 +252,19 @@ def unknowns_of(settings: Settings) -> StructureAndMotion:
     if settings["motion"].strip():
         changed = read_motion(settings["motion"], BLOCKS).changed
         values |= {name: int(entry != 0) for name, entry in changed.items() if name in values}
+    if used := _used(settings, samples):
+        values = {name: int(name not in zero_in(used)) for name in values}
     unknown = tuple(settings["unknown"])
     earlier = ("d_s",) if settings["earlier"] and "d_s" not in unknown else ()
     return StructureAndMotion(unknown, tuple(n for n, v in values.items() if v == 0 and n not in unknown), earlier)
 
 
-def runs(settings: Settings, own: Mapping[str, OwnObserver] = MappingProxyType({})) -> dict[str, Run]:
-    """Runs that lab settings stand for, by the observers' names."""
-    unknowns = unknowns_of(settings)
-    recording = _recorded(settings, unknowns)
+def runs(
+    settings: Settings, own: Mapping[str, OwnObserver] = MappingProxyType({}), samples: Motion | None = None
+) -> dict[str, Run]:
+    """Runs that lab settings stand for, by the observers' names, with what was brought to the lab."""
+    unknowns = unknowns_of(settings, samples)
+    recording = _recorded(settings, unknowns, _used(settings, samples))
     start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
     found = {}
     for name in settings["observers"]:
@@ -249,8 +279,10 @@ def _swings(settings: Settings) -> bool:
     return bool(swings or settings["motion"].strip())
 
 
-def motion_of(settings: Settings) -> Motion:
-    """The true motion, constant unless a velocity swings or is typed."""
+def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
+    """The true motion: the samples, or else constant unless a velocity swings or is typed."""
+    if samples:
+        return samples
     typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
 
     def known(times: Array) -> Array:
@@ -273,20 +305,20 @@ def _velocities(settings: Settings, times: Array) -> Array:
 _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 
-def _recorded(settings: Settings, unknowns: StructureAndMotion) -> Recording:
+def _recorded(settings: Settings, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
     """What is measured, as far as the point stays in front of the camera."""
     keys = ("ybar", "scale", *VECTORS, "motion", "rate", "noise", "bias", "drift", "seed", "period", "duration")
-    return _recorded_once(json.dumps({key: settings[key] for key in keys}), unknowns)
+    return _recorded_once(json.dumps({key: settings[key] for key in keys}), unknowns, samples)
 
 
 @lru_cache(maxsize=4)
-def _recorded_once(text: str, unknowns: StructureAndMotion) -> Recording:
+def _recorded_once(text: str, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
     settings = json.loads(text)
     (y1, y2, ybar3), scale = settings["ybar"], settings["scale"]
     depth = 1 / (scale * ybar3)
     place = (y1 * depth, y2 * depth, depth)
     scenario = StructureScenario(
-        "the lab's", motion_of(settings), place, settings["duration"], pinhole(), scale=scale, choice=unknowns
+        "the lab's", motion_of(settings, samples), place, settings["duration"], pinhole(), scale=scale, choice=unknowns
     )
     make = NOISES[settings["noise"]["kind"]]
     source = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])

@@ -1,5 +1,7 @@
 """What may be set in the lab of structure and motion."""
 
+from dataclasses import replace
+
 from percept_obs.labs.shared.common_settings import KEPT, SEED, noise, over
 from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -14,6 +16,9 @@ MAPPED = (
 )
 """What a map may go over besides gains."""
 
+LONGEST = 100.0
+"""Seconds that a run lasts at most."""
+
 VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
 STANDARD_GAINS: dict[str, dict[str, float]] = {
     "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
@@ -27,6 +32,14 @@ _SPEED: Settings = {"unit": "m/s", "usual": (-1, 1), "step": 0.01}
 _SWING: Settings = {"unit": "m/s", "usual": (-0.5, 0.5), "step": 0.01}
 _PLACE: Settings = {"usual": (-1, 1), "step": 0.01}
 _CAMERA, _OBJECT = ([f"{letter}{axis}" for axis in (1, 2, 3)] for letter in ("v_c", "v_p"))
+
+VELOCITIES = Choice(
+    "set",
+    ("set", "samples"),
+    label="Velocities",
+    about='"set" by the numbers and expressions here, or "samples", where you bring some',
+)
+"""Where the true velocities come from, in a lab that has samples."""
 
 SCHEMA = Schema(
     unknown=Names([], QUANTITIES, 0, about=f"names of what is not known, of {', '.join(QUANTITIES)}"),
@@ -46,6 +59,11 @@ SCHEMA = Schema(
     v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
     w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
+    velocities=replace(
+        VELOCITIES,
+        names=("set",),
+        reason='there is "samples" too where the lab is opened with rigid(w, v_c, v_p, times)',
+    ),
     motion=typed_setting("v_c1 = 0.2 cos(t)^3; w3 = 0.1 sin(2t)"),
     rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),
     noise=noise(
@@ -56,7 +74,7 @@ SCHEMA = Schema(
     drift=Number(0.0, -1, 1, (-0.001, 0.001), 1e-5, unit="1/s", label="drift of ȳ3"),
     seed=SEED,
     period=Number(1e-3, 1e-4, 1, (1e-4, 0.1), unit="s"),
-    duration=Number(3.0, 0.1, 100, (1, 60), 0.5, unit="s"),
+    duration=Number(3.0, 0.1, LONGEST, (1, 60), 0.5, unit="s"),
     hold=Choice("first", ("zero", "first", "exact")),
     step=Number(1e-3, 1e-5, 0.1, (1e-4, 0.01), unit="s", label="longest step", about="the observers' longest step"),
     start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),

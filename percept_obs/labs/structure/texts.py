@@ -130,6 +130,7 @@ def case_of(number: int) -> dict[str, Any]:
     stated = corollary.choice()
     fixed: dict[str, Any] = {
         "motion": "",
+        "velocities": "set",
         "unknown": list(stated.unknown),
         "earlier": "d_s" in stated.earlier,
         "w": [0.0] * 3,

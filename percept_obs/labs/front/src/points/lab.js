@@ -1,5 +1,6 @@
 // The lab of many points: points of one state before a moving camera, and an observer that follows them.
 
+import { readable } from "../common/model/scales.js";
 import { FormulaSheet, lettered } from "../common/page/formulas.js";
 import { Live } from "../common/page/live.js";
 import { Scene } from "../common/page/scene.js";
@@ -86,7 +87,11 @@ export class PointsLab extends Live {
 
   /** With as many points as the state may have. */
   fitted(asked) {
-    const { layouts } = this.model.states[asked.state];
+    const { layouts, samples } = this.model.states[asked.state];
+    if (samples && asked.duration > samples.until) {
+      const { settings, why } = this.fitted({ ...asked, duration: samples.times.at(-1) });
+      return { settings, why: `${why} The samples of your motion end at ${readable(samples.times.at(-1))} s.`.trim() };
+    }
     if (layouts[asked.points.length - 1]) return { settings: asked, why: "" };
     const count = layouts.findIndex(Boolean) + 1;
     const points = Array.from({ length: count }, (_, k) => asked.points[k] ?? placeBeside(asked.points[0], k));

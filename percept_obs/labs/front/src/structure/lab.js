@@ -9,6 +9,7 @@ import { Scene } from "../common/page/scene.js";
 import { SettingsMap } from "../common/page/settings_map.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { axesOf } from "./model/axes.js";
+import { isSampled } from "./model/camera.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { keyOf, StructureKernels } from "./model/kernels.js";
@@ -38,11 +39,24 @@ export class StructureLab extends Live {
     this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {
       systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
-      numbersOf: ({ scale, v_c, v_p, w, ybar: [y1, y2, ybar3] }) => ({ d_s: scale, y1, y2, ybar3, ...lettered({ v_c, v_p, w }) }),
+      numbersOf: (settings) => this.numbersOf(settings),
     });
     this.choice = new ChoiceOfUnknowns(this.model, this);
     this.panel = new StructurePanel(this, this.choice);
     this.open(place);
+  }
+
+  /** The numbers of the equations' letters; of samples those at the start. */
+  numbersOf(settings) {
+    const { scale, v_c, v_p, w, ybar: [y1, y2, ybar3] } = settings;
+    return { d_s: scale, y1, y2, ybar3, ...lettered(isSampled(settings) ? this.startOf(settings) : { v_c, v_p, w }) };
+  }
+
+  /** The velocities at the start of the run. */
+  startOf(settings) {
+    const { rows } = this.results.engines[0].camera.velocities(settings, this.kernels.of(settings) ?? {}, [0]);
+    const [w, v_c, v_p] = [0, 3, 6].map((first) => Array.from(rows.subarray(first, first + 3)));
+    return { w, v_c, v_p };
   }
 
   moveStart([y1, y2]) {
@@ -53,8 +67,10 @@ export class StructureLab extends Live {
     return withoutRefused(asked, this.kernels.refused(asked), this.model.observers, "ideal");
   }
 
-  clash({ unknown, duration, period, step }) {
-    const { mostSteps, schema } = this.model;
+  clash({ velocities, motion, unknown, duration, period, step }) {
+    const { mostSteps, samples, schema } = this.model;
+    if (isSampled({ velocities }) && motion.trim()) return "The velocities are those of your samples, and none can be typed.";
+    if (isSampled({ velocities }) && duration > samples.until) return `The velocities are sampled up to ${samples.times.at(-1)} s only.`;
     if (!same(unknown, schema.unknown.names.filter((name) => unknown.includes(name)))) return `Unknowns come in the order ${schema.unknown.names.join(", ")}.`;
     return duration / Math.min(period, step) > mostSteps ? `A run has ${mostSteps} steps at most.` : "";
   }

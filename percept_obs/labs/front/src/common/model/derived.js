@@ -1,6 +1,6 @@
 // What follows from a result's rows of numbers: made when it is first asked for, and kept as long as they are.
 
-import { column } from "./tables.js";
+import { column, knownAt, withColumns } from "./tables.js";
 
 const kept = new WeakMap();
 
@@ -14,6 +14,11 @@ export function derived(rows, name, make) {
 
 export function columnOf(rows, width, which) {
   return derived(rows, `column ${which}`, () => column(rows, width, which));
+}
+
+/** Sampled numbers at some times, as rows: between two samples they are on a line. */
+export function sampledAt(samples, times) {
+  return knownAt(derived(samples, "columns", () => withColumns(samples)), [], times);
 }
 
 /** Distances of rows whose last column is inverse: none where that is not positive. */

@@ -1,5 +1,14 @@
 // What a computation keeps from one run to the next. Nothing of a room is ever handed out.
 
+const serials = new WeakMap();
+let last = 0;
+
+/** A number that stands for an object among inputs: two grids of one length and end may differ between. */
+export function serialOf(object) {
+  if (!serials.has(object)) serials.set(object, (last += 1));
+  return serials.get(object);
+}
+
 /** Values that are made once for the same inputs, and arrays that are used again. */
 export class Memory {
   constructor() {

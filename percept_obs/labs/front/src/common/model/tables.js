@@ -135,6 +135,11 @@ export function arriving(columns, index, count, room = fresh) {
   return table;
 }
 
+/** A table of sampled numbers, as Python tells it, with a list of each of its columns. */
+export function withColumns({ times, rows }) {
+  return { times, rows, columns: rows[0].map((_, p) => Float64Array.from(rows, (row) => row[p])) };
+}
+
 /** Numbers known at the instants of a grid's steps, or the one row that is constant. */
 export function known(motion, shape, grid) {
   if (motion.along) return { rows: motion.along(grid, shape), width: motion.count + shape.length, varying: true };

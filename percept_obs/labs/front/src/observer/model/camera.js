@@ -1,7 +1,8 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
-import { known } from "../../common/model/tables.js";
+import { serialOf } from "../../common/model/memory.js";
+import { known, withColumns } from "../../common/model/tables.js";
 import { isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
 export class Camera extends PointCamera {
@@ -38,7 +39,7 @@ export class Camera extends PointCamera {
     const start = settings.X0;
     if (motion.times?.length === 1) return { start, known: { rows: motion.rows[0], varying: false }, shape };
     const { A, b, motion: text, scenario } = settings;
-    const place = [A, b, text, scenario, lines.grid.length, lines.grid.at(-1)];
+    const place = [A, b, text, scenario, serialOf(lines.grid)];
     return { start, known: this.memory.once("path", place, () => known(motion, [], lines.grid)), shape };
   }
 
@@ -72,10 +73,6 @@ export class Camera extends PointCamera {
     if (table) return { motion: this.memory.once("table", [settings.scenario], () => withColumns(table)), shape };
     return { motion: isTyped(settings) ? this.typedMotion(settings, functions) : constantMotion(settings), shape };
   }
-}
-
-function withColumns({ times, rows }) {
-  return { times, rows, columns: rows[0].map((_, p) => Float64Array.from(rows, (row) => row[p])) };
 }
 
 /** Whether the motion of settings is not the same at all times. */

@@ -1,6 +1,7 @@
 // Points in motion and the camera that sees them: the same numbers as record() in Python.
 
 import { clockOf, errorOf } from "../../common/model/camera.js";
+import { sampledAt } from "../../common/model/derived.js";
 import { draws } from "../../common/model/random.js";
 import { instants } from "../../common/model/tables.js";
 import { ENTRIES, flowOf, kindsOf } from "./flow.js";
@@ -18,7 +19,8 @@ export class Camera {
     const { memory } = this;
     const { settings, points } = scene;
     const { period, duration, noise, seed, dropout, view, hidden } = settings;
-    const { time, plant } = clockOf(memory, period, duration);
+    const { state, breaks } = this.kinks(settings);
+    const { time, plant } = clockOf(memory, period, duration, state, breaks);
     const truth = this.move(scene, "samples", [], plant);
     const { images, depths } = this.project(scene, truth);
     const drawn = memory.once("draws", [noise.kind, seed, time.length, points], () =>
@@ -98,19 +100,15 @@ export class Camera {
   }
 
   /** Numbers of the coefficients at some times, a row each. */
-  known({ settings, functions, width }, part, clock, places) {
-    const { turning, spin, input, velocity } = settings;
-    return this.memory.once(`known ${part}`, [...placeOf(settings), clock], () => {
-      const rows = new Float64Array(places.length * width);
-      const out = new Float64Array(width);
-      const x = Float64Array.of(0, turning, spin, input, ...velocity);
-      for (let k = 0; k < places.length; k++) {
-        x[0] = places[k];
-        functions.coefficients(x, out);
-        rows.set(out, k * width);
-      }
-      return rows;
-    });
+  known({ settings, functions }, part, clock, places) {
+    return this.memory.once(`known ${part}`, [...placeOf(settings), clock], () =>
+      coefficientsAt(this.model, settings, functions, places),
+    );
+  }
+
+  /** When the motion of a state has kinks: at the samples that somebody brought. */
+  kinks({ state }) {
+    return { state, breaks: this.model.states[state].samples?.times ?? [] };
   }
 
   /** The state whose points are at the given places; of several the smallest. */
@@ -118,6 +116,20 @@ export class Camera {
     const inverse = this.memory.once("begin", [settings.state, points], () => pseudoInverse(rowsOf(layout, n), 3 * points, n));
     return product(inverse, settings.points.flat(), n);
   }
+}
+
+/** Numbers of a state's coefficients at some times, a row each. */
+export function coefficientsAt({ states }, { state, turning, spin, input, velocity }, { coefficients }, places) {
+  const { width, samples } = states[state];
+  const rows = new Float64Array(places.length * width);
+  const out = new Float64Array(width);
+  const x = Float64Array.of(0, turning, spin, input, ...velocity);
+  const given = samples && sampledAt(samples, places);
+  for (let k = 0; k < places.length; k++) {
+    x[0] = places[k];
+    rows.set(coefficients(given ? given.rows.subarray(k * given.width, (k + 1) * given.width) : x, out), k * width);
+  }
+  return rows;
 }
 
 /** The settings that motion and samples' times depend on; what else a clock depends on is added where it is made. */

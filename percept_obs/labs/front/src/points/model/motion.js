@@ -1,16 +1,14 @@
 // Where the points of a state are at a time, and how fast they would move if all of the state were nearer or farther.
 
 import { valueBetween } from "../../common/model/playback.js";
+import { coefficientsAt } from "./camera.js";
 import { kindsOf } from "./flow.js";
 
 /** Of each point: its place, and the velocity of a copy so many times as far, which moves by the same A(t) and v(t). */
 export function motionAt(lab, shown, at) {
   const { settings, n, points, truth, time } = shown;
-  const { layouts, width } = lab.model.states[settings.state];
-  const layout = layouts[points - 1];
-  const { turning, spin, input, velocity } = settings;
-  const known = new Float64Array(width);
-  lab.kernels.of(settings).coefficients(Float64Array.of(valueBetween(time, 1, 0, at), turning, spin, input, ...velocity), known);
+  const layout = lab.model.states[settings.state].layouts[points - 1];
+  const known = coefficientsAt(lab.model, settings, lab.kernels.of(settings), [valueBetween(time, 1, 0, at)]);
   const { kinds, kindOf } = kindsOf(layout, n);
   const state = Array.from({ length: n }, (_, i) => valueBetween(truth, n, i, at));
   const [linear, constant] = [new Float64Array(n), new Float64Array(n)];

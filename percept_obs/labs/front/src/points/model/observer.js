@@ -65,7 +65,8 @@ export class Observer {
     const table = memory.room("held", (EACH + 1) * wide * steps.length);
     let exact = null;
     if (hold === "exact") {
-      const plant = memory.once("exact plant", [period, duration, step], () => plantGrid(places));
+      const { state, breaks } = camera.kinks(settings);
+      const plant = memory.once("exact plant", [state, period, duration, step], () => plantGrid(places, breaks));
       exact = camera.project(scene, camera.move(scene, "signal", [step], plant)).images;
     }
     for (let k = 0; k + 1 < time.length; k++) {

@@ -1,5 +1,6 @@
 // The controls of the lab of many points: each reads from the settings and changes them.
 
+import { readable } from "../../common/model/scales.js";
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { button, element } from "../../common/page/controls.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
@@ -69,10 +70,17 @@ export class Panel extends Fieldsets {
         this.numberIf("error", ({ start }) => start === "error"),
       ),
       topic("camera", "Camera", this.choice("noise.kind"), ...this.numbers("seed", "period", "dropout", "view"), this.choice("hold")),
-      topic("pictures", "Charts", this.pictures(), ...this.numbers("duration", "window")),
+      topic("pictures", "Charts", this.pictures(), this.duration(), this.number("window")),
     ];
     this.body = element("div", { class: "panel" }, ...body);
     this.controls.push(this.list);
+  }
+
+  /** At most as long as the samples of one's own motion. */
+  duration() {
+    const { samples } = this.model.states[OWN] ?? {};
+    const allowed = (value) => !samples || this.lab.settings.state !== OWN || value <= samples.until;
+    return this.number("duration", { allowed, ...(samples && { reason: `and your samples end at ${readable(samples.times.at(-1))} s` }) });
   }
 
   weight() {

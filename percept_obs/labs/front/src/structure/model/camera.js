@@ -1,14 +1,21 @@
 // What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
+import { sampledAt } from "../../common/model/derived.js";
+import { serialOf } from "../../common/model/memory.js";
 import { instants } from "../../common/model/tables.js";
 import { isTyped } from "../../common/model/typed.js";
 
 const NAMES = ["v_c", "v_p"];
 
 /** The parts of settings that the true path depends on. */
-export function motionOf({ v_c, v_p, v_c_swing, v_p_swing, rate, w, motion }) {
-  return { v_c, v_p, v_c_swing, v_p_swing, rate, w, motion };
+export function motionOf({ velocities, v_c, v_p, v_c_swing, v_p_swing, rate, w, motion }) {
+  return { velocities, v_c, v_p, v_c_swing, v_p_swing, rate, w, motion };
+}
+
+/** Whether the velocities are the samples that somebody brought. */
+export function isSampled({ velocities }) {
+  return velocities === "samples";
 }
 
 /** Whether a velocity swings or is typed, so that it is not the same at all times. */
@@ -30,8 +37,13 @@ export class StructureCamera extends PointCamera {
     return [motionOf(settings), ybar, scale, period, duration];
   }
 
+  kinks(settings) {
+    return isSampled(settings) ? { name: "samples", breaks: this.model.samples.times } : super.kinks(settings);
+  }
+
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
   velocities(settings, { swinging, typed }, times) {
+    if (isSampled(settings)) return sampledAt(this.model.samples, times);
     const varying = varies(settings);
     const count = varying ? times.length : 1;
     const rows = new Float64Array(9 * count);
@@ -62,7 +74,7 @@ export class StructureCamera extends PointCamera {
   path(settings, functions, lines) {
     const { ybar, scale } = settings;
     const depth = 1 / (scale * ybar[2]);
-    const place = [motionOf(settings), lines.grid.length, lines.grid.at(-1)];
+    const place = [motionOf(settings), serialOf(lines.grid)];
     const known = this.memory.once("velocities", place, () => this.velocities(settings, functions, instants(lines.grid)));
     return { start: [ybar[0] * depth, ybar[1] * depth, depth], known, shape: [] };
   }

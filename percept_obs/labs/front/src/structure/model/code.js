@@ -2,7 +2,7 @@
 
 import { broughtBy, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
-import { varies } from "./camera.js";
+import { isSampled, varies } from "./camera.js";
 import { isZero, valuesAtStart } from "./kernels.js";
 
 const MAKERS = {
@@ -22,13 +22,11 @@ export function pythonOf(shown, model) {
     ...(earlier && !unknown.includes("d_s") ? ['earlier=("d_s",)'] : []),
   ];
   if (refusal) return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
-  const swings = varies(settings);
   const brought = broughtBy(model.own, settings.observers);
-  const constant = (which) => list(valuesAtStart(settings, which, model));
   const make = NOISES[noise.kind];
   const lines = [
     ...brought.lines,
-    ...(isTyped(settings) ? motionThatIsTyped(settings, model) : swings ? motionThatSwings(settings, model.phases) : [`motion = rigid(${list(settings.w)}, ${constant("v_c")}, ${constant("v_p")})`]),
+    ...motionIn(settings, model),
     `depth = 1 / (${scale} * ${ybar[2]})`,
     `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
     `choice = StructureAndMotion(${options.join(", ")})`,
@@ -43,12 +41,21 @@ export function pythonOf(shown, model) {
   const how = [...start, `hold="${settings.hold}"`, `step=${settings.step}`];
   lines.push(...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }));
   const wanted = {
-    percept_obs: [make, "StructureAndMotion", "pinhole", "record", "rigid", "track"],
+    percept_obs: [make, "StructureAndMotion", "pinhole", "record", "track", ...(isSampled(settings) ? [] : ["rigid"])],
     "percept_obs.observers": new Set(settings.observers.filter((name) => !model.own[name]).map((name) => makerOf(name)[0])),
     ...brought.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
-  return `${swings ? "import math\n\n" : ""}${imports(wanted)}\n${lines.join("\n")}\n`;
+  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
+  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
+}
+
+function motionIn(settings, model) {
+  if (isSampled(settings)) return ["# motion = rigid(...), the velocities that you gave to the lab"];
+  if (isTyped(settings)) return motionThatIsTyped(settings, model);
+  if (varies(settings)) return motionThatSwings(settings, model.phases);
+  const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(valuesAtStart(settings, which, model)));
+  return [`motion = rigid(${list(settings.w)}, ${v_c}, ${v_p})`];
 }
 
 /** Velocities as numbers and swings set them, and what was typed of these. */

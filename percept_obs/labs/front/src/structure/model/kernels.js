@@ -2,6 +2,7 @@
 
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { isTyped, typedModule } from "../../common/model/typed.js";
+import { isSampled } from "./camera.js";
 
 /** Name of what is unknown, as in texts.py: its quantities, and whether d_s is known from an earlier stage only. */
 export function keyOf({ unknown, earlier }) {
@@ -9,7 +10,8 @@ export function keyOf({ unknown, earlier }) {
 }
 
 /** Whether a velocity such as v_c1 is zero and stays so. */
-export function isZero(settings, name, { written }) {
+export function isZero(settings, name, { written, samples }) {
+  if (isSampled(settings)) return samples.zero.includes(name);
   const typed = isTyped(settings) ? written[settings.motion] : null;
   if (typed?.python?.[name] !== undefined) return typed.zero.includes(name);
   const [which, axis] = [name.slice(0, 3), Number(name.slice(3)) - 1];

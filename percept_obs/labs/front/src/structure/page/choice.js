@@ -142,10 +142,7 @@ export class ChoiceOfUnknowns {
   /** The determinant's number at the start of the run. */
   fill({ settings, guard, problem }) {
     const { ybar, scale } = settings;
-    const { kernels, results } = this.lab;
-    const { rows } = results.engines[0].camera.velocities(settings, kernels.of(settings), [0]);
-    const [w, v_c, v_p] = [0, 3, 6].map((first) => Array.from(rows.subarray(first, first + 3)));
-    const at = { d_s: scale, ybar3: ybar[2], y1: ybar[0], y2: ybar[1], ...lettered({ w, v_c, v_p }) };
+    const at = { d_s: scale, ybar3: ybar[2], y1: ybar[0], y2: ybar[1], ...lettered(this.lab.startOf(settings)) };
     this.determinant.putIn((_, letter) => at[letter]);
     const text = problem ? "" : ` = ${readable(guard.determinants[0])} at the start`;
     if (this.value.textContent !== text) this.value.textContent = text;

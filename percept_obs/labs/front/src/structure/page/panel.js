@@ -1,8 +1,10 @@
 // The controls of the structure lab: each reads from the settings and changes them.
 
+import { readable } from "../../common/model/scales.js";
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
 import { axesOf } from "../model/axes.js";
+import { isSampled } from "../model/camera.js";
 import { checkbox, element } from "../../common/page/controls.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
 import { typedField } from "../../common/page/typed.js";
@@ -17,6 +19,7 @@ export const WORDS = {
   v_p_swing: { name: "swing {}", label: "swing of {}" },
   ybar: { name: "start {}", label: "start {}" },
   w: { label: "turning {}" },
+  velocities: { choices: { set: "set here", samples: "your samples" } },
   noise: NOISE,
   start: { choices: { own: "the first sample", zero: "zero" } },
   hold: HOLD,
@@ -30,7 +33,7 @@ export const WORDS = {
 
 /** What the lab calls a setting when it says which have changed. */
 export const NAMES = {
-  motion: "the motion that is typed", unknown: "what is unknown", earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
+  velocities: "where the velocities come from", motion: "the motion that is typed", unknown: "what is unknown", earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
   scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity", v_c_swing: "how the camera's velocity swings",
   v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3", drift: "the drift of ȳ3",
   hold: "what is held between samples", step: "the longest step", start: "where the estimate starts", pictures: "the charts", over: "the map over two settings",
@@ -45,7 +48,7 @@ export class StructurePanel extends Fieldsets {
       this.first(
         choice.body,
         this.fieldset("Observers", choices),
-        this.fieldset("Move these", this.lit(this.number("v_c.0"), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
+        this.fieldset("Move these", ...this.source(), this.lit(this.numberIf("v_c.0", areSet), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
       ),
       topic("cases", "The paper's cases", choice.table()),
       topic("gains", "All gains", ...groups),
@@ -61,6 +64,13 @@ export class StructurePanel extends Fieldsets {
     this.body = element("div", { class: "panel" }, ...body);
   }
 
+  /** Whether the velocities are set or sampled, where there are samples. */
+  source() {
+    const { lab, model: { samples } } = this;
+    const besides = (value) => (value === "samples" ? { motion: "", duration: Math.min(lab.settings.duration, samples.times.at(-1)) } : {});
+    return samples ? [this.choice("velocities", { besides })] : [];
+  }
+
   motion() {
     const { lab } = this;
     const varying = checkbox({
@@ -73,28 +83,35 @@ export class StructurePanel extends Fieldsets {
       },
     });
     const rest = [1, 2].map((k) => this.lit(this.number(`v_c.${k}`), `v_c${k + 1}`));
-    return [
-      this.number("scale"),
+    const set = [
       ...rest,
       ...this.litList("v_p"),
       this.add(varying),
       this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
       this.add(typedField(lab, { ...this.bound("motion", true), ...this.schema.motion, hint: "v_c1 = 0.2 cos(t)" })),
-      ...this.each("ybar"),
       ...this.litList("w"),
+    ];
+    return [
+      this.number("scale"),
+      this.onlyIf(areSet, element("div", {}, ...set)),
+      ...this.each("ybar"),
     ];
   }
 
   /** A time that must not ask the page for more steps than it can take. */
   timing(place) {
-    const { mostSteps } = this.model;
+    const { mostSteps, samples } = this.model;
     const allowed = (value) => {
-      const { duration, period, step } = { ...this.lab.settings, ...changeAt(this.lab.settings, place, value) };
-      return duration / Math.min(period, step) <= mostSteps;
+      const settings = { ...this.lab.settings, ...changeAt(this.lab.settings, place, value) };
+      const { duration, period, step } = settings;
+      return duration / Math.min(period, step) <= mostSteps && !(isSampled(settings) && duration > samples.until);
     };
-    return this.number(place, { allowed, reason: `and the duration is at most ${mostSteps} periods, and so many longest steps` });
+    const last = samples ? `, and your samples end at ${readable(samples.times.at(-1))} s` : "";
+    return this.number(place, { allowed, reason: `and the duration is at most ${mostSteps} periods, and so many longest steps${last}` });
   }
 }
+
+const areSet = (settings) => !isSampled(settings);
 
 function swings({ v_c_swing, v_p_swing }) {
   return [...v_c_swing, ...v_p_swing].some((value) => value !== 0);

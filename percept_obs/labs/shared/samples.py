@@ -1,0 +1,76 @@
+"""Motions in samples that somebody brings to a lab: whether they suit a run, and how the page has them."""
+
+from __future__ import annotations
+
+from percept_obs.border import limit
+from percept_obs.compile import Array
+from percept_obs.labs.shared.schema import Settings
+from percept_obs.system.motion import Motion
+from percept_obs.system.signal import slack_of
+
+MOST_SAMPLES = 10_000
+"""100 s at 100 Hz: a kink for each, at which page and Python end a step."""
+
+LOOKS_A_SAMPLE = 15
+"""How often Python's solver looks at a motion between two of its samples, at least."""
+
+
+def is_sampled(motion: Motion) -> bool:
+    """Whether numbers of a motion are known at some times."""
+    return motion.signal is not None and motion.signal.times is not None
+
+
+def refuse_unfit(motion: Motion) -> None:
+    """Raise a ValueError for samples that are too few or too many, or that do not begin at 0 s."""
+    times = times_of(motion)
+    if len(times) < 2:
+        raise ValueError(
+            f"the motion has one sample, at {times[0]:.6g} s; bring two at least, or leave the times out where it is "
+            "constant"
+        )
+    if times[0] > slack_of(times):
+        raise ValueError(
+            f"the motion is sampled from {times[0]:.6g} to {times[-1]:.6g} s, but a run of the lab begins at 0 s; let "
+            "the times begin there, such as times - times[0]"
+        )
+    limit(len(times), "samples of a motion", "bring fewer, such as every tenth", MOST_SAMPLES)
+
+
+def refuse_longer(motion: Motion, duration: float) -> None:
+    """Raise a ValueError for a run that is longer than samples."""
+    if duration > _until(motion):
+        raise ValueError(
+            f"the run lasts {duration:g} s, but the motion is sampled up to {times_of(motion)[-1]:.6g} s only; shorten "
+            "the duration or bring more samples"
+        )
+
+
+def looks_at(motion: Motion, duration: float) -> int:
+    """How often Python's solver looks at samples up to a time, at least."""
+    return LOOKS_A_SAMPLE * int((times_of(motion) < duration).sum())
+
+
+def table_for_the_page(motion: Motion, begun: float = 0.0) -> Settings:
+    """A sampled motion in numbers, with times from when it began."""
+    signal = motion.signal
+    assert signal is not None
+    assert not callable(signal.samples)
+    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
+    return {"times": times, "rows": signal.samples.tolist()}
+
+
+def samples_for_the_page(motion: Motion) -> Settings:
+    """The same of samples that suit a run, and up to when a run may last."""
+    return {**table_for_the_page(motion), "until": _until(motion)}
+
+
+def times_of(motion: Motion) -> Array:
+    """The times of samples, in seconds."""
+    assert motion.signal is not None
+    assert motion.signal.times is not None
+    return motion.signal.times
+
+
+def _until(motion: Motion) -> float:
+    times = times_of(motion)
+    return float(times[-1] + slack_of(times))
