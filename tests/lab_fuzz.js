@@ -123,7 +123,7 @@ async ([seed, count, most = 20000, wanted = []]) => {
             });
         }
         lab.shown = before;
-        const map = lab.planes.find((plane) => plane.sweep?.present);
+        const map = lab.planes.find((plane) => !plane.figure.hidden && plane.sweep?.present);
         const there = map?.at([random(), random()]);
         if (there?.settings) {
             const { settling, error } = fresh({ ...there.settings, observers: [there.observer] }).runs[0];
