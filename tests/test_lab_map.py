@@ -40,9 +40,9 @@ def in_the_page(node, lab, tasks):
     return json.loads(answer.stdout)
 
 
-def somewhere(rng, count=PLACES):
-    """Middles of random cells of the finest map, as shares of the way along both axes."""
-    return ((rng.integers(FINER, size=(count, 2)) + 0.5) / FINER).tolist()
+def somewhere(rng, far=1):
+    """Middles of random cells of the finest map, as shares of the way along both axes, and beyond the first."""
+    return ((rng.integers((far * FINER, FINER), size=(PLACES, 2)) + 0.5) / FINER).tolist()
 
 
 @pytest.fixture(scope="module")
@@ -125,14 +125,20 @@ def test_python_fills_100_places_of_the_finest_map_as_the_page_would(of_pairs, p
     assert_the_same(found["cells"], filled_in(observer_lab(), found["settings"], found))
 
 
-WEIGHT = "gains.linear_approximation"
 HARDER = {
-    "it leaves": (observer_lab, {"duration": 6.0, "over": {"across": "b.2", "up": "X0.2"}}, {FOLLOWED, IMPOSSIBLE}),
+    "it leaves": (
+        observer_lab,
+        {
+            **{"observers": ["extended_kalman"], "duration": 6.0},
+            "over": {"observer": "extended_kalman", "across": "b.2", "up": "X0.2"},
+        },
+        {FOLLOWED, IMPOSSIBLE},
+    ),
     "it diverges": (
         observer_lab,
         {
-            **{"observers": ["linear_approximation"], "duration": 4.0, "period": 0.2},
-            "over": {"observer": "linear_approximation", "across": f"{WEIGHT}.measurement_weight", "up": "b.1"},
+            **{"over": {"across": GAIN, "up": "gains.identifier_based.lyapunov"}, "noise": NOISY},
+            "gains": {"identifier_based": {"bound": 1e200}},
         },
         {FOLLOWED, DIVERGED},
     ),
@@ -156,7 +162,8 @@ def test_python_fills_what_does_not_go_side_by_side_as_the_page_would(node, case
     pytest.importorskip("numba")
     make, changes, kinds = HARDER[case]
     lab = make(**{"duration": 2.0, "period": 0.02, **changes})
-    (found,) = in_the_page(node, lab, [{"settings": lab.settings, "shares": somewhere(np.random.default_rng(1), 30)}])
+    shares = somewhere(np.random.default_rng(1), far=2 if case == "it diverges" else 1)
+    (found,) = in_the_page(node, lab, [{"settings": lab.settings, "shares": shares}])
     assert {cell["kind"] for cell in found["cells"]} == kinds
     assert_the_same(found["cells"], filled_in(lab, lab.settings, found))
 
