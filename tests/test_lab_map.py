@@ -299,12 +299,17 @@ BUTTON = control("map finer")
 
 @pytest.mark.browser
 @pytest.mark.slow
-def test_python_is_asked_for_a_finer_map_and_not_heard_when_it_is_late(browser):
+def test_python_is_asked_for_a_finer_map_and_not_heard_when_it_is_late(browser, monkeypatch):
     pytest.importorskip("numba")
     lab = observer_lab(noise=NOISY, duration=2.0, over={"shows": "settling"})
     with answered(browser, lab, viewport={"width": 1280, "height": 800}) as page:
         page.wait_for_function(WHOLE)
         assert (page.inner_text(BUTTON), "64 × 64" in page.inner_text(".run-there")) == ("Finer map", True)
+        with monkeypatch.context() as without:
+            without.setattr(modules, "find_spec", lambda name: None)
+            page.click(BUTTON)
+            page.wait_for_function("() => /numba is missing; get it/.test(document.querySelector('.notice').innerText)")
+        assert page.inner_text(BUTTON) == "Finer map"
         page.evaluate("() => { window.held = []; }")
         page.click(BUTTON)
         page.wait_for_function("() => window.held.some((found) => found.map_found?.values)")
@@ -317,6 +322,7 @@ def test_python_is_asked_for_a_finer_map_and_not_heard_when_it_is_late(browser):
         page.keyboard.press("Enter")
         page.wait_for_function(FINEST)
         assert not page.is_visible(BUTTON)
+        assert not page.is_visible(".notice")
         page.wait_for_function(f"() => document.querySelector('{MAP}').ariaLabel.includes('128 by 128 places')")
         assert "128 × 128 places" in page.inner_text(".run-there")
         assert (lab.map_asked, lab.error) == ({}, "")

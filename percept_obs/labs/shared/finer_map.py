@@ -66,11 +66,11 @@ class MapLab(Lab):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)  # the page says so
-                self.map_found = {"serial": serial, "values": self.places_of_a_map(asked).tobytes()}
+                self.map_found = {"serial": serial, "values": self._filled(asked).tobytes()}
         except (ValueError, ModuleNotFoundError) as error:
             self.map_found = {"serial": serial, "refusal": str(error)}
 
-    def places_of_a_map(self, asked: Settings) -> Array:
+    def _filled(self, asked: Settings) -> Array:
         """What becomes of the runs at the first of the places that are asked for, at least one, shape (L, 3).
 
         Raises
