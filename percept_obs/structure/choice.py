@@ -311,14 +311,17 @@ class StructureAndMotion(OnePoint):
     def _greatest_speed(self, truth: Array, known: Array) -> float:
         """Of the point against the camera, |v_p - v_c|, in m/s."""
         theta = truth[:, len(OUTPUTS) :]
-        M, m = self.translation
         scale = [self.values[symbol] for symbol in self.parameters]
         columns = np.broadcast_to(known, (len(theta), known.shape[1])).T
-        scaled = vectorised((*self.form.x2, *self.form.parameters), list(M * sp.ImmutableMatrix(self.form.x2) + m))(
-            *theta.T, *columns, *scale
-        )
+        scaled = vectorised((*self.form.x2, *self.form.parameters), self._scaled_velocity)(*theta.T, *columns, *scale)
         d = self.scale or theta[:, self.unknown.index(d_s.name)]
         return float(np.nanmax(np.linalg.norm(np.stack(scaled, axis=-1), axis=-1) / d))
+
+    @cached_property
+    def _scaled_velocity(self) -> list[sp.Expr]:
+        """Of the point against the camera, times d_s."""
+        M, m = self.translation
+        return list(M * sp.ImmutableMatrix(self.form.x2) + m)
 
     @property
     def name(self) -> str:

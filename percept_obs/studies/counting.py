@@ -14,7 +14,6 @@ from percept_obs.compile.watched import Watched
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.system.surfaces import POINT, ImagingSurface
-from percept_obs.tracking.verdict import SETTLED_PART
 
 OUTCOMES = ("converged", "late", "outside", "behind", "none", "diverged")
 """Kinds of `Outcome`, in the order of their numbers."""
@@ -102,7 +101,7 @@ def _normalised(P: sp.Matrix, e: list[sp.Expr]) -> sp.Expr:
     return total
 
 
-def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[str]) -> dict[str, Array]:
+def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[str], part: float) -> dict[str, Array]:
     """What counts of runs say.
 
     Parameters
@@ -117,6 +116,8 @@ def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[
         Sample from which on errors counted.
     means : sequence of str
         Names of the means that were counted.
+    part : float
+        Share of the run at its end in which the error must have stayed within the tolerance to have converged.
 
     Returns
     -------
@@ -127,7 +128,7 @@ def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[
     outside, judged, diverged = column["outside"].astype(int), column["judged"], column["diverged"].astype(int)
     inside = outside < last
     settled = np.where(inside, elapsed[np.minimum(outside + 1, last)], np.inf)
-    kind = np.where(length - settled >= SETTLED_PART * length, OUTCOMES.index("converged"), OUTCOMES.index("late"))
+    kind = np.where(length - settled >= part * length, OUTCOMES.index("converged"), OUTCOMES.index("late"))
     ends = np.where(np.isnan(judged), OUTCOMES.index("none"), OUTCOMES.index("outside"))
     ends = np.where(np.isinf(judged), OUTCOMES.index("behind"), ends)
     kind = np.where(inside, kind, ends)

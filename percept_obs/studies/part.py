@@ -24,6 +24,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
 from percept_obs.tracking.course import Hold
+from percept_obs.tracking.verdict import SETTLED_PART
 
 NOT_RUN, DONE, NOT_IN_FRONT = range(3)
 STATUS = ("not_run", "done", "not_in_front")
@@ -57,6 +58,7 @@ class Plan:
     prior: Values | None
     language: Language
     noises_alike: bool
+    settled_part: float = SETTLED_PART
 
     @cached_property
     def means(self) -> tuple[str, ...]:
@@ -163,7 +165,7 @@ class Plan:
         late = int(np.argmax(from_the_start(time - time[0], self.after)))
         looked, move = watched(observer, self.coordinates), moving(self.scenario.surface) if alone else None
         counts = count(observer.equations, looked, move, seized(lanes), self.tolerance, late, self.language)
-        told_of = told(counts, time - time[0], grid - grid[0], late, self.means)
+        told_of = told(counts, time - time[0], grid - grid[0], late, self.means, self.settled_part)
         fine = self._in_front(columns, scenes, counts, turning, time) if alone else np.isfinite(truth[scene, 0, 0])
         status = np.where(fine, DONE, NOT_IN_FRONT).astype(float)
         if self.prior is not None:

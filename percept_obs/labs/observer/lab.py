@@ -13,7 +13,9 @@ import numpy as np
 import traitlets
 
 from percept_obs.border import TooMuchWork
+from percept_obs.compile import Array, Language
 from percept_obs.compile.integrator import LONGEST_STEP
+from percept_obs.labs.observer.many import side_by_side
 from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
 from percept_obs.labs.observer.settings import (
     HOLDS,
@@ -36,7 +38,8 @@ from percept_obs.labs.observer.tracks import (
 )
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.brought import brought
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.finer_map import MapLab
+from percept_obs.labs.shared.lab import NOISES
 from percept_obs.labs.shared.offered import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.sampling import (
@@ -65,7 +68,7 @@ LOOK_WORK = 16
 """What a look at a motion that varies costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
-class ObserverLab(Lab):
+class ObserverLab(MapLab):
     """The observer lab, shown by the page; `settings` define everything, and may be set from Python as well.
 
     Parameters
@@ -225,11 +228,7 @@ class ObserverLab(Lab):
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
         observers = {name: self._chosen(settings, name) for name in settings["observers"]}
-        moved, refusal = 0.0, ""
-        if settings["scenario"] not in self._recordings:
-            moved = self._work(settings)
-            refusal = too_short(settings["duration"], settings["period"]) or too_fast(moved)
-        if refusal:
+        if refusal := self.too_much(settings):
             return {"sentences": [refusal]}
         try:
             recording = self.recorded(settings)
@@ -241,7 +240,7 @@ class ObserverLab(Lab):
             if recording.truth is None or has_words(chosen)
         }
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
-        told, beyond = within_reach(steps, talked_of, moved)
+        told, beyond = within_reach(steps, talked_of, self._work(settings))
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(self._offer.form(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
@@ -251,8 +250,16 @@ class ObserverLab(Lab):
             sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
 
+    def too_much(self, settings: Settings) -> str:
+        """Why Python does not follow runs of these settings; empty if it does."""
+        if settings["scenario"] in self._recordings:
+            return ""
+        return too_short(settings["duration"], settings["period"]) or too_fast(self._work(settings))
+
     def _work(self, settings: Settings) -> float:
         """What it takes to move the point, as `MOST_WORK` counts."""
+        if settings["scenario"] in self._recordings:
+            return 0.0
         duration, rows, looked = settings["duration"], np.array([_numbers(settings)]), 0.0
         if self._varies(settings):
             known, times = self._motion_of(settings).known, np.linspace(0, duration, INSTANTS)
@@ -261,18 +268,21 @@ class ObserverLab(Lab):
         moved = exact_path(duration, settings["period"], fastest)
         return moved + (LOOK_WORK * looks(duration, fastest, looked) if self._varies(settings) else 0.0)
 
-    def runs(self, settings: Settings) -> dict[str, Run]:
+    def runs(self, settings: Settings, language: Language = "python") -> dict[str, Run]:
         """Runs that settings stand for, by the observers' names."""
-        recording = self.recorded(settings)
-        believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
-        start: Any = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
-        found = {}
-        for name in settings["observers"]:
-            observer, _ = self._chosen(settings, name)
-            values = settings["gains"][name]
-            observer = observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
-            found[name] = track(recording, observer, start, settings["hold"], believed or None, language="python")
-        return found
+        recording, start, believed = self.recorded(settings), _start(settings), _believed(settings)
+        return {
+            name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language=language)
+            for name in settings["observers"]
+        }
+
+    def side_by_side(self, settings: Settings, varied: Mapping[str, Array]) -> Array | None:
+        """What becomes of runs of a simulated point under a constant motion; see `MapLab`."""
+        if settings["scenario"] in self._recordings or self._varies(settings):
+            return None
+        scene = _scene(settings, self._motion_of(settings), self._offer.surfaces[settings["surface"]])
+        observer = self._tuned(settings, settings["observers"][0])
+        return side_by_side(scene, observer, _start(settings), _believed(settings), settings, varied)
 
     def recorded(self, settings: Settings) -> Recording:
         """What the camera records, as far as the point stays in front of it."""
@@ -286,6 +296,11 @@ class ObserverLab(Lab):
         """An observer with its default gains, and how it switches."""
         way = str(settings["switches"].get(name, ""))
         return self._offer.observer(settings["surface"], settings["outputs"], name, way), way
+
+    def _tuned(self, settings: Settings, name: str) -> Observer:
+        """An observer with the gains of the settings."""
+        observer, values = self._chosen(settings, name)[0], settings["gains"][name]
+        return observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
 
 
 observer_lab = ObserverLab
@@ -342,8 +357,21 @@ def _motion(text: str) -> Motion:
 @lru_cache(maxsize=4)
 def _simulated(text: str, motion: Motion, seen_on: ImagingSurface) -> Recording:
     settings = json.loads(text)
+    return as_far_as_seen(*_scene(settings, motion, seen_on), settings["seed"])
+
+
+def _scene(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> tuple[Scenario, Camera]:
     surface = shaped_surface(settings) if settings["surface"] in SHAPES else seen_on
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
-    camera = Camera(settings["period"], noise, settings["dropout"])
-    return as_far_as_seen(scenario, camera, settings["seed"])
+    return scenario, Camera(settings["period"], noise, settings["dropout"])
+
+
+def _believed(settings: Settings) -> Motion | None:
+    """What observers believe, unless it is the true motion."""
+    return affine(settings["believed"]["A"], settings["believed"]["b"]) if settings["believed"] else None
+
+
+def _start(settings: Settings) -> list[float] | None:
+    """Estimates at the first sample, unless they are the observers' own."""
+    return {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]

@@ -29,9 +29,6 @@ from percept_obs.recording import Gaussian, Uniform
 BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""
 
-FROM_THE_PAGE = ("asked", "settings", "summary")
-"""What the page may set."""
-
 REFUSES = """
 
 Raises
@@ -94,6 +91,8 @@ class Lab(anywidget.AnyWidget):
     title = "A lab"
     works_alone = True
     """Whether the page can do without Python."""
+    from_the_page: tuple[str, ...] = ("asked", "settings", "summary")
+    """What the page may set."""
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
@@ -119,8 +118,8 @@ class Lab(anywidget.AnyWidget):
     def __init_subclass__(cls) -> None:
         """Let the docstring list the settings."""
         super().__init_subclass__()
-        if cls.__doc__:  # anywidget makes subclasses without one
-            cls.__doc__ = cleandoc(cls.__doc__).replace("{settings}", cls.schema.listed() + REFUSES)
+        if "{settings}" in (cls.__doc__ or ""):  # anywidget makes subclasses without one
+            cls.__doc__ = cleandoc(str(cls.__doc__)).replace("{settings}", cls.schema.listed() + REFUSES)
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
@@ -204,7 +203,7 @@ class Lab(anywidget.AnyWidget):
         """Take the page's state; what goes wrong is shown in the lab and raised for the log."""
         try:
             with capture_output():  # progress bars have no cell to stand in, and would fill the log
-                super().set_state({name: sync_data[name] for name in FROM_THE_PAGE if name in sync_data})
+                super().set_state({name: sync_data[name] for name in self.from_the_page if name in sync_data})
         except Exception as error:
             self.error = f"{type(error).__name__}: {error}"
             raise

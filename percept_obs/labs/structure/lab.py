@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from types import MappingProxyType
@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from percept_obs.border import TooMuchWork
-from percept_obs.compile import Array
+from percept_obs.compile import Array, Language
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.common_settings import gains, offering, over
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.finer_map import MapLab
+from percept_obs.labs.shared.lab import NOISES
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import looks_at, samples_for_the_page
 from percept_obs.labs.shared.sampling import (
@@ -46,6 +47,7 @@ from percept_obs.structure import (
     StructureAndMotion,
     StructureScenario,
 )
+from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, pinhole
@@ -62,7 +64,7 @@ LOOK_WORK = 16
 """What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
-class StructureLab(Lab):
+class StructureLab(MapLab):
     """The lab of structure and motion; `settings` define everything, and may be set from Python as well.
 
     Unknowns that cannot be told apart are shown, with the reason.
@@ -138,7 +140,11 @@ class StructureLab(Lab):
 
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
-        return runs(self.settings, self._own, self._samples)
+        return self.runs(self.settings)
+
+    def runs(self, settings: Settings, language: Language = "python") -> dict[str, Run]:
+        """Runs that settings stand for, by the observers' names."""
+        return runs(settings, self._own, self._samples, language)
 
     def typed(self, text: str) -> Typed:
         """The motion that a text describes; a ValueError if it cannot be read."""
@@ -173,34 +179,45 @@ class StructureLab(Lab):
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
-        duration = settings["duration"]
-        turning, swings = np.abs([settings["w"]]), settings["rate"]
-        samples = _used(settings, self._samples)
-        if settings["motion"].strip() or samples:
-            times = np.linspace(0, duration, INSTANTS)
-            known = motion_of(settings, samples).known
-            turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
-        fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
-        moved = exact_path(duration, settings["period"], fastest)
-        if _swings(settings) or samples:
-            least = looks_at(samples, duration) if samples else 0
-            moved += LOOK_WORK * max(looks(duration, fastest, swings), least)
-        if refusal := too_short(duration, settings["period"]) or too_fast(moved):
+        if refusal := self.too_much(settings):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]
         states = {name: printed.get(name, {"states": 6})["states"] for name in settings["observers"]}
-        told, beyond = within_reach(_steps(settings), states, moved)
+        told, beyond = within_reach(_steps(settings), states, self._work(settings))
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = runs({**settings, "observers": told}, self._own, self._samples) if told else {}
+                found = self.runs({**settings, "observers": told}) if told else {}
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
         return {"sentences": [*lines, *beyond]}
 
+    def too_much(self, settings: Settings) -> str:
+        """Why Python does not follow runs of these settings; empty if it does."""
+        return too_short(settings["duration"], settings["period"]) or too_fast(self._work(settings))
+
+    def _work(self, settings: Settings) -> float:
+        return _work(settings, _used(settings, self._samples))
+
 
 structure_lab = StructureLab
+
+
+def _work(settings: Settings, samples: Motion | None) -> float:
+    """What it takes to move the point, as `MOST_WORK` counts."""
+    duration = settings["duration"]
+    turning, swings = np.abs([settings["w"]]), settings["rate"]
+    if settings["motion"].strip() or samples:
+        times = np.linspace(0, duration, INSTANTS)
+        known = motion_of(settings, samples).known
+        turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
+    fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
+    moved = exact_path(duration, settings["period"], fastest)
+    if not (_swings(settings) or samples):
+        return moved
+    least = looks_at(samples, duration) if samples else 0
+    return moved + LOOK_WORK * max(looks(duration, fastest, swings), least)
 
 
 def _title(name: str, run: Run) -> str:
@@ -256,11 +273,22 @@ def unknowns_of(settings: Settings, samples: Motion | None = None) -> StructureA
         values = {name: int(name not in zero_in(used)) for name in values}
     unknown = tuple(settings["unknown"])
     earlier = ("d_s",) if settings["earlier"] and "d_s" not in unknown else ()
-    return StructureAndMotion(unknown, tuple(n for n, v in values.items() if v == 0 and n not in unknown), earlier)
+    return _choice(unknown, tuple(n for n, v in values.items() if v == 0 and n not in unknown), earlier)
+
+
+_choice = lru_cache(maxsize=16)(StructureAndMotion)  # it keeps its form, whose derivation takes longer than a run
+
+
+@lru_cache(maxsize=64)
+def _made(make: Callable[[CanonicalForm], Observer], unknowns: StructureAndMotion) -> Observer:
+    return make(unknowns.form)
 
 
 def runs(
-    settings: Settings, own: Mapping[str, OwnObserver] = MappingProxyType({}), samples: Motion | None = None
+    settings: Settings,
+    own: Mapping[str, OwnObserver] = MappingProxyType({}),
+    samples: Motion | None = None,
+    language: Language = "python",
 ) -> dict[str, Run]:
     """Runs that lab settings stand for, by the observers' names, with what was brought to the lab."""
     unknowns = unknowns_of(settings, samples)
@@ -269,8 +297,8 @@ def runs(
     found = {}
     for name in settings["observers"]:
         make = OBSERVERS[name][1] if name in OBSERVERS else own[name]
-        observer = make(unknowns.form).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
+        observer = _made(make, unknowns).with_gains(**settings["gains"][name])
+        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language=language)
     return found
 
 

@@ -1,14 +1,19 @@
 // Runs places of maps over two settings, given on standard input as shares of the way along both axes, and prints what became of them.
 import { readFileSync } from "node:fs";
 import { planOf, valueOn } from "../src/common/model/axes.js";
-import { bare, baseOf, fillCell, settingsAt } from "../src/common/model/cells.js";
-import { axesOf } from "../src/observer/model/axes.js";
+import { bare, baseOf, FINER, fillCell, rowAt, settingsAt } from "../src/common/model/cells.js";
+import { axesOf as axesOfPoint } from "../src/observer/model/axes.js";
 import { CellEngine } from "../src/observer/model/cell_engine.js";
 import { Kernels } from "../src/observer/model/kernels.js";
+import { axesOf as axesOfStructure } from "../src/structure/model/axes.js";
+import { StructureEngine } from "../src/structure/model/engine.js";
+import { StructureKernels } from "../src/structure/model/kernels.js";
 import { loadHere } from "./load_here.js";
 
-const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
-const kernels = new Kernels(model, loadHere);
+const { model, tasks, kind } = JSON.parse(readFileSync(0, "utf8"));
+const ofStructure = kind === "structure_lab";
+const kernels = ofStructure ? new StructureKernels(model, loadHere) : new Kernels(model, loadHere);
+const axesOf = ofStructure ? axesOfStructure : axesOfPoint;
 const answers = [];
 for (const { settings, shares } of tasks) {
   const rough = bare(settings, settings.over.observer);
@@ -16,14 +21,16 @@ for (const { settings, shares } of tasks) {
   const functions = kernels.of(rough);
   const plan = planOf(settings, model, axesOf, functions);
   const base = baseOf(settings, plan, functions);
-  const lab = { engine: new CellEngine(model), kernels };
+  const lab = { engine: ofStructure ? new StructureEngine(model) : new CellEngine(model), kernels };
   const out = new Float64Array(3);
+  const names = [...new Set([...plan.across.moves, ...plan.up.moves])];
   const cells = shares.map(([x, y]) => {
     const place = [valueOn(plan.across, x), valueOn(plan.up, y)];
     const there = settingsAt(base, plan, place, functions);
     fillCell(out, 0, there, lab, functions);
-    return { place, kind: out[0], settling: String(out[1]), error: String(out[2]), settings: there && { ...settings, ...there, over: settings.over } };
+    const row = rowAt([x, y].map((share) => Math.floor(share * FINER)), names, { plan, base }, { model, kernels }, functions);
+    return { place, row, kind: out[0], settling: String(out[1]), error: String(out[2]), settings: there && { ...settings, ...there, over: settings.over } };
   });
-  answers.push({ across: plan.across.place, up: plan.up.place, cells });
+  answers.push({ across: plan.across.place, up: plan.up.place, names, cells });
 }
 process.stdout.write(JSON.stringify(answers));

@@ -11,6 +11,7 @@ import { changeAt, switchOf, valueAt } from "./settings.js";
  * @property {number} low
  * @property {number} high
  * @property {boolean} log
+ * @property {string[]} moves  places of the settings that it changes
  * @property {boolean} records  whether another value makes another recording
  * @property {(settings: any, functions: any) => number | undefined} get  the present value, undefined where it has no meaning
  * @property {(settings: any, value: number, functions: any) => any} put  the settings with another value; null where there are none
@@ -34,7 +35,7 @@ const withUnit = (label, unit) => (unit && unit !== "1" ? `${label} in ${unit.re
 export function axisAt(model, place, label, meant = (_settings) => true) {
   const { low, high, log, unit } = /** @type {any} */ (schemaAt(schemaFor(model), place));
   return {
-    ...{ place, label: withUnit(label, unit), low, high, log, records: !/^(start|believed)/.test(place) },
+    ...{ place, label: withUnit(label, unit), low, high, log, moves: [place], records: !/^(start|believed)/.test(place) },
     get: (settings) => (meant(settings) ? valueAt(settings, place) : undefined),
     put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
   };
@@ -46,7 +47,7 @@ export function gainAxes({ observers }, name) {
   return gains.map(({ name: gain, low, high, unit }) => {
     const place = `gains.${name}.${gain}`;
     return {
-      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, log: low > 0 && high / low >= DECADE, records: false },
+      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, log: low > 0 && high / low >= DECADE, moves: [place], records: false },
       get: (settings) => (ways[switchOf(settings, name)].includes(gain) ? settings.gains[name][gain] : undefined),
       put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
     };

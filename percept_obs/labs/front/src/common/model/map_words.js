@@ -41,9 +41,9 @@ export function mapInWords({ found, present }, shows, title) {
 }
 
 /** How far a map is. */
-export function stateInWords({ found, present, whole }) {
+export function stateInWords({ found, present, whole, finest }) {
   if (!found) return "being computed";
-  const { cells } = found.levels.at(-1);
+  const cells = whole ? finest : found.levels.at(-1).cells;
   const size = `${cells} × ${cells} places`;
   return present ? `${size}${whole ? "" : ", getting finer"}; noise has the same seed everywhere` : `${size}, of settings a moment ago`;
 }

@@ -7,6 +7,7 @@ import { baseOf, DIVERGED, EACH_CELL, FIRST, FOLLOWED, NOT_YET, orderOf, THEN } 
 /** Milliseconds in which the first picture of a map is to be there, and what a cell takes as long as that is not known. */
 const SOON = 40;
 const SLOW = 4;
+const LAST = THEN[THEN.length - 1];
 
 /**
  * @typedef {ReturnType<typeof planOf>} Plan
@@ -77,10 +78,14 @@ export class Sweep {
     return this.found?.key === this.key;
   }
 
-  /** Whether all of it is there. */
+  /** How many cells a side the finest level has that is all there; 0 as long as there is none. */
+  get finest() {
+    return this.found?.levels.findLast(({ cells, done }) => done === cells ** 2)?.cells ?? 0;
+  }
+
+  /** Whether all is there that the page fills. */
   get whole() {
-    const finest = this.found?.levels.at(-1);
-    return this.present && finest !== undefined && finest.cells === THEN.at(-1) && finest.done === finest.cells ** 2;
+    return this.present && this.finest >= LAST;
   }
 
   /**
@@ -94,6 +99,11 @@ export class Sweep {
     for (const earlier of this.sent.keys()) if (earlier < id) this.sent.delete(earlier);
     this.cost = cost;
     this.found = found;
+    this.add(found, { cells, from, values });
+  }
+
+  /** Add a part to a map. */
+  add(found, { cells, from, values }) {
     let level = found.levels.find((each) => each.cells === cells);
     if (!level) {
       level = { cells, values: new Float64Array(EACH_CELL * cells * cells), done: 0 };
