@@ -118,6 +118,7 @@ def test_started_at_the_truth_it_stays_there(name, form, scenario):
     assert_it_stays_at_the_truth(record(scenario), made(name, form))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", COPIES, ids=lambda make: make.key)
 @pytest.mark.parametrize("form", PARTITIONS, ids=lambda form: f"{form.view.name} {'+'.join(form.measured)}")
 def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
@@ -154,6 +155,7 @@ def test_every_iterate_of_the_cascade_stays_nearer_to_the_truth_it_started_at(na
     assert all(later <= earlier / least + 1e-8 for earlier, later in pairwise(worst))
 
 
+@pytest.mark.slow
 @each(SMOOTH)
 @given(scenario=motions())
 @example(scenario=EQ35)
@@ -183,6 +185,7 @@ def derivatives(name, form):
     return *functions, len(eq.state), len(symbols)
 
 
+@pytest.mark.slow
 @each(EVERY, FORMS_AND_SQUARE)
 @given(seed=st.integers(0, 2**32 - 1))
 @drawn(10)

@@ -246,6 +246,7 @@ def test_excitation_takes_the_truth_by_its_own_names():
     assert windowed(OTHER, only, 2.0).least == pytest.approx(windowed(OTHER, whole, 2.0).least, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", [Camera(0.05), Camera(0.05, NOISE)], ids=["exact", "noisy"])
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_without_a_truth_no_observer_is_trusted_before_a_camera_at_rest(make, camera):
