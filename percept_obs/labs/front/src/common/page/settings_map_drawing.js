@@ -5,7 +5,7 @@ import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, NOT_YET } from "../model/cel
 import { linearScale, readable } from "../model/scales.js";
 import { drawAxes, stroke } from "./image_frame.js";
 
-const MARGIN = { left: 46, top: 34, right: 88, bottom: 62 };
+const MARGIN = { left: 46, top: 34, right: 94, bottom: 62 };
 const SHADES = 8;
 const [FAINTEST, STRONGEST] = [0.08, 0.92];
 /** The least error of a shade of its own: half decades from 0.01 % on. */
@@ -152,7 +152,7 @@ export function drawMap(pen, box, { found, plan, what, title }, theme) {
   pen.textAlign = "left";
   pen.textBaseline = "alphabetic";
   pen.fillStyle = theme.ink;
-  pen.fillText(title, 4, 11);
+  pen.fillText(`${title}, in ${what === "settling" ? "s" : "%"}`, 4, 11);
   if (found) {
     pen.save();
     pen.beginPath();
@@ -185,7 +185,6 @@ function drawKey(pen, { left, top, width, height }, what, { duration, tolerance 
     pen.fillStyle = theme.ink;
     pen.fillText(text, at, y);
   };
-  word(what === "settling" ? "in s" : "in %", x, top - 8);
   for (let shade = 0; shade < SHADES; shade++) {
     pen.globalAlpha = opacityOf(shade);
     pen.fillStyle = theme.lines[0];
