@@ -336,6 +336,27 @@ def test_python_is_asked_for_a_finer_map_and_not_heard_when_it_is_late(browser, 
         assert page.evaluate(f"{SWEEP}.finest") == FINER  # it is the same map
 
 
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_late_picture_still_has_the_map_of_settings_before_whose_axis_means_nothing_now(browser):
+    believed = {"A": [[0.0] * 3] * 3, "b": [0.4, 0.2, 0.3]}
+    page = page_of(
+        browser, observer_lab(duration=1.0, believed=believed, over={"shows": "settling", "across": "believed.b.0"})
+    )
+    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.present")
+    problem = page.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        lab.planes[2].aim = [0.5, 0.5];
+        lab.compute = () => false;  // what the next settings show is not there yet
+        lab.change({ believed: null });
+        lab.paint();
+        delete lab.compute;
+        return lab.view.root.querySelector(".problem:not([hidden])")?.textContent ?? "";
+    }""")
+    assert problem == ""
+    page.close()
+
+
 AIMED = "([...window.perceptObsLabs][0].planes[2].there)"
 TRACE = ".there path"
 

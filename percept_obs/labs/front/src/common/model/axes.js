@@ -37,7 +37,8 @@ export function axisAt(model, place, label, meant = (_settings) => true) {
   return {
     ...{ place, label: withUnit(label, unit), low, high, log, moves: [place], records: !/^(start|believed)/.test(place) },
     get: (settings) => (meant(settings) ? valueAt(settings, place) : undefined),
-    put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
+    // A map may still be that of settings in which it had a meaning.
+    put: (settings, value) => (meant(settings) ? { ...settings, ...changeAt(settings, place, value) } : null),
   };
 }
 
