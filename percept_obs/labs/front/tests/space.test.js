@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { advanced, begun, between, stepped, valueBetween } from "../src/common/model/playback.js";
 import { scaled, unseenDirection } from "../src/common/model/velocities.js";
 import * as space from "../src/common/model/space.js";
+import { drawVelocities } from "../src/common/page/velocities.js";
 
 const near = (one, other, slack = 1e-12) => one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));
 const dot = (one, other) => one.reduce((sum, value, i) => sum + value * other[i], 0);
@@ -93,4 +94,38 @@ test("a time between samples has its part of the way, and none at a sample", () 
   assert.deepEqual(between(time, 3), { sample: 2, part: 0 });
   assert.deepEqual(between(time, 1 + 1e-12), { sample: 1, part: 0 });
   assert.equal(valueBetween([0, 5, 0, 7, 0, 1], 2, 1, { sample: 1, part: 0.5 }), 4);
+});
+
+/** A pen that only remembers where it wrote the names of arrows, as boxes of letters six pixels wide. */
+function scribe() {
+  const written = /** @type {{text: string, ends: number[], y: number}[]} */ ([]);
+  const fillText = (text, x, y) => {
+    const width = 6 * text.length;
+    const left = { left: x, center: x - width / 2, right: x - width }[pen.textAlign];
+    if (/^(½×|1×|2×)/.test(text)) written.push({ text, ends: [left, left + width], y });
+  };
+  /** @type {any} */
+  const pen = new Proxy({ written, fillText }, { get: (known, name) => known[name] ?? (() => undefined) });
+  return pen;
+}
+
+test("names of arrows are all there, and none covers another, wherever the arrows lead", () => {
+  const box = { left: 40, top: 10, side: 250 };
+  for (let k = 0; k < 500; k++) {
+    const turn = (k * Math.PI) / 25;
+    const between = (k % 20) / 10;
+    const place = [((k * 7) % 19) / 19, ((k * 11) % 23) / 23];
+    const velocities = [-1, 0, 1].map((way) => [Math.cos(turn + way * between), Math.sin(turn + way * between)]);
+    const pen = scribe();
+    const frame = { box, scale: 250, x: (y1) => box.left + 250 * y1, y: (y2) => box.top + 250 * (1 - y2) };
+    drawVelocities(pen, frame, [{ place, velocities, colour: "black" }], 1, {});
+    const names = pen.written.flatMap(({ text }) => text.split(", "));
+    assert.deepEqual(names.sort(), ["½×", "1×", "2×"].sort());
+    for (const [i, one] of pen.written.entries()) {
+      for (const other of pen.written.slice(i + 1)) {
+        const apart = Math.abs(one.y - other.y) >= 10 || one.ends[1] <= other.ends[0] || other.ends[1] <= one.ends[0];
+        assert.ok(apart, `${JSON.stringify(one)} covers ${JSON.stringify(other)}`);
+      }
+    }
+  }
 });
