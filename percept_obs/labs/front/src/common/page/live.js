@@ -255,7 +255,7 @@ export class Live extends Showing {
   speakNow() {
     this.spoken = performance.now();
     // What is drawn may be of settings before those that cannot be shown.
-    if (this.shown.settings === this.settings) this.view.problem("");
+    if (!this.late) this.view.problem("");
     this.panel.show();
     this.view.steps(this.state);
     this.view.preset();
