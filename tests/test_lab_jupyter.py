@@ -12,6 +12,7 @@ from lab_browser import (
     end_kernel,
     open_lab,
     open_unfolded,
+    painted,
     rested,
     state,
     write_notebook,
@@ -76,7 +77,8 @@ def test_the_kernel_fills_in_a_finer_map(fresh):
 
 def test_pictures_are_in_view_whichever_control_has_the_focus(fresh):
     fresh.set_viewport_size({"width": 1280, "height": 800})
-    fresh.wait_for_timeout(300)
+    painted(fresh)
+    rested(fresh)
     found = fresh.evaluate(WALK)
     fresh.set_viewport_size({"width": 1280, "height": 900})
     assert found["wrong"] == []

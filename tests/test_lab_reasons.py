@@ -197,7 +197,7 @@ def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(show):
     undo, redo = control("undo"), control("redo")
     first = page.evaluate(LOOK)
     page.click(control("zoom in"))
-    page.wait_for_timeout(450)  # what follows at once is the same step
+    page.wait_for_function("() => [...window.perceptObsLabs][0].state.held === null")  # else it is the same step
     page.click(control("zoom in"))
     near = page.evaluate(LOOK)
     assert near[1] - near[0] == pytest.approx((first[1] - first[0]) / 4)
