@@ -65,6 +65,26 @@ def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(
     page.close()
 
 
+def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(browser):
+    """What moved before may have sent it there, and its number is hidden only at the next picture."""
+    page = opened(browser, observer_lab())
+    wrong = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.wait_for_function(DRAWN)
+    page.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        lab.change({ b: [0.5, 0.25, 0] }, true);
+        const field = document.querySelector('[data-control="foe y1 number"]');
+        field.value = "1";
+        field.dispatchEvent(new Event("input", { bubbles: true }));
+    }""")
+    page.wait_for_function(DRAWN)
+    assert wrong == []
+    assert page.evaluate(B) == [0.5, 0.25, 0]
+    assert page.locator(control("foe y1 number")).is_hidden()
+    page.close()
+
+
 def test_without_translation_there_is_no_focus_of_expansion_and_the_lab_says_so(browser):
     page = opened(browser, observer_lab(b=[0.0, 0.0, 0.0]))
     page.wait_for_function(DRAWN)
