@@ -17,9 +17,8 @@ FOE = control("foe")
 
 SETTLED = """(count) => {
     const labs = [...(window.perceptObsLabs ?? [])];
-    return labs.length === count && labs.every((lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending
-        && lab.resting === null && (!lab.widget.save_changes
-            || (lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings)));
+    return labs.length === count && labs.every((lab) => lab.settled && !lab.pending
+        && (!lab.widget.save_changes || lab.link.waitingFor === null));
 }"""
 ORDER = """() => {
     const tops = [...window.perceptObsLabs].map((lab) => lab.view.root.getBoundingClientRect().top);

@@ -38,8 +38,9 @@ bundle.render({ model, el: document.body });
 """
 DRAWN = """() => {
     const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending;
+    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending && lab.settled !== false;
 }"""
+"""Pictures and words are of the present settings."""
 
 
 def stated_policy():

@@ -43,7 +43,8 @@ OUTSIDE = """() => {
 
 RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
-        && lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings)"""
+        && lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings
+        && lab.settled !== false)"""
 
 STATE = """(which) => {
     const lab = [...window.perceptObsLabs][which];

@@ -84,8 +84,7 @@ async ([seed, count, most = 20000, wanted = []]) => {
     const canvases = () => [...root.querySelectorAll("figure:not([hidden]) canvas")];
     const pixelsOf = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
     const moving = () => lab.view.playing() || Boolean(root.querySelector('[data-control="swing"][aria-pressed="true"]'));
-    const current = () => [lab.shown, lab.link.sent].every((found) => found?.settings === lab.settings);
-    const atRest = () => current() && lab.shown.whole && lab.resting === null && (!lab.pending || moving());
+    const atRest = () => lab.settled && lab.shown.whole && lab.resting === null && (!lab.pending || moving());
 
     /** Whether pictures and words are of the present settings: compared with what is computed and drawn anew. */
     async function compare(when) {

@@ -11,7 +11,7 @@ const { launch } = await from("puppeteer-core/lib/esm/puppeteer/puppeteer-core.j
 
 const ALL_DRAWN = () =>
   [...document.querySelectorAll("[data-percept-obs]")].length === (window.perceptObsLabs?.size ?? 0) &&
-  [...(window.perceptObsLabs ?? [])].every((lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending);
+  [...(window.perceptObsLabs ?? [])].every((lab) => lab.shown && lab.settled !== false && !lab.pending);
 
 // The rest of Lighthouse left out, for each page it would be read, checked and translated anew.
 const CONFIG = {

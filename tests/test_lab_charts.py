@@ -10,8 +10,6 @@ from percept_obs.labs import observer_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-RESTED = """() => { const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown?.settings === lab?.settings && !lab?.pending && lab?.resting === null; }"""
 SPAN = "() => { const { low, high } = [...window.perceptObsLabs][0].span; return [low, high]; }"
 SCALES = "() => Object.values([...window.perceptObsLabs][0].time.scales).map(({ low, high, log }) => [low, high, log])"
 WRITTEN = """async () => {
@@ -44,7 +42,6 @@ CROSSING = {"A": TURNING, "b": [0.0, 0.0, 0.8], "X0": [-2.0, 0.0, 2.0], "duratio
 def page_of(browser, **settings):
     page = opened(browser, observer_lab(**settings), viewport={"width": 1280, "height": 800})
     page.wait_for_function(DRAWN)
-    page.wait_for_function(RESTED)
     return page
 
 
@@ -69,7 +66,7 @@ def test_the_lines_of_a_kept_run_come_go_and_change_with_it(browser):
     counted = [page.evaluate(KEPT)]
     for act in ("keep", "keep", "observer sliding_mode", "keep"):
         page.click(control(act))
-        page.wait_for_function(RESTED)
+        page.wait_for_function(DRAWN)
         counted.append(page.evaluate(KEPT))
     none, one, forgotten, unchanged, two = counted
     assert none == forgotten == unchanged == 0
@@ -119,7 +116,7 @@ def test_time_opens_at_the_story_and_zooms_by_keys_wheel_and_drag(page):
     page.click(control("zoom in"))
     assert page.evaluate(SPAN) != [0, 80]
     page.click(control("reset"))
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(SPAN) == [0, 8]
 
 
@@ -133,7 +130,7 @@ def test_axes_hold_still_while_the_hand_is_down_and_the_foe_stays_where_it_is_le
     assert (page.evaluate(SCALES), page.evaluate("[...window.perceptObsLabs][0].planes[0].square")) == before
     held = centre(page, control("foe"))
     page.mouse.up()
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     painted(page)
     assert math.dist(held, centre(page, control("foe"))) < 3
     assert page.evaluate(SPAN) == [0, 8]
@@ -156,7 +153,7 @@ def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
     for name in ("bound error", "bound map"):
         page.focus(control(name))
         page.keyboard.press("Space")
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     resolution = "() => [...window.perceptObsLabs][0].map.found?.resolution"
     page.wait_for_function(f"{resolution} === 144")
     assert page.inner_text(".legend").split("\n")[-1] == "bound"
@@ -171,7 +168,7 @@ def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
     page.mouse.up()
     page.fill(control("noise size number"), "0")
     page.keyboard.press("Enter")
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     page.wait_for_function(f"{resolution} === undefined")
     assert "There is no bound without noise" in page.inner_text(".why")
     assert "bound" not in page.inner_text(".legend")

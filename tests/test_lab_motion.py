@@ -49,7 +49,6 @@ DRAWN_AT = "(time) => { const [l] = window.perceptObsLabs; return !l.pending && 
 def page(browser, request):
     page = opened(browser, LABS[request.param]())
     page.wait_for_function(DRAWN)
-    page.wait_for_function("() => [...window.perceptObsLabs][0].resting === null")
     yield page
     page.close()
 

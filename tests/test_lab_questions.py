@@ -8,8 +8,6 @@ from percept_obs.labs import observer_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-RESTED = """() => { const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown?.settings === lab?.settings && !lab?.pending && lab?.resting === null; }"""
 ARROWS = """() => {
     const [lab] = window.perceptObsLabs;
     const found = lab.planes[0].arrowsOf(lab.shown, { sample: 0, part: 0, next: 0 }, lab.theme);
@@ -45,7 +43,7 @@ def shot(page, tmp_path, request):
 
     def take(moving=False):
         if not moving:
-            page.wait_for_function(RESTED)
+            page.wait_for_function(DRAWN)
         page.wait_for_timeout(150)
         file = tmp_path / f"{request.node.name.removeprefix('test_')}_{next(count)}.png"
         page.screenshot(path=file)

@@ -10,8 +10,6 @@ from percept_obs.labs import observer_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 NOISE = {"kind": "uniform", "size": 0.02}
-RESTED = """() => { const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown?.settings === lab?.settings && !lab?.pending && lab?.resting === null; }"""
 WRITTEN = """() => {
     const [lab] = window.perceptObsLabs;
     const found = [];
@@ -45,7 +43,7 @@ def show(browser):
         page.wait_for_function(DRAWN)
         if page.locator(control("way back")).is_visible():
             page.click(control("way back"))
-        page.wait_for_function(RESTED)
+        page.wait_for_function(DRAWN)
         return page
 
     yield make
@@ -75,7 +73,7 @@ def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(show):
     assert max(c["distance"] for c in copies) > 2 * min(c["distance"] for c in copies)
     assert names_of(page, "alike to y1 alone")
     page.click(control("outputs y1+y2"))
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert not names_of(page, "alike to y1 alone")
 
 
@@ -111,7 +109,7 @@ def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(sh
     page = show()
     page.click(control("preset gain"))
     page.click(control("act gain 0"))
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate("() => [...window.perceptObsLabs][0].settings.kept.gains.identifier_based.gain") == 10
     sizes = page.evaluate("""() => {
         const [{ drawn }] = window.perceptObsLabs;
@@ -131,12 +129,12 @@ def test_a_choice_opens_the_time_where_its_story_is(show):
     page = show()
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") < 20
     page.check(control("outputs y1"))
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") == 80
     for preset, high in (("foe", 12), ("bias", 80), ("belief", 80)):
         page.click(control(f"preset {preset}"))
         page.click(control(f"act {preset} 0"))
-        page.wait_for_function(RESTED)
+        page.wait_for_function(DRAWN)
         assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") == high, preset
 
 
@@ -146,7 +144,7 @@ def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(show):
     page.fill(control("noise size number"), "0.003")
     page.fill(control("identifier_based gain number"), "60")
     page.keyboard.press("Tab")
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") < 10
     assert not names_of(page, "80 s")  # too late to be sure of, so it is no event
 
@@ -154,7 +152,7 @@ def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(show):
 def test_names_of_arrows_can_be_read_and_the_estimate_leaves_the_point_in_sight(show):
     page = show()
     page.evaluate("() => [...window.perceptObsLabs][0].moveFoe([0.4, 0.6])")
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     for time in (0, 0.6, 1.2, 3.0):
         page.evaluate(PUT, [time])
         names = [found for found in names_of(page, "×") if "distance" not in found[0] and found[5] == "image-plane"]
@@ -206,21 +204,21 @@ def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(show):
     page.evaluate("() => document.activeElement.blur()")
     assert page.evaluate(LOOK)[2] is not None
     page.click(undo)
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(LOOK) == [*near[:2], None]
     assert page.locator(f'{control("line")}[aria-pressed="true"]').count() == 0
     page.click(undo)
     page.click(undo)
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(LOOK) == first
     for _ in range(3):
         page.click(redo)
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(LOOK)[:2] == near[:2]
     assert page.evaluate(LOOK)[2] is not None
     page.click(control("undo"))
     page.fill(control("noise size number"), "0.01")
     page.keyboard.press("Tab")
     page.click(undo)
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(LOOK)[:2] == near[:2]  # a setting that is undone leaves the time in sight

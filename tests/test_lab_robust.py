@@ -29,8 +29,8 @@ CHUNKS, SAMPLES = 2, 4000
 
 @pytest.fixture(scope="module")
 def python():
-    """The lab in Python."""
-    return observer_lab()
+    """The lab in Python, with a run that is long enough."""
+    return observer_lab(duration=20.0)
 
 
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python):

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 from jupyter_harness import NOTEBOOKS
-from lab_alone import DRAWN as SHOWN
+from lab_alone import DRAWN
 from lab_browser import UNFOLD, assert_equals_python, control, state
 from lab_settings import ALL, KEYS
 
@@ -33,7 +33,6 @@ SHOW = """async ({ state, buffers }) => {
     await bundle.default.render({ model, el: document.body });
 }"""
 
-DRAWN = "() => { const [lab] = window.perceptObsLabs; return lab.shown?.settings === lab.settings && !lab.pending; }"
 FOUND = """() => { const [lab] = window.perceptObsLabs; return {
     runs: lab.shown.runs.filter((run) => run.estimate.some((v) => Number.isFinite(v))).map((run) => run.name),
     refused: Object.keys(lab.kernels.refused(lab.settings)),
@@ -102,7 +101,7 @@ def from_disk(browser, tmp_path):
         page.on("request", lambda request: asked.append(request.url))
         page.on("pageerror", lambda error: asked.append(str(error)))
         page.goto((tmp_path / "lab.html").as_uri())
-        page.wait_for_function(SHOWN)
+        page.wait_for_function(DRAWN)
         return page, [url for url in asked[1:] if not url.startswith("blob:")]
 
     return opened
@@ -122,7 +121,7 @@ def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
     page, asked = from_disk(points_lab())
     page.evaluate("() => [...window.perceptObsLabs][0].change({ spin: 0.5 }, true)")
     page.wait_for_function("() => [...window.perceptObsLabs][0].latest.beside")
-    page.wait_for_function(SHOWN)
+    page.wait_for_function(DRAWN)
     assert asked == []
     page.close()
 
@@ -171,10 +170,6 @@ ON_PAPER = """() => {
     window.dispatchEvent(new Event("afterprint"));
     return found;
 }"""
-RESTED = """() => {
-    const [lab] = window.perceptObsLabs;
-    return lab.link.sent?.settings === lab.settings && !lab.pending;
-}"""
 ON_SCREEN = """() => {
     const root = document.querySelector(".percept-lab");
     const canvases = [...root.querySelectorAll("canvas")];
@@ -203,7 +198,7 @@ OF_STRUCTURE = {"Object's velocity, What is known": "vp3", "period (s)": "0.001"
 )
 def test_it_is_printed_on_one_page_without_controls(make, settings, told, from_disk):
     page, _ = from_disk(make(**settings))
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     before = page.evaluate(ON_SCREEN)
     found = page.evaluate(ON_PAPER)
     assert found["pressed"] == 0
@@ -217,6 +212,6 @@ def test_it_is_printed_on_one_page_without_controls(make, settings, told, from_d
     for size in ("A4", "Letter"):
         margins = dict.fromkeys(("top", "bottom", "left", "right"), "10mm")
         assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format=size, margin=margins))) == 1, size
-    page.wait_for_function(RESTED)
+    page.wait_for_function(DRAWN)
     assert page.evaluate(ON_SCREEN) == before
     page.close()

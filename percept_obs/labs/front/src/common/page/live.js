@@ -47,6 +47,8 @@ export class Live extends Showing {
     this.formulas = null;
     this.pictures = 0;
     this.spoken = 0;
+    /** Whether pictures and words are of the present settings, and Python was told of them. */
+    this.settled = false;
   }
 
   open(place) {
@@ -70,6 +72,7 @@ export class Live extends Showing {
   // What the hand does.
 
   touched(chosen) {
+    this.settled = false;
     if (chosen) {
       this.choices += 1;
       this.view.notice("");
@@ -191,6 +194,7 @@ export class Live extends Showing {
     this.address?.rested(settings);
     this.describe();
     this.view.rested();
+    this.settled = true;
   }
 
   /** Compute beside the page, from the first touch on: at the first picture nobody waits. */
