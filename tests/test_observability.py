@@ -7,6 +7,7 @@ from examples import BOTH, NOISY, ONE
 
 from percept_obs import (
     Camera,
+    ImagingSurface,
     PerspectiveSystem,
     Recording,
     Scenario,
@@ -22,6 +23,7 @@ from percept_obs import (
     track,
     windowed,
 )
+from percept_obs.system.surfaces import POINT
 
 b1, b2, b3, y1, y2 = sp.symbols("b1 b2 b3 y1 y2", real=True)
 
@@ -51,6 +53,17 @@ def test_the_circle_around_the_focus_of_expansion():
     n1, n2, n3 = sp.symbols("n1:4", real=True)
     assert sp.cancel(centre[0] - b1 / (n1 * b1 + n2 * b2 + n3 * b3)) == 0
     assert sp.expand(1 / radius**2 - (n1 * b1 + n2 * b2 + n3 * b3) ** 2) == 0
+
+
+def test_where_no_circle_can_be_the_places_where_w_vanishes_are_not_sought():
+    """Sympy needs 12 s of computing for them on this surface, each time that its image is drawn."""
+    X, Y, Z = POINT
+    R = sp.sqrt(X**2 + Y**2 + Z**2)
+    q = y1**2 + y2**2
+    own = ImagingSurface("own", (X / (R + Z), Y / (R + Z)), R, (2 * y1 / (1 + q), 2 * y2 / (1 + q), (1 - q) / (1 + q)))
+    found = instantaneous(PerspectiveSystem(affine(), own).measure("y1", "y2"))
+    assert found.growth is None
+    assert "zero_set" not in vars(found)
 
 
 def test_a_counter_example_to_the_printed_condition():

@@ -88,12 +88,13 @@ class InstantaneousObservability:
         """The factor c if |w|^2 = c |x1 - centre|^2, so that w is small in a circle; None if it is not."""
         x1 = self.form.x1
         if len(x1) < 2 or not all(entry.is_polynomial(*x1) for entry in self.form.w):
-            return None  # asked first, for the places where other functions vanish may take sympy minutes to find
+            return None
         curvature = sp.hessian(sum(entry**2 for entry in self.form.w), x1) / 2
         growth = sp.factor(curvature[0, 0])
-        same_all_round = (curvature - growth * sp.eye(len(x1))).expand() == sp.zeros(len(x1))
+        if (curvature - growth * sp.eye(len(x1))).expand() != sp.zeros(len(x1)):
+            return None  # asked first, for the places where w vanishes may take sympy minutes to find
         one_centre = len(self.zero_set) == 1 and set(self.zero_set[0]) == set(x1)
-        return growth if same_all_round and one_centre else None
+        return growth if one_centre else None
 
     def circle(self, threshold: sp.Expr | float) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
         """Centre and radius of the region where |w| is below a threshold.
