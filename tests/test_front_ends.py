@@ -90,8 +90,10 @@ def shown(request, browsers, tmp_path_factory):
     given = request.getfixturevalue(resource)
     page = browsers(browser).new_page(viewport={"width": 1280, "height": 900}, base_url=getattr(given, "url", None))
     page.set_default_timeout(30_000)
-    yield open_in(page, given)
-    page.context.close()
+    try:
+        yield open_in(page, given)
+    finally:
+        page.context.close()  # else one that did not open goes on saving its notebook
 
 
 @pytest.mark.browser
