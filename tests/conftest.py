@@ -42,15 +42,17 @@ def pytest_configure(config):
         config.add_cleanup(folder.cleanup)
 
 
-def pytest_collection_modifyitems(items):
-    """Files that take long first, for one at the end would keep a worker waiting: with a browser, many slow tests.
+def pytest_itemcollected(item):
+    """A test of a page that fails is tried once more, for its browser may have been kept from the processor.
 
-    A test of a page is tried once more where it failed, for its browser may have been kept from the processor.  The
-    last lines name each one that needed that (RERUN): it hides a fault, of the page or of the test, until it is mended.
+    The last lines name it as RERUN, with its traceback: it or the page has a fault that is to be mended.
     """
-    for item in items:
-        if item.get_closest_marker("browser"):
-            item.add_marker(pytest.mark.flaky(reruns=1))
+    if item.get_closest_marker("browser"):
+        item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+def pytest_collection_modifyitems(items):
+    """Files that take long first, for one at the end would keep a worker waiting: with a browser, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     browser = {item.path for item in items if item.get_closest_marker("browser")}

@@ -27,7 +27,9 @@ PLAYED = """async () => {
     const play = document.querySelector('[data-control="play"]');
     const [began, from] = [performance.now(), lab.state.cursor];
     play.click();
-    while (lab.state.cursor - from < 0.2) await new Promise((resolve) => requestAnimationFrame(resolve));
+    while (lab.state.cursor - from < 0.2 && performance.now() - began < 10000) {
+        await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
     play.click();
     return [lab.state.cursor - from, (performance.now() - began) / 1000];
 }"""
@@ -85,7 +87,7 @@ def test_play_moves_image_scene_and_charts_and_computes_nothing(page):
     mark = page.locator("figure.chart:not([hidden]) .now").first
     at = mark.bounding_box()["x"]
     played, elapsed = page.evaluate(PLAYED)
-    assert 0.2 < played <= elapsed
+    assert 0.2 <= played <= elapsed  # a slow page skips time, and never runs ahead
     shown = page.evaluate(TIME)
     page.wait_for_timeout(100)
     assert page.evaluate(TIME) == shown

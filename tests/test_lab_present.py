@@ -85,6 +85,23 @@ def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(b
     page.close()
 
 
+def test_a_lab_has_not_settled_before_its_words_follow_a_step_back(browser):
+    """Python knows these settings and their picture is there at once, but the words are those of the step before."""
+    page = opened(browser, observer_lab(duration=5.0))
+    page.wait_for_function(DRAWN)
+    page.check(control("outputs y1"))
+    page.wait_for_function(DRAWN)
+    said, settled = page.evaluate("""() => {
+        const [lab] = window.perceptObsLabs;
+        lab.undo();
+        return [document.querySelector(".verdicts").textContent, lab.settled];
+    }""")
+    assert not settled
+    page.wait_for_function(DRAWN)
+    assert page.text_content(".verdicts") != said
+    page.close()
+
+
 def test_without_translation_there_is_no_focus_of_expansion_and_the_lab_says_so(browser):
     page = opened(browser, observer_lab(b=[0.0, 0.0, 0.0]))
     page.wait_for_function(DRAWN)
