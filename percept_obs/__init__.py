@@ -1,6 +1,5 @@
 """Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
 
-from percept_obs.border import TooMuchWork, WrongKind
 from percept_obs.checking import CannotRead, Review, check
 from percept_obs.observability import (
     Bound,
@@ -55,6 +54,7 @@ from percept_obs.system.surfaces import (
 )
 from percept_obs.tracking.following import DoesNotFit, track
 from percept_obs.tracking.run import Run
+from percept_obs.validation import TooMuchWork, WrongKind
 
 __version__ = "0.1.0"
 

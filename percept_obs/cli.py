@@ -12,8 +12,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from percept_obs.border import write_whole
 from percept_obs.exercises import COPIES
+from percept_obs.validation import write_whole
 
 FIRST_NOTEBOOK = "00_start.ipynb"
 
@@ -70,8 +70,8 @@ def lab(options: argparse.Namespace) -> int:
 
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
-    from percept_obs.border import needed
     from percept_obs.site import NEEDS, SiteFault, build
+    from percept_obs.validation import needed
 
     if options.directory.exists() and not options.directory.is_dir():
         return _complain(f"{options.directory} is a file; name a folder, or a new one", 2)
@@ -113,7 +113,6 @@ def check(options: argparse.Namespace) -> int:
 
 def compare(options: argparse.Namespace) -> int:
     """Run every observer on the same noisy recordings of Ma's examples, from a start of zero, and print a table."""
-    from percept_obs.border import limit
     from percept_obs.observers import OBSERVERS
     from percept_obs.recording import Camera, Uniform, record
     from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
@@ -121,6 +120,7 @@ def compare(options: argparse.Namespace) -> int:
     from percept_obs.system.motion import affine
     from percept_obs.system.perspective import PerspectiveSystem
     from percept_obs.system.surfaces import pinhole
+    from percept_obs.validation import limit
 
     scenario = {"35": ma2005_eq35, "36": ma2005_eq36}[options.example]()
     form = PerspectiveSystem(affine(), pinhole()).measure(*options.outputs.split("+"))
@@ -148,8 +148,8 @@ def sweep(options: argparse.Namespace) -> int:
     """Run the ensemble that a TOML file describes, here or on a Dask cluster; it goes on where it was stopped."""
     from contextlib import nullcontext
 
-    from percept_obs.border import needed
     from percept_obs.studies.sweep import sweep
+    from percept_obs.validation import needed
 
     try:
         needed("cluster", "xarray", "zarr", *(("distributed",) if options.scheduler else ()))

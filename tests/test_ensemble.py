@@ -26,13 +26,13 @@ from percept_obs import (
     sphere,
     track,
 )
-from percept_obs.border import modules
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.many import with_numbers
 from percept_obs.studies import filling
 from percept_obs.studies.counting import OUTCOMES
 from percept_obs.studies.filling import Unfinished
 from percept_obs.studies.part import STATUS, Plan
+from percept_obs.validation import modules
 
 xr = pytest.importorskip("xarray")
 

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from percept_obs import Camera, Scenario, affine, pinhole, record
-from percept_obs.border import TooMuchWork
 from percept_obs.labs import observer_lab
 from percept_obs.recording import Frames, Recording, render
 from percept_obs.recording import frames as module
+from percept_obs.validation import TooMuchWork
 
 EXTENT = (-1.0, 1.0, -1.0, 1.0)
 RAMP = np.linspace(0, 1, 12).reshape(3, 4)

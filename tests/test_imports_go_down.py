@@ -27,7 +27,7 @@ FLOORS = (
     ("recording", "observers"),
     ("system",),
     ("compile",),
-    ("border",),
+    ("validation",),
 )
 LEVEL = {name: level for level, names in enumerate(FLOORS) for name in names}
 
@@ -189,7 +189,7 @@ def test_what_is_allowed_passes(tmp_path, path, text):
 def complaints(folder, path, text):
     """What the rules say of a small package in which one file has this text."""
     package = folder / "percept_obs"
-    folders = ("", "border/", "compile/", "system/", "observers/", "points/", "structure/", "tracking/")
+    folders = ("", "validation/", "compile/", "system/", "observers/", "points/", "structure/", "tracking/")
     files = ("observers/base.py", "observers/family.py", "system/forms.py")
     for name in (*(f"{folder}__init__.py" for folder in folders), *files, path):
         file = package / name

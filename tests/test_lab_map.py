@@ -12,9 +12,9 @@ from lab_browser import control, serious_violations
 from lab_settings import FRONT, NOISY, whole_model
 
 from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, scenarios
-from percept_obs.border import modules
 from percept_obs.labs import observer_lab, structure_lab
 from percept_obs.labs.observer.lab import runs
+from percept_obs.validation import modules
 
 FOLLOWED, DIVERGED, IMPOSSIBLE = 1, 2, 3
 GAIN = "gains.identifier_based.gain"

@@ -24,7 +24,7 @@ from percept_obs import (
     smo,
     track,
 )
-from percept_obs.border import WrongKind
+from percept_obs.validation import WrongKind
 
 RECORDING = record(scenarios.ma2005_eq35(), 5)
 

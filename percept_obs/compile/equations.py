@@ -10,8 +10,8 @@ from typing import Any
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.border import derived
 from percept_obs.compile.intermediate import definitions, written_out
+from percept_obs.validation import derived
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]

@@ -12,11 +12,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import derived
 from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.intermediate import common_subexpressions
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
+from percept_obs.validation import derived
 
 
 def vectorised(

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.border import limit
 from percept_obs.compile.arrays import Array, Indices
+from percept_obs.validation import limit
 
 Shares = tuple[Fraction, ...]
 

@@ -10,13 +10,13 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.observability.linearised import Doubt, Linearised, System, fitting, linearised, places
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.validation import checked
 
 Prior = Mapping[str, float] | ArrayLike | None
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Flags
 from percept_obs.observability.bound import Bound
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 
 @checked

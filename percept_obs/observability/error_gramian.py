@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import INSTANTS, step
 from percept_obs.observability.linearised import System, fitting, flow_along, linearised, places
@@ -14,6 +13,7 @@ from percept_obs.observability.windows import OverWindows, check_samples, gather
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import slack_of
+from percept_obs.validation import checked
 
 PERTURBED = 1e-3
 """Share of a coordinate by which a run begins beside the truth."""

@@ -9,7 +9,6 @@ from types import MappingProxyType
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.windows import OverWindows, check_samples, gathered
@@ -19,6 +18,7 @@ from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording
 from percept_obs.system.signal import slack_of
+from percept_obs.validation import checked
 
 LARGEST_TABLE = 2e7
 """Numbers that the transition matrices of all samples may take; of more samples only some are used."""

@@ -11,12 +11,12 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import MOST_TERMS, checked, limit
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.linearised import System, as_form, fitting, rate_of
 from percept_obs.points.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.validation import MOST_TERMS, checked, limit
 
 NEGLIGIBLE = 1e-8
 """A singular value below this share of the largest one is 0, when every row has the length 1."""

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import limit
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.validation import limit
 
 System = PartitionedSystem | PerspectiveSystem
 Doubt = float | Mapping[str, float]

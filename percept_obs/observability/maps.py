@@ -8,7 +8,6 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked, limit, positive
 from percept_obs.compile import Array, Printed, function_source, vectorised
 from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
@@ -16,6 +15,7 @@ from percept_obs.observability.measures import NOISE_VARIANCE
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.validation import checked, limit, positive
 
 Expressions = tuple[sp.Expr, ...]
 Range = tuple[float, float]

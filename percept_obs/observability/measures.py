@@ -10,7 +10,6 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.observability.bound import Bound, Prior, cramer_rao
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import LieRanks, lie_ranks
@@ -21,6 +20,7 @@ from percept_obs.points.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.verdict import number
+from percept_obs.validation import checked
 
 USUAL_WINDOW = 10.0
 """Seconds of a window, unless the recording is shorter than four of them."""

@@ -7,9 +7,9 @@ from functools import cached_property
 
 import sympy as sp
 
-from percept_obs.border import checked, expression
 from percept_obs.compile import written_out
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.validation import checked, expression
 
 
 @checked

@@ -9,7 +9,6 @@ from functools import cached_property, lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked, positive
 from percept_obs.compile import Table, solve
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH, LONGEST_STEP
@@ -19,6 +18,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.validation import checked, positive
 
 kappa = sp.Symbol("kappa", real=True)
 

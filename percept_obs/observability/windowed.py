@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.windows import OverWindows, check_window
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.signal import from_the_start
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True, eq=False)

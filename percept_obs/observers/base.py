@@ -10,7 +10,6 @@ from functools import lru_cache
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, at_once, right_hand_side
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.observers.gains import Gain
@@ -18,6 +17,7 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Any
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.border import WrongKind, refuse_kind
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.observers.base import About, FastestRate, Observer
 from percept_obs.observers.gains import Gain
@@ -17,6 +16,7 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.validation import WrongKind, refuse_kind
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.border import refuse_kind
+from percept_obs.validation import refuse_kind
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ import math
 
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.observers.base import FastestRate, Observer
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain, grid
@@ -22,6 +21,7 @@ from percept_obs.observers.inversion import (
 from percept_obs.observers.parts import hats, innovation
 from percept_obs.observers.switching import Switch, switch_named, switch_option
 from percept_obs.system.forms import CanonicalForm
+from percept_obs.validation import checked
 
 k1, k2, gamma, a, b, delta = sp.symbols("k1 k2 gamma a b delta", real=True)
 c = sp.Symbol("c", real=True)

@@ -2,12 +2,12 @@
 
 import sympy as sp
 
-from percept_obs.border import limit, refuse_kind
 from percept_obs.observers.base import FastestRate
 from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
+from percept_obs.validation import limit, refuse_kind
 
 Q, R, P0, kappa = sp.symbols("Q R P0 kappa", real=True)
 HIDDEN = "how much more both are in the hidden part"

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.border import checked
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
 from percept_obs.system.forms import CanonicalForm
+from percept_obs.validation import checked
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
 

@@ -5,8 +5,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from percept_obs.border import refuse_kind
 from percept_obs.observers.family import Option
+from percept_obs.validation import refuse_kind
 
 Switch = Callable[[sp.Expr, sp.Expr], sp.Expr]
 

@@ -20,9 +20,9 @@ from importlib import import_module
 from itertools import chain
 from pkgutil import iter_modules
 
-from percept_obs.border import bar, workers
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
+from percept_obs.validation import bar, workers
 
 __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", "judge", "page", "report"]
 

@@ -9,10 +9,10 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import Coefficients, checked, limit
 from percept_obs.points.form import PointsForm
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.surfaces import ImagingSurface, pinhole
+from percept_obs.validation import Coefficients, checked, limit
 
 MOST_POINTS = 200
 """Points of a body: sympy places their blocks within a few seconds."""

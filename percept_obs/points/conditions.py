@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.points.luenberger import LuenbergerObserver
+from percept_obs.validation import checked
 
 TOLERANCE = 1e-6
 """By which, relatively, an inequality may be missed and still counts as met."""

@@ -11,7 +11,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import Entries, checked, expression, matrix, numbers, warn
 from percept_obs.compile import Array, Indices, vectorised
 from percept_obs.points.block import PointBlock, point_block
 from percept_obs.points.directions import in_words, unobservable
@@ -20,6 +19,7 @@ from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
+from percept_obs.validation import Entries, checked, expression, matrix, numbers, warn
 
 DRAWS = 4
 """Values that a motion's symbols are given at random, to find what no motion lets a camera see."""

@@ -10,11 +10,11 @@ from typing import ClassVar
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.observers.base import About
 from percept_obs.observers.parts import hats
 from percept_obs.points.form import PointsForm
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, lyapunov_matrix
+from percept_obs.validation import checked
 
 ABOUT = About(
     "Luenberger-type observer",

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
 from percept_obs.system.signal import Signal
+from percept_obs.validation import checked, numbers
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""

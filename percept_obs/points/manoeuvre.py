@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.system.motion import TIME as t
+from percept_obs.validation import checked
 
 Vectors = tuple[tuple[sp.Expr, ...], ...]
 

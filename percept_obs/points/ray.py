@@ -8,12 +8,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.points.block import point_block
 from percept_obs.points.form import PointsForm
 from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.surfaces import pinhole
+from percept_obs.validation import checked, numbers
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.border import checked
 from percept_obs.points.conditions import Conditions, conditions
 from percept_obs.points.form import PointsForm
 from percept_obs.points.information import many_points
 from percept_obs.tracking import Run
 from percept_obs.tracking.information import Fit
+from percept_obs.validation import checked
 
 Array = NDArray[np.float64]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.points.bodies import rigid_body
 from percept_obs.points.form import PointsForm
 from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.points.simulation import PointsScenario
 from percept_obs.system.motion import TIME, linear
+from percept_obs.validation import checked
 
 OFFSET = (0.5, -0.3, 0.4)
 """Place of the second point from the first one, in metres, at time 0."""

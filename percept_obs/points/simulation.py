@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.points.form import PointsForm
 from percept_obs.recording import Scene
 from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import Motion
+from percept_obs.validation import checked
 
 
 class LeavesEveryBound(ValueError):

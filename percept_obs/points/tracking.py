@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags, Indices
 from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
@@ -20,6 +19,7 @@ from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course
 from percept_obs.tracking.following import DoesNotFit, follow
+from percept_obs.validation import checked, numbers
 
 KEPT = 100
 """Samples, about, at which P is kept and its conditions are looked at."""

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.points.bodies import independent_points
 from percept_obs.recording import Recording
 from percept_obs.recording.stereo_mat import LONGEST_GAP
 from percept_obs.recording.utias import PIXEL_SIGMA, utias_tables
+from percept_obs.validation import checked
 
 
 @checked

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, limit
 from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
+from percept_obs.validation import checked, limit
 
 Seed = np.random.Generator | int
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.recording.recording import Recording
 from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.validation import checked
 
 
 @checked

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Indices
+from percept_obs.validation import checked
 
 AT_ONCE = 200_000
 """Poses in windows that are fitted together: with what is computed from them they take about 50 MB."""

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, limit
 from percept_obs.compile import Array
 from percept_obs.recording.recording import Recording
 from percept_obs.system.signal import frozen
+from percept_obs.validation import checked, limit
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MOST_BYTES = 20_000_000

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import TooMuchWork, bar, limit
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_SQUARED_STATE
+from percept_obs.validation import TooMuchWork, bar, limit
 
 Rate = Callable[[float, Array], ArrayLike]
 

@@ -11,8 +11,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags, vectorised
+from percept_obs.validation import checked, numbers
 
 LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
 """Coefficients of a lens in OpenCV's order: k of the radius, p of a lens that is not centred."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.text_table import NANOSECONDS, SECONDS, Clock, PathLike, read_table, write_table
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording.derivatives import Derivative, Quadratic
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
+from percept_obs.validation import checked, numbers
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.border import checked, warn
 from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.doubts import doubts
 from percept_obs.recording.pixels import PixelCamera
@@ -21,6 +20,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
+from percept_obs.validation import checked, warn
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from percept_obs.border import checked
 from percept_obs.recording import Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import ImagingSurface, pinhole
+from percept_obs.validation import checked
 
 __all__ = ["ma2005_eq35", "ma2005_eq36", "planar"]
 

@@ -11,7 +11,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Flags, right_hand_side, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import step_grid
@@ -21,6 +20,7 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import TIME, Motion, ask_for_degrees
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
+from percept_obs.validation import checked
 
 LONGEST_LOOK_SHARE = 0.25
 """Share of the shortest time constant of a motion after which the distance is looked at."""

@@ -18,7 +18,6 @@ from scipy.io import loadmat, savemat
 from scipy.io.matlab import MatReadError
 from scipy.spatial.transform import Rotation
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
 from percept_obs.recording import Recording, Sighting
 from percept_obs.recording.derivatives import Derivative, Quadratic
@@ -27,6 +26,7 @@ from percept_obs.recording.poses import CameraPath, Poses
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
+from percept_obs.validation import checked, numbers
 
 NOT_SEEN = -1.0
 SHORTEST_TRACK = 3.0  # s

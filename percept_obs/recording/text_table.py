@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from percept_obs.border import checked, write_whole
 from percept_obs.compile import Array
+from percept_obs.validation import checked, write_whole
 
 PathLike = str | os.PathLike[str]
 

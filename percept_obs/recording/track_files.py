@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike, write_table
+from percept_obs.validation import checked
 
 
 @checked

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.border import warn
 from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import Clock, PathLike, TextTable, read_table
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import slack_of
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
+from percept_obs.validation import warn
 
 
 class Unlikely(UserWarning):

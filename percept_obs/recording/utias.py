@@ -17,9 +17,9 @@ import os
 import urllib.request
 from pathlib import Path
 
-from percept_obs.border import checked, write_whole
 from percept_obs.recording import Recording
 from percept_obs.recording.stereo_mat import StereoTables, read_stereo_mat
+from percept_obs.validation import checked, write_whole
 
 UTIAS_ADDRESS = (
     "https://raw.githubusercontent.com/utiasSTARS/msckf-swf-comparison/"

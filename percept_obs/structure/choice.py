@@ -11,7 +11,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, vectorised
 from percept_obs.structure.dynamics import CAMERA, OBJECT, OUTPUTS, ROTATION, d_s, scaled_dynamics, ybar3
 from percept_obs.system.forms import CanonicalForm, partition
@@ -19,6 +18,7 @@ from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
+from percept_obs.validation import checked, numbers
 
 QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
 """What may be unknown: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.observers import (
     Observer,
     de_luca,
@@ -22,6 +21,7 @@ from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.structure.simulation import EXACT_DEPTH
 from percept_obs.tracking.following import track
+from percept_obs.validation import checked
 
 if TYPE_CHECKING:
     import pandas as pd

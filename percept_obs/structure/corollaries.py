@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from percept_obs.border import checked
 from percept_obs.structure.choice import StructureAndMotion
+from percept_obs.validation import checked
 
 
 @checked

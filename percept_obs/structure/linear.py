@@ -10,13 +10,13 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.structure.choice import StructureAndMotion
 from percept_obs.structure.dynamics import d_s
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import rigid
 from percept_obs.system.view import OnePoint
+from percept_obs.validation import checked
 
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording.pixels import PixelCamera
+from percept_obs.validation import checked, numbers
 
 CHWA_CAMERA = PixelCamera((720, 720), (320, 240))
 """The camera of Chwa 2019, section VII.A; the paper states no size of the image."""

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.structure.corollaries import COROLLARIES
 from percept_obs.structure.simulation import StructureScenario
 from percept_obs.system.motion import rigid
 from percept_obs.system.surfaces import pinhole
+from percept_obs.validation import checked
 
 _STILL = (0.0, 0.0, 0.0)
 

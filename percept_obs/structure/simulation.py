@@ -10,7 +10,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
 from percept_obs.recording.pixels import PixelCamera
@@ -21,6 +20,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
+from percept_obs.validation import checked, numbers
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 

@@ -9,7 +9,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.recording import Recording
@@ -19,6 +18,7 @@ from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import OverTime, Signal, slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 

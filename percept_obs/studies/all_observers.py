@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import choose
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
@@ -23,6 +22,7 @@ from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.border import bar, checked
 from percept_obs.compile import choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
@@ -21,6 +20,7 @@ from percept_obs.system.signal import from_the_start, slack_of
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
+from percept_obs.validation import bar, checked
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from percept_obs.border import checked
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 Array = NDArray[np.float64]
 

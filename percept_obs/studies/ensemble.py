@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from percept_obs.border import Kind, checked, limit, needed
 from percept_obs.compile import Array, Language, choose
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.observability import cramer_rao
@@ -24,6 +23,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Hold
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.verdict import TOLERANCE
+from percept_obs.validation import Kind, checked, limit, needed
 
 Start = Mapping[str, float] | Sequence[float] | None
 Client = Annotated[Any, Kind("a client of Dask", lambda c: c is None or hasattr(c, "get_executor"), "Client()")]

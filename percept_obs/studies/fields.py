@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked, limit, positive
 from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.observability.maps import displacements
 from percept_obs.recording import NO_NOISE, Camera
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.validation import checked, limit, positive
 
 
 @checked

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.border import bar, warn, workers
 from percept_obs.compile import Array
 from percept_obs.studies.part import NOT_RUN, Plan
 from percept_obs.studies.varying import Grid
+from percept_obs.validation import bar, warn, workers
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,13 +9,13 @@ import numpy as np
 import sympy as sp
 from scipy.linalg import expm
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 LARGEST_CONDITION = 1e6
 """A window whose normal equations are conditioned worse than this determines no point."""

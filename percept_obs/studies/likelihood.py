@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 Follow = Callable[[Recording, Observer], Run]
 

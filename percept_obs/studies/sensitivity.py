@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.compile import Array
 from percept_obs.compile.variation import slope, slopes, variation
 from percept_obs.observers.base import Observer
@@ -18,6 +17,7 @@ from percept_obs.system.motion import TIME, Motion
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
+from percept_obs.validation import checked
 
 SHARE = 0.01
 """The share of a motion's size by which an entry is taken to be wrong, unless another is asked for."""

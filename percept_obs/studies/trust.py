@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.compile import Array, Flags
 from percept_obs.tracking.information import FEWEST
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE, Trust
+from percept_obs.validation import checked
 
 
 @checked

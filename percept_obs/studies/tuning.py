@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.border import bar, checked
 from percept_obs.observability.windowed import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
@@ -19,6 +18,7 @@ from percept_obs.studies.comparison import best_setting, relative_distance_error
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
+from percept_obs.validation import bar, checked
 
 if TYPE_CHECKING:
     import pandas as pd

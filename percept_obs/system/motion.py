@@ -11,9 +11,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import MOST_TERMS, Coefficients, are_numbers, checked, limit, matrix, numbers, warn
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.signal import OverTime, Signal
+from percept_obs.validation import MOST_TERMS, Coefficients, are_numbers, checked, limit, matrix, numbers, warn
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.system.derivation import Derivation, equals, joined, rates, where
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.validation import checked
 
 
 @checked

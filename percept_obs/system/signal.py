@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, numbers
 from percept_obs.compile import Array, Flags
+from percept_obs.validation import checked, numbers
 
 
 def slack_of(times: Array) -> float:

@@ -10,7 +10,6 @@ from typing import Annotated, Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import Kind, checked, limit, refuse_kind, warn
 from percept_obs.compile import Array, Indices, Language, Table, choose, solve, vectorised
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_STEP_RATE, LONGEST_STEP
@@ -22,6 +21,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.course import Course, Hold, laid_out
 from percept_obs.tracking.run import Run
+from percept_obs.validation import Kind, checked, limit, refuse_kind, warn
 
 Start = Mapping[str, float] | Sequence[float] | None
 

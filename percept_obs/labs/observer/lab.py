@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from percept_obs.border import TooMuchWork
 from percept_obs.compile import Array, Language
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.many import side_by_side
@@ -63,6 +62,7 @@ from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import REMEDY, for_the_page
+from percept_obs.validation import TooMuchWork
 
 LOOK_WORK = 16
 """What a look at a motion that varies costs Python, as `MOST_WORK` counts; there are two paths."""

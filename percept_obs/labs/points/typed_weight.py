@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import expression
 from percept_obs.checking.reading import read
 from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.points.texts import BLOCKS
@@ -23,6 +22,7 @@ from percept_obs.labs.shared.typed_motion import INSTANTS
 from percept_obs.points import LyapunovMatrix, constant, lyapunov, riccati, scheduled
 from percept_obs.system.motion import TIME
 from percept_obs.system.signal import OverTime
+from percept_obs.validation import expression
 
 MOST_OF_P = 2000
 """Letters of a P that is typed."""

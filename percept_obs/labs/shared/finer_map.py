@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from percept_obs.border import TooMuchWork, needed
 from percept_obs.compile import Array, Language
 from percept_obs.labs.shared.lab import Lab
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Schema, Settings, Several, Whole
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
+from percept_obs.validation import TooMuchWork, needed
 
 NOT_YET, FOLLOWED, DIVERGED, IMPOSSIBLE = range(4)
 """What became of a run, by the numbers that the page has for it (front/src/common/model/cells.js)."""

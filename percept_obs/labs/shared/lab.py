@@ -19,12 +19,12 @@ import traitlets
 from IPython.display import display
 from IPython.utils.capture import capture_output
 
-from percept_obs.border import write_whole
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed
 from percept_obs.recording import Gaussian, Uniform
+from percept_obs.validation import write_whole
 
 BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""

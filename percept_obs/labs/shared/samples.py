@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from percept_obs.border import limit
 from percept_obs.compile import Array
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import slack_of
+from percept_obs.validation import limit
 
 MOST_SAMPLES = 10_000
 """100 s at 100 Hz: a kink for each, at which page and Python end a step."""

@@ -9,13 +9,13 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import expression
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import read
 from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Settings, Text
 from percept_obs.system.motion import TIME
+from percept_obs.validation import expression
 
 MOST = 400
 INSTANTS = 501

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.border import TooMuchWork
 from percept_obs.compile import Array, Language
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
@@ -55,6 +54,7 @@ from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import REMEDY, for_the_page
+from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from percept_obs.border import checked
 from percept_obs.recording import Recording
 from percept_obs.recording.doubts import LARGEST_USUAL
 from percept_obs.studies.diagnosis.experiments import EXPERIMENTS, FRAMES, Experiment, possible, within_reach
 from percept_obs.studies.diagnosis.explaining import Explained, explain
+from percept_obs.validation import checked
 
 CLEARLY = 10.0
 """Logarithm of the ratio of likelihoods from which on a mistake is named."""

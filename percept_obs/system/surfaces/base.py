@@ -14,9 +14,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from percept_obs.border import checked, expression, expressions
 from percept_obs.compile import Array, Flags, definitions, vectorised
 from percept_obs.system.view import OnePoint
+from percept_obs.validation import checked, expression, expressions
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 

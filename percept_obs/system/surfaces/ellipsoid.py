@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.compile import Intermediate
 from percept_obs.system.surfaces.base import POINT, ImagingSurface
+from percept_obs.validation import checked
 
 LETTERS = sp.symbols("q11 q12 q13 q22 q23 q33", real=True)
 

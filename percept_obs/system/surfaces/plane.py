@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.system.surfaces.base import POINT, ImagingSurface
+from percept_obs.validation import checked
 
 
 @checked

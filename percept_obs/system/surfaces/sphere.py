@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.system.surfaces.base import POINT, ImagingSurface, X, Y, Z
 from percept_obs.system.surfaces.lift import mu
+from percept_obs.validation import checked
 
 
 @checked

@@ -6,9 +6,9 @@ import math
 
 import sympy as sp
 
-from percept_obs.border import checked
 from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 from percept_obs.system.surfaces.lift import mu
+from percept_obs.validation import checked
 
 
 @checked

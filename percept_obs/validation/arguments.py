@@ -15,7 +15,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from percept_obs.border.kinds import (
+from percept_obs.validation.kinds import (
     Kind,
     are_numbers,
     classes,

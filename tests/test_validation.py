@@ -30,13 +30,13 @@ from percept_obs import (
     scenarios,
     track,
 )
-from percept_obs.border import TooMuchWork, WrongKind, checked, expression
 from percept_obs.observers import lao
 from percept_obs.points import PointsScenario, independent_points
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording.path import varying_path
 from percept_obs.studies.comparison import compare
 from percept_obs.system.motion import AreTheseDegrees
+from percept_obs.validation import TooMuchWork, WrongKind, checked, expression
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 SHORT = record(scenarios.ma2005_eq35(), 1, Camera(0.1))

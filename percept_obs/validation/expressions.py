@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.border.checking import WrongKind, came
+from percept_obs.validation.arguments import WrongKind, came
 
 
 def expression(value: Any, what: str) -> sp.Expr:
