@@ -115,7 +115,7 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
 
 
 def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:
-    """What cached properties of some entries of a group find."""
+    """Results of cached properties of some entries of a group."""
     g, numbers = task
     return [{"agrees": GROUPS[g][k].agrees, "finding": GROUPS[g][k].finding} for k in numbers]
 

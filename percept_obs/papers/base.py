@@ -1,4 +1,4 @@
-"""What papers print and what the package derives, in the same letters, and checks of one by the other."""
+"""Prints of the papers and derivations of the package in the same letters, compared with each other."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def column(*entries: Any) -> sp.ImmutableMatrix:
 
 
 def reader(*letters: Any, **terms: Any) -> Callable[[str], Printed]:
-    """What reads prints that are typed as text.
+    """Make a reader of prints that are typed as text.
 
     Equations are separated by semicolons and may go on over several lines.  A letter with a prime is a rate; of vectors
     there are ``norm(e)``, ``norm1(e)``, ``inner(e, x)`` and ``signs(e)``, of matrices ``lambda_min(P)``.
@@ -182,7 +182,7 @@ class SmallestEigenvalue(_Scalar):
 
 
 WORDS = {*READ_FUNCTIONS, "lambda_min", "pi"}
-"""What stands for no number."""
+"""Words that stand for no number."""
 
 FUNCTIONS = {
     "norm": Norm,
@@ -191,7 +191,7 @@ FUNCTIONS = {
     "signs": lambda vector: vector.applyfunc(sp.sign),
     "lambdamin": SmallestEigenvalue,
 }
-"""What `reader` reads besides the usual functions."""
+"""Functions that `reader` reads besides the usual ones."""
 
 
 def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
@@ -204,7 +204,7 @@ def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
 
 
 def vanishes(*expressions: sp.Expr) -> bool:
-    """Whether expressions are identically zero.
+    """Return True if expressions are identically zero.
 
     Rational ones are decided at points modulo a prime, see `percept_obs.checking`: a "no" is certain, a "yes" wrong
     with a probability below 2^-150.  For others, one point where it is not zero refutes an identity, and the algebra,
@@ -219,7 +219,7 @@ def vanishes(*expressions: sp.Expr) -> bool:
 
 
 def _told_apart(expression: sp.Expr) -> bool:
-    """Whether no two letters of an expression have names that mean the same."""
+    """Return True if all letters of an expression have names of different meaning."""
     return len({key(symbol.name) for symbol in expression.free_symbols}) == len(expression.free_symbols)
 
 
@@ -231,7 +231,7 @@ def _somewhere(expression: sp.Expr) -> sp.Expr:
 
 
 def _is_refuted(expression: sp.Expr) -> bool:
-    """Whether an expression, as it stands, has a rational value other than zero."""
+    """Return True if an expression, as it stands, has a rational value other than zero."""
     if expression.has(_Scalar):
         return False
     value = _somewhere(expression)
@@ -259,7 +259,7 @@ def filled_in(expression: sp.Basic, values: Values) -> Any:
 
 
 def is_identity(equation: sp.Basic, values: Values) -> bool:
-    """Whether an equation's sides agree identically once values are put in."""
+    """Return True if an equation's sides agree identically once values are put in."""
     if not isinstance(equation, sp.Eq):
         return False
     left, right = (filled_in(side, values) for side in equation.args)
@@ -290,13 +290,13 @@ def identities(*derivations: Callable[[], Values]) -> Check:
 
 
 def separates(relation: sp.Basic, quantity: sp.Basic, below: float, above: float, values: Values) -> bool:
-    """Whether a printed bound admits a quantity's value below it and excludes one above it."""
+    """Return True if a printed bound admits a quantity's value below it and excludes one above it."""
     outcomes = [relation.xreplace({quantity: sp.Float(v), **values}).doit() for v in (below, above)]
     return outcomes == [sp.true, sp.false]
 
 
 def strict_at_zero(printed: Printed, at_zero: Values) -> bool:
-    """Whether inequalities contradict themselves where all of their norms are zero."""
+    """Return True if inequalities contradict themselves where all of their norms are zero."""
     return sp.And(*(formula.xreplace(at_zero).doit() for formula in printed)).simplify() == sp.false
 
 

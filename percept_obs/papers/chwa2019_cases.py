@@ -40,7 +40,7 @@ def side_by_side(*columns: sp.MatrixExpr) -> sp.BlockMatrix:
 
 @cache
 def case(number: int, axes: str) -> Values:
-    """What a corollary's letters stand for, with the axes i, j, k in the given order.
+    """Values of a corollary's letters, with the axes i, j, k in the given order.
 
     The estimate of g has letters of its own, and what is estimated from it comes from the package.
     """
@@ -156,7 +156,7 @@ def one_more_dimension(printed: Printed) -> Finding:
 
 
 def solvable(number: int, page: str, note: str, *needed: str) -> Entry:
-    """What a corollary says of its determinant: that it vanishes where the named velocity does, or nowhere."""
+    """Statement of a corollary about its determinant: it vanishes where the named velocity does, or nowhere."""
     says = f"solvable if {needed[0]} is not 0" if needed else "always solvable"
     section, check = COROLLARIES[number - 1].section, nonsingular(number, *needed)
     return at(f"corollary {number}", page, section, says)((), check, note)

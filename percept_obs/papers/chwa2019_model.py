@@ -67,7 +67,7 @@ def in_motion() -> Values:
 
 @cache
 def from_the_pose() -> Values:
-    """The same from a camera that turns and moves: its axes Q and its centre c in F*, and the point x_O.
+    """Values of the letters for a camera that turns and moves: axes Q and centre c in F*, and the point x_O.
 
     To first order in t, from any attitude; the rates are those at t = 0.
     """

@@ -34,7 +34,7 @@ def observer() -> Observer:
 
 @cache
 def equations() -> Values:
-    """What the observer's letters stand for, with e_s, e_sI and v as they are."""
+    """Values of the observer's letters; e_s, e_sI and v stay as they are."""
     made = observer()
     estimate, integral, slope, pseudo = made.equations.state
     letters = {estimate: ybar - e_s, integral: e_sI, slope: a + b * t, pseudo: v}
@@ -110,7 +110,7 @@ def drops(*gaps: sp.Expr) -> Check:
     """A check that each printed relation, an equality or a bound, drops just this from its left side, which is >= 0."""
 
     def check(printed: Printed) -> Finding:
-        """What each step drops from its left side, with the package's error dynamics put in."""
+        """Terms that each step drops from its left side, with the package's error dynamics put in."""
         values = error_dynamics()
         outcomes = [len(printed) == len(gaps)]
         for line, gap in zip(in_tanh(printed), gaps, strict=False):

@@ -45,7 +45,7 @@ def hundredths(*values: int) -> sp.ImmutableMatrix:
 
 
 def numbers_of(printed: Printed) -> dict[sp.Basic, sp.Basic]:
-    """What printed constants are."""
+    """Values of the printed constants."""
     return {line.lhs: line.rhs for line in printed}
 
 
@@ -101,7 +101,7 @@ def start_of_ghat(printed: Printed) -> Finding:
 
 
 def in_metres(printed: Printed) -> Finding:
-    """How the coordinates of a point change with the unit of length: the power of it in each."""
+    """Powers of the unit of length in the coordinates of a point."""
     unit = sp.Symbol("unit", positive=True)
     larger = {coordinate: unit * coordinate for coordinate in POINT}
     coordinates = (*pinhole().image, 1 / pinhole().distance)

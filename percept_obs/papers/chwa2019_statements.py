@@ -27,7 +27,7 @@ s_e, s, t = sp.symbols("s_e s t", real=True)
 y3 = sp.Symbol("y3", real=True)
 Omega2 = sp.MatrixSymbol("Omega2", sp.Integer(3), sp.Integer(1))
 STEP = 1e-3
-"""Of explicit Euler, in seconds."""
+"""Step of explicit Euler, in seconds."""
 
 
 def columns_independent(*names: str) -> Check:
@@ -52,7 +52,7 @@ def known_scale() -> Values:
 
 
 def does_not_turn() -> Values:
-    """What turning adds, without turning."""
+    """Omega_2 of a camera and object that do not turn."""
     return {Omega2: (scaled_dynamics().rotation * column(w1, w2, w3)).xreplace(dict.fromkeys((w1, w2, w3), sp.S.Zero))}
 
 
@@ -105,7 +105,7 @@ def three_of_seven(printed: Printed) -> Finding:
 
 
 def gains_of(printed: Printed) -> Finding:
-    """How many of the five gains stand in the printed (8) to (14)."""
+    """Number of the five gains that stand in the printed (8) to (14)."""
     lines = {entry.place: entry.printed for entry in OBSERVER if entry.number in range(8, 15)}
     numbers = {f"gains in {place}": len({k1, k2, gamma, a, b} & symbols_of(*line)) for place, line in lines.items()}
     return judged(numbers["gains in (12)"] == 5, Verdict.FALSE, numbers)
@@ -117,7 +117,7 @@ def symbols_of(*lines: sp.Basic) -> set[sp.Basic]:
 
 
 def known_range(printed: Printed) -> Finding:
-    """How many of the cases with a known range have d_s among what they estimate."""
+    """Number of the cases with a known range that estimate d_s."""
     inside = [d_s.name in corollary.unknown for corollary in COROLLARIES if corollary.section.startswith("VI.")]
     return judged(all(inside), Verdict.FALSE, {"cases of VI": len(inside), "of them estimate d_s": sum(inside)})
 
@@ -170,7 +170,7 @@ def beyond_in_each_entry(printed: Printed) -> Finding:
 
 
 def assumption(number: int, page: str, section: str, says: str, note: str, check: Check = not_checkable) -> Entry:
-    """What an assumption takes for granted, or what of it is needed."""
+    """Entry of an assumption; one without a check is a definition."""
     free = check is not_checkable
     verdict, known = (Verdict.NOT_CHECKABLE, Known.DEFINITION) if free else (Verdict.HOLDS, Known.DERIVED)
     return at(f"Assumption {number}", page, section, says)((), check, note, verdict, known=known)

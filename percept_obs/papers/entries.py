@@ -19,7 +19,7 @@ Values = dict[sp.Basic, sp.Basic]
 
 
 class Verdict(StrEnum):
-    """What a computation says about a printed statement.
+    """Result of a computation about a printed statement.
 
     Examples
     --------
@@ -36,7 +36,7 @@ class Verdict(StrEnum):
 
 
 class Known(StrEnum):
-    """How a verdict is known.
+    """Way in which a verdict is known.
 
     A derivation is exact, for all values of the letters or for one that refutes.  A definition, a choice or an
     assumption has nothing to be derived from.  As implemented: the package's own equations or numbers are the printed
@@ -139,12 +139,12 @@ class Entry:
         return int(digits[1]) if digits else None
 
     def named(self, place: str | int) -> bool:
-        """Whether this is what a reader calls the place: ``"(38)"``, ``38`` or ``"Figure 3"``."""
+        """Return True if this names the place: ``"(38)"``, ``38`` or ``"Figure 3"``."""
         return str(place).casefold() in (self.place.casefold(), str(self.number))
 
     @cached_property
     def finding(self) -> Finding:
-        """What the check finds in the printed formulas."""
+        """Findings of the check in the printed formulas."""
         return self.check(self.printed)
 
     @property
@@ -154,7 +154,7 @@ class Entry:
 
     @cached_property
     def agrees(self) -> bool:
-        """Whether the computed verdict is the recorded one, and a misprint's correction is none."""
+        """Return True if the computed verdict is the recorded one and a misprint's correction is right."""
         if self.finding.verdict != self.expected:
             return False
         mended = (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
@@ -162,7 +162,7 @@ class Entry:
 
     @property
     def target(self) -> Target:
-        """What `percept_obs.check` compares a formula of your own with: the print, or its correction.
+        """Target that `percept_obs.check` compares a formula of your own with: the print, or its correction.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class Entry:
 
     @property
     def method(self) -> str:
-        """What the check computes, in a sentence."""
+        """Computation of the check, in a sentence."""
         return " ".join((self.check.__doc__ or "").split("\n\n")[0].split())
 
     @property

@@ -175,7 +175,7 @@ def split_in_two(printed: Printed) -> Finding:
 
 
 def edges() -> dict[sp.Basic, float]:
-    """What each step of (24) bounds, and the bound by the matrices of the example."""
+    """Quantity that each step of (24) bounds, and the bound by the matrices of the example."""
     values, here = totals(), constants()
     of_B, of_C = 1 + float(here[ysup]), np.linalg.norm(UNITS, 2)
     held = simpson(np.linspace(0, WINDOW, 101) ** 2, dx=WINDOW / 100)  # the time for which theta counts, squared
@@ -237,7 +237,7 @@ def from_any_start(printed: Printed) -> Finding:
 
 
 def integral_is_enough(printed: Printed) -> Finding:
-    """What is left of the integral, F' = -|rho|^2 <= -F / gamma, falls at least as fast as exp(-t / gamma).
+    """Decay of the rest of the integral: F' = -|rho|^2 <= -F / gamma, so F falls at least as exp(-t / gamma).
 
     Gamma has to serve every t0 for that; of rho' = -rho / (1 + t), where it does not, |rho| falls as a power of t.
     """

@@ -113,7 +113,7 @@ def two_blocks() -> sp.ImmutableMatrix:
 
 
 def information() -> Values:
-    """What S and B stand for with two points."""
+    """Values of S and B with two points."""
     B_both = sp.diag(*(BLOCK.B.xreplace(dict(zip(BLOCK.y, image, strict=True))) for image in IMAGES.values()))
     return {S: two_blocks(), B: sp.ImmutableMatrix(B_both)}
 

@@ -99,7 +99,7 @@ def observer(points: int, states: int) -> LuenbergerObserver:
 
 @cache
 def known(points: int, states: int) -> Values:
-    """What the vectors and matrices stand for where the images are letters of their own."""
+    """Values of the vectors and matrices where the images are letters of their own."""
     made = observer(points, states)
     form = made.form
     estimate, truth = column(*made.estimate), column(*form.state)
@@ -126,7 +126,7 @@ def known(points: int, states: int) -> Values:
 
 @cache
 def seen(points: int, states: int) -> Values:
-    """The same where the images are those of the state, and rho is its error."""
+    """Values of the vectors and matrices where the images are those of the state, and rho is its error."""
     made, values = observer(points, states), known(points, states)
     form = made.form
     images = form.H(form.state)

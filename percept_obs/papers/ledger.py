@@ -94,13 +94,13 @@ class Ledger:
 
     @property
     def counts(self) -> str:
-        """How often each verdict was found, and how many are known in which way."""
+        """Counts of the verdicts, and of the ways in which they are known."""
         found = summary(entry.finding.verdict for entry in self.entries)
         return f"{found}\n{known_how(self.entries)}"
 
 
 def summary(verdicts: Iterable[Verdict]) -> str:
-    """How often each verdict was given, in one line."""
+    """Counts of the verdicts, in one line."""
     counts = Counter(verdicts)
     return ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
 
@@ -131,7 +131,7 @@ def _html_row(cells: Iterable[str | tuple[sp.Basic, ...]]) -> str:
 
 
 def known_how(entries: Iterable[Entry]) -> str:
-    """How many verdicts are known in which way, in one line."""
+    """Counts of the ways in which verdicts are known, in one line."""
     counts = Counter(entry.known for entry in entries)
     return ", ".join(f"{counts[known]} {known}" for known in Known)
 

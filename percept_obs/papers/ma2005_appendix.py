@@ -74,7 +74,7 @@ SCALES = tuple(explicit(line.rhs, {e1: column(1), e2: column(1)})[0] for line in
 
 
 def letters(symbol: sp.MatrixSymbol, rows: int, columns: int = 1) -> sp.ImmutableMatrix:
-    """What a matrix or vector stands for: entries of its own."""
+    """A matrix or vector with letters as entries."""
     return sp.ImmutableMatrix(rows, columns, lambda i, j: sp.Symbol(f"{symbol.name}_{i + 1}{j + 1}", real=True))
 
 
@@ -129,7 +129,7 @@ def reduced_dynamics_are_stable(printed: Printed) -> Finding:
 
 
 def fulfilled(printed: Printed, constants: dict[sp.Symbol, float], along: list[dict[sp.Basic, float]]) -> bool:
-    """Whether inequalities hold for all of these errors."""
+    """Return True if inequalities hold for all of these errors."""
     return all(line.xreplace(constants).xreplace(at).doit() == sp.true for at in along for line in printed)
 
 
@@ -140,7 +140,7 @@ def errors_around() -> Array:
 
 
 def rate_of_V1(n1: int, n2: int) -> bool:
-    """Whether the rate of V1 = xi1^T P xi1 + |xi2|^2 along the mended (38) is xi1^T (A^T P + P A) xi1, for any w."""
+    """Return True if V1 = xi1^T P xi1 + |xi2|^2 has the rate xi1^T (A^T P + P A) xi1 along the mended (38)."""
     values = of_any_size(n1, n2) | {P_: letters(P_, n1, n1)}
     P = (values[P_] + values[P_].T) / 2
     rates = [explicit(line.rhs.xreplace({P_: -P_}), values | {P_: P}) for line in REDUCED]

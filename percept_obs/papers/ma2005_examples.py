@@ -110,7 +110,7 @@ def converges(number: int, *runs: tuple[str, str]) -> Check:
 
 @cache
 def never_reset(name: str, every: float) -> int:
-    """How many of five runs on (35), y1 alone, are never reset, where noise is drawn so often and held between."""
+    """Number of five runs on (35), y1 alone, without a reset, for noise drawn at this period and held between."""
     clean, count = record(EXAMPLES[35], camera=Camera(0.01)), 0
     held, edge = round(every / 0.01), float(NOISE.rhs)
     for seed in range(5):
@@ -121,7 +121,7 @@ def never_reset(name: str, every: float) -> int:
 
 
 def with_slower_noise(name: str) -> dict[str, float]:
-    """The same where noise is drawn every 10 ms and every second."""
+    """Numbers of runs without a reset for noise drawn every 10 ms and every second."""
     intervals = {"10 ms": 0.01, "1 s": 1.0}
     label = "of 5 runs never reset, noise drawn every"
     return {f"{name}, y1 alone, {label} {words}": never_reset(name, every) for words, every in intervals.items()}

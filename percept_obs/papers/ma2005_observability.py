@@ -81,7 +81,7 @@ def unseen_error() -> dict[str, float]:
 
 
 def stays_unseen() -> bool:
-    """Whether the run leaves that error as it was."""
+    """Return True if the run leaves that error unchanged."""
     start, end = unseen_error().values()
     return abs(end - start) < 1e-9 < abs(start)
 

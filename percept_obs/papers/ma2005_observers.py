@@ -61,7 +61,7 @@ RATES = dict(zip(SYSTEM.coordinates, SYSTEM.rate, strict=True))
 
 @cache
 def in_vectors(form: CanonicalForm) -> Values:
-    """What the vectors of (10) and (11) stand for in a form."""
+    """Values of the vectors of (10) and (11) in a form."""
     equations = identifier_based(form).equations
     k = len(form.x1)
     state, flow = column(*equations.state), column(*equations.flow).subs(sigma2, 0)

@@ -58,7 +58,7 @@ def on_the_plane() -> Values:
 
 
 def on_the_usual_plane() -> Values:
-    """The same with the normal vector along Z."""
+    """Values of the letters with the normal vector along Z."""
     normal = {n1: sp.S.Zero, n2: sp.S.Zero, n3: sp.S.One}
     return {letter: sp.cancel(value.xreplace(normal)) for letter, value in on_the_plane().items()}
 

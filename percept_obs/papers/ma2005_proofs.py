@@ -97,7 +97,7 @@ def sliding(form: CanonicalForm) -> Values:
 
 @cache
 def in_the_layer(form: CanonicalForm) -> Values:
-    """The same with the boundary layer."""
+    """Values of the error letters with the boundary layer in place of the sign."""
     observer = sliding_mode(form)
     same = {s: lam for s in observer.equations.state if s.name.startswith("lambda")}
     return {letter: value.subs(same) for letter, value in errors(observer).items()}
@@ -156,7 +156,7 @@ def can_grow(dynamics: Dynamics) -> Check:
 
 
 def where_g_is_the_same(printed: Printed) -> Finding:
-    """What the coefficients of (4), with both outputs, have to be for g not to depend on x2."""
+    """Conditions on the coefficients of (4), with both outputs, for g not to depend on x2."""
     (line,) = printed
     values = sliding(FORMS[0])
     needed = sp.Poly((values[g] - values[ghat])[0], *FORMS[0].coordinates, *values[e2]).coeffs()
@@ -182,7 +182,7 @@ def stable_nearby(printed: Printed) -> Finding:
 
 
 def constants_are_given(printed: Printed) -> Finding:
-    """Whether (35) admits it: on e1 = 0, where e2' = -alpha |w|^2 e2, (30) leaves c3 / c4 at most alpha |w|^2."""
+    """Return True if (35) admits it: on e1 = 0, e2' = -alpha |w|^2 e2, so (30) asks c3 / c4 <= alpha |w|^2."""
     recording = EXAMPLES[0].coordinates(np.arange(0, EXAMPLES[0].duration, 0.01))
     squares = vectorised(SYSTEM.coordinates, [FORMS[0].w.norm()], EXAMPLES[0].motion.values)(*recording.T)[0] ** 2
     least, listed = float(squares.min()), float(sliding_mode(FORMS[0]).gain_values[alpha])

@@ -17,7 +17,7 @@ GREEK = dict(
     )
 )
 BETTER = (("&#x1D540;", "<mi>I</mi>"), ("<mo>&dd;</mo>", "<mo>d</mo>"), ("<mi>&#960;</mi>", "<mi>pi</mi>"))
-"""What is written in place of what sympy prints; the pi of the papers is an index."""
+"""Replacements in what sympy prints; the pi of the papers is an index."""
 
 
 def shown(part: str | tuple[sp.Basic, ...]) -> str:
@@ -42,7 +42,7 @@ def markup(formula: sp.Basic) -> str:
 
 
 def _plain(formula: sp.Basic) -> str:
-    """What sympy prints; branches side by side."""
+    """MathML as sympy prints it, with branches side by side."""
     if isinstance(formula, Relational) and isinstance(formula.rhs, sp.Piecewise):
         branches = (
             f"{_plain(value)}<mtext>&nbsp;{'otherwise' if when == sp.true else 'if'}&nbsp;</mtext>"
