@@ -39,9 +39,7 @@ def messages(lab, count, seed, with_summary):
         if draw.random() < with_summary:
             message["summary"] = {"serial": serial} if draw.random() < 0.7 else _one_of(WRONG, draw)
         if draw.random() < 0.1:
-            message |= {
-                name: _one_of(WRONG, draw) for name in ("model", "texts", "kind", "parts", "error", "map_asked", CANARY)
-            }
+            message |= {name: _one_of(WRONG, draw) for name in ("model", "texts", "kind", "parts", "error", CANARY)}
         yield message
 
 

@@ -18,11 +18,9 @@ const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charC
 const films = Object.entries(STATE.frames).map(([name, film]) => [name, { ...film, images: film.images.map(binary) }]);
 const state = { ...STATE, texts: binary(STATE.texts), frames: Object.fromEntries(films) };
 const listeners = {};
-const TOLD = ["asked", "map_asked", "settings", "summary"];
+const TOLD = ["asked", "settings", "summary"];
 window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
-    const { values } = found.map_found ?? {};
-    if (values) found.map_found.values = binary(values);
     Object.assign(state, found);
     for (const name of Object.keys(found)) for (const hear of listeners[`change:${name}`] ?? []) hear();
 };
@@ -83,11 +81,7 @@ def following(lab):
 
     def answers(message):
         lab.set_state(message)
-        told = {name: getattr(lab, name) for name in ("analysis", "error", "written")}
-        map_found = dict(getattr(lab, "map_found", {}))
-        if "values" in map_found:
-            map_found["values"] = base64.b64encode(map_found["values"]).decode()
-        return told | {"map_found": map_found}
+        return {name: getattr(lab, name) for name in ("analysis", "error", "written")}
 
     return answers
 

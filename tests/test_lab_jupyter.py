@@ -64,17 +64,6 @@ def test_the_hand_moves_the_picture_and_the_kernel_hears_of_it(fresh, folder):
     assert not log_entries(fresh)
 
 
-def test_the_kernel_fills_in_a_finer_map(fresh):
-    pytest.importorskip("numba")
-    fresh.evaluate("() => [...window.perceptObsLabs][0].change({ duration: 1 }, true)")
-    fresh.select_option(control("map shows"), "settling")
-    sweep = "[...window.perceptObsLabs][0].planes.find(({ sweep }) => sweep).sweep"
-    fresh.wait_for_function(f"() => {sweep}.whole")
-    fresh.click(control("map finer"))
-    fresh.wait_for_function(f"() => {sweep}.finest === 128", timeout=60_000)
-    assert not log_entries(fresh)
-
-
 def test_pictures_are_in_view_whichever_control_has_the_focus(fresh):
     fresh.set_viewport_size({"width": 1280, "height": 800})
     painted(fresh)

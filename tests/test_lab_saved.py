@@ -126,14 +126,6 @@ def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
     page.close()
 
 
-def test_its_map_offers_nothing_that_needs_python(from_disk):
-    page, _ = from_disk(observer_lab(duration=1.0, over={"shows": "settling"}))
-    page.wait_for_function("() => [...window.perceptObsLabs][0].planes.find(({ sweep }) => sweep).sweep.whole")
-    assert page.evaluate("() => document.querySelector('[data-control=\"map finer\"]').hidden") is False
-    assert not page.locator(".finer").or_(page.get_by_text("Finer map")).filter(visible=True).count()
-    page.close()
-
-
 def test_its_curves_are_those_of_python(from_disk):
     page, _ = from_disk(
         observer_lab(outputs=["y1"], observers=["identifier_based", "de_luca"], noise={"kind": "uniform", "size": 0.01})

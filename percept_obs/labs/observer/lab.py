@@ -12,9 +12,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from percept_obs.compile import Array, Language
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.labs.observer.many import side_by_side
 from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
 from percept_obs.labs.observer.settings import (
     HOLDS,
@@ -37,8 +35,7 @@ from percept_obs.labs.observer.tracks import (
 )
 from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.shared.brought import brought
-from percept_obs.labs.shared.finer_map import MapLab
-from percept_obs.labs.shared.lab import NOISES
+from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.offered import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.sampling import (
@@ -68,7 +65,7 @@ LOOK_WORK = 16
 """What a look at a motion that varies costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
-class ObserverLab(MapLab):
+class ObserverLab(Lab):
     """The observer lab, shown by the page; `settings` define everything, and may be set from Python as well.
 
     Parameters
@@ -268,21 +265,13 @@ class ObserverLab(MapLab):
         moved = exact_path(duration, settings["period"], fastest)
         return moved + (LOOK_WORK * looks(duration, fastest, looked) if self._varies(settings) else 0.0)
 
-    def runs(self, settings: Settings, language: Language = "python") -> dict[str, Run]:
+    def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs that settings stand for, by the observers' names."""
         recording, start, believed = self.recorded(settings), _start(settings), _believed(settings)
         return {
-            name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language=language)
+            name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language="python")
             for name in settings["observers"]
         }
-
-    def side_by_side(self, settings: Settings, varied: Mapping[str, Array]) -> Array | None:
-        """What becomes of runs of a simulated point under a constant motion; see `MapLab`."""
-        if settings["scenario"] in self._recordings or self._varies(settings):
-            return None
-        scene = _scene(settings, self._motion_of(settings), self._offer.surfaces[settings["surface"]])
-        observer = self._tuned(settings, settings["observers"][0])
-        return side_by_side(scene, observer, _start(settings), _believed(settings), settings, varied)
 
     def recorded(self, settings: Settings) -> Recording:
         """What the camera records, as far as the point stays in front of it."""

@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Language
+from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.common_settings import gains, offering, over
-from percept_obs.labs.shared.finer_map import MapLab
-from percept_obs.labs.shared.lab import NOISES
+from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import looks_at, samples_for_the_page
 from percept_obs.labs.shared.sampling import (
@@ -64,7 +63,7 @@ LOOK_WORK = 16
 """What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
-class StructureLab(MapLab):
+class StructureLab(Lab):
     """The lab of structure and motion; `settings` define everything, and may be set from Python as well.
 
     Unknowns that cannot be told apart are shown, with the reason.
@@ -142,9 +141,9 @@ class StructureLab(MapLab):
         """Runs of the same settings in Python, by the observers' names."""
         return self.runs(self.settings)
 
-    def runs(self, settings: Settings, language: Language = "python") -> dict[str, Run]:
+    def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs that settings stand for, by the observers' names."""
-        return runs(settings, self._own, self._samples, language)
+        return runs(settings, self._own, self._samples)
 
     def typed(self, text: str) -> Typed:
         """The motion that a text describes; a ValueError if it cannot be read."""
@@ -288,7 +287,6 @@ def runs(
     settings: Settings,
     own: Mapping[str, OwnObserver] = MappingProxyType({}),
     samples: Motion | None = None,
-    language: Language = "python",
 ) -> dict[str, Run]:
     """Runs that lab settings stand for, by the observers' names, with what was brought to the lab."""
     unknowns = unknowns_of(settings, samples)
@@ -298,7 +296,7 @@ def runs(
     for name in settings["observers"]:
         make = OBSERVERS[name][1] if name in OBSERVERS else own[name]
         observer = _made(make, unknowns).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language=language)
+        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
     return found
 
 

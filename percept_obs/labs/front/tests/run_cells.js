@@ -1,7 +1,7 @@
 // Runs places of maps over two settings, given on standard input as shares of the way along both axes, and prints what became of them.
 import { readFileSync } from "node:fs";
 import { planOf, valueOn } from "../src/common/model/axes.js";
-import { bare, baseOf, FINER, fillCell, rowAt, settingsAt } from "../src/common/model/cells.js";
+import { bare, baseOf, fillCell, settingsAt } from "../src/common/model/cells.js";
 import { axesOf as axesOfPoint } from "../src/observer/model/axes.js";
 import { CellEngine } from "../src/observer/model/cell_engine.js";
 import { Kernels } from "../src/observer/model/kernels.js";
@@ -23,14 +23,12 @@ for (const { settings, shares } of tasks) {
   const base = baseOf(settings, plan, functions);
   const lab = { engine: ofStructure ? new StructureEngine(model) : new CellEngine(model), kernels };
   const out = new Float64Array(3);
-  const names = [...new Set([...plan.across.moves, ...plan.up.moves])];
   const cells = shares.map(([x, y]) => {
     const place = [valueOn(plan.across, x), valueOn(plan.up, y)];
     const there = settingsAt(base, plan, place, functions);
     fillCell(out, 0, there, lab, functions);
-    const row = rowAt([x, y].map((share) => Math.floor(share * FINER)), names, { plan, base }, { model, kernels }, functions);
-    return { place, row, kind: out[0], settling: String(out[1]), error: String(out[2]), settings: there && { ...settings, ...there, over: settings.over } };
+    return { place, kind: out[0], settling: String(out[1]), error: String(out[2]), settings: there && { ...settings, ...there, over: settings.over } };
   });
-  answers.push({ across: plan.across.place, up: plan.up.place, names, cells });
+  answers.push({ across: plan.across.place, up: plan.up.place, cells });
 }
 process.stdout.write(JSON.stringify(answers));

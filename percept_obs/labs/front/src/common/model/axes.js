@@ -11,7 +11,6 @@ import { changeAt, switchOf, valueAt } from "./settings.js";
  * @property {number} low
  * @property {number} high
  * @property {boolean} log
- * @property {string[]} moves  places of the settings that it changes
  * @property {boolean} records  whether another value makes another recording
  * @property {(settings: any, functions: any) => number | undefined} get  the present value, undefined where it has no meaning
  * @property {(settings: any, value: number, functions: any) => any} put  the settings with another value; null where there are none
@@ -35,7 +34,7 @@ const withUnit = (label, unit) => (unit && unit !== "1" ? `${label} in ${unit.re
 export function axisAt(model, place, label, meant = (_settings) => true) {
   const { low, high, log, unit } = /** @type {any} */ (schemaAt(schemaFor(model), place));
   return {
-    ...{ place, label: withUnit(label, unit), low, high, log, moves: [place], records: !/^(start|believed)/.test(place) },
+    ...{ place, label: withUnit(label, unit), low, high, log, records: !/^(start|believed)/.test(place) },
     get: (settings) => (meant(settings) ? valueAt(settings, place) : undefined),
     // A map may still be that of settings in which it had a meaning.
     put: (settings, value) => (meant(settings) ? { ...settings, ...changeAt(settings, place, value) } : null),
@@ -48,7 +47,7 @@ export function gainAxes({ observers }, name) {
   return gains.map(({ name: gain, low, high, unit }) => {
     const place = `gains.${name}.${gain}`;
     return {
-      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, log: low > 0 && high / low >= DECADE, moves: [place], records: false },
+      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, log: low > 0 && high / low >= DECADE, records: false },
       get: (settings) => (ways[switchOf(settings, name)].includes(gain) ? settings.gains[name][gain] : undefined),
       put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
     };

@@ -2,7 +2,6 @@
 // The cells of a map over two settings: what became of one observer's run at each of them.
 
 import { gainAxes, valueIn } from "./axes.js";
-import { valueAt } from "./settings.js";
 
 /** What became of a run. */
 export const [NOT_YET, FOLLOWED, DIVERGED, IMPOSSIBLE] = [0, 1, 2, 3];
@@ -12,10 +11,7 @@ export const EACH_CELL = 3;
 
 /** How many cells along a side the first picture may have, for which a hand that moves waits, and those that follow. */
 export const FIRST = [4, 6, 8, 12, 16];
-export const THEN = [24, 64];
-
-/** How many cells along a side Python fills in. */
-export const FINER = 128;
+export const THEN = [24, 64, 128];
 
 /** Settings of a run that nobody looks at but a map: one observer, and nothing that is only drawn. */
 export function bare(settings, observer) {
@@ -45,13 +41,6 @@ export function settingsAt(base, { across, up }, [x, y], functions) {
 export function orderOf({ across, up }, cells) {
   const rows = up.records || !across.records;
   return (k) => (rows ? [k % cells, Math.floor(k / cells)] : [Math.floor(k / cells), k % cells]);
-}
-
-/** The named numbers of the settings of a cell of the finer map, null where there is no run. */
-export function rowAt(cell, names, { plan, base }, { model, kernels }, functions) {
-  const place = [plan.across, plan.up].map((axis, c) => valueIn(axis, cell[c], FINER));
-  const there = settingsAt(base, plan, place, functions);
-  return there && gainsAllowed(there, model, kernels) ? names.map((name) => valueAt(there, name)) : null;
 }
 
 /** Fill in what becomes of a run. */

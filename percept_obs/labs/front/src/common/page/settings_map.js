@@ -9,7 +9,6 @@ import { cellInWords, mapInWords, placeInWords, stateInWords } from "../model/ma
 import { openBeside } from "./beside.js";
 import { Picture } from "./canvas.js";
 import { element } from "./controls.js";
-import { FinerMap } from "./finer_map.js";
 import { put } from "./put.js";
 import { RunThere } from "./run_there.js";
 import { boxOf, drawAim, drawMap } from "./settings_map_drawing.js";
@@ -40,8 +39,7 @@ export class SettingsMap extends Picture {
     this.pad = element("div", { class: "aim", tabindex: 0, role: "slider", "aria-label": HOW, "aria-valuenow": 0, title: "Press to go there" });
     this.pad.dataset.control = "map place";
     this.line = element("p", { class: "run-there", "aria-hidden": "true" });
-    this.finer = new FinerMap(lab, this.sweep);
-    this.figure.append(this.pad, this.line, this.finer.button);
+    this.figure.append(this.pad, this.line);
     /** @type {RunThere | null} */
     this.there = null;
     this.listen();
@@ -158,7 +156,6 @@ export class SettingsMap extends Picture {
 
   /** Nothing is to be filled any more. */
   close() {
-    this.finer.stop();
     this.here?.stop();
     this.worker?.terminate();
     this.here = this.worker = null;
@@ -185,7 +182,6 @@ export class SettingsMap extends Picture {
     this.begin();
     const functions = this.want(shown);
     if (!functions) return undefined;
-    this.finer.show();
     const size = this.fit(theme.font);
     const box = boxOf(size);
     if (!this.box || Object.entries(box).some(([side, value]) => this.box?.[side] !== value)) {

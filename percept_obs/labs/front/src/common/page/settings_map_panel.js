@@ -1,7 +1,6 @@
 // The controls of the map over two settings: what it shows, of which observer, and the setting along each axis.
 
 import { planOf } from "../model/axes.js";
-import { FINER } from "../model/cells.js";
 import { changeAt } from "../model/settings.js";
 import { element, select } from "./controls.js";
 import { topic } from "./fieldsets.js";
@@ -25,7 +24,7 @@ export function mapTopic(panel, axesOf) {
   });
   const axes = ["across", "up"].map((part) => axisChoice({ name: `map ${part}`, label: part, set: set(part) }, part, plan));
   const rows = [observer, ...axes].map((control) => panel.add(control));
-  const more = element("div", {}, ...rows, element("p", { class: "meaning" }, "Each place is a whole run with all other settings as they are; noise has the same seed everywhere."), element("p", { class: "meaning finer" }, `Python can fill in more: press "Finer map" beside the map for ${FINER} by ${FINER} places.`));
+  const more = element("div", {}, ...rows, element("p", { class: "meaning" }, "Each place is a whole run with all other settings as they are; noise has the same seed everywhere."));
   const body = topic("over", "Map over two settings", panel.add(shows), panel.onlyIf(({ over }) => over.shows !== "nothing", more));
   for (const near of ["pointerenter", "focusin", "toggle"]) body.addEventListener(near, () => lab.planes.find((plane) => plane.sweep).hire());
   return body;

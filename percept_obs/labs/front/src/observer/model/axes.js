@@ -31,7 +31,7 @@ export function axesOf(settings, model) {
 /** The focus of expansion, moved with the distance of b kept. */
 function focusAxis(model, c) {
   return {
-    ...{ place: `foe.${c}`, label: `focus of expansion, y${c + 1}`, low: -3, high: 3, log: false, moves: ["b.0", "b.1", "b.2"], records: true },
+    ...{ place: `foe.${c}`, label: `focus of expansion, y${c + 1}`, low: -3, high: 3, log: false, records: true },
     get: (settings, functions) => focusOf(settings, functions, model)?.[c],
     put(settings, value, functions) {
       const foe = focusOf(settings, functions, model);
@@ -46,7 +46,7 @@ function seenAxis(_, c) {
   const range = c < 2 ? { low: -1.5, high: 1.5, log: false } : { low: 1, high: 50, log: true };
   const seen = (settings, { project }) => Array.from(project([...settings.X0, ...shapeOf(settings)], [0, 0, 0]));
   return {
-    ...{ place: `seen.${c}`, label: ["start y1", "start y2", "start distance in m"][c], ...range, moves: ["X0.0", "X0.1", "X0.2"], records: true },
+    ...{ place: `seen.${c}`, label: ["start y1", "start y2", "start distance in m"][c], ...range, records: true },
     get: (settings, functions) => seen(settings, functions)[c],
     put(settings, value, functions) {
       const [y1, y2, distance] = seen(settings, functions).with(c, value);
