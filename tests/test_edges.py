@@ -25,11 +25,11 @@ from percept_obs.compile.integrator import EACH
 from percept_obs.compile.kernels import Table, solve
 from percept_obs.labs.observer.texts import observer_of
 from percept_obs.labs.observer.words import run_in_words
-from percept_obs.observability.gramian import Gramian, decay_bound, gramian
+from percept_obs.observability.directions import mainly
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.observers import extended_kalman, linear_approximation
 from percept_obs.points import PointsForm, PointsScenario, kernel, riccati, rigid_body
-from percept_obs.points.directions import mainly
+from percept_obs.points.gramian import Gramian, decay_bound, gramian
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import scenarios
 from percept_obs.recording.path import lowest_between, varying_path

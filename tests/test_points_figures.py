@@ -5,7 +5,7 @@ import pytest
 from matplotlib.figure import Figure as MatplotlibFigure
 
 from percept_obs import Camera, Recording, figures, luenberger, record, track
-from percept_obs.observability.gramian import decay_bound, gramian
+from percept_obs.points.gramian import decay_bound, gramian
 from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 
 ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from percept_obs import PointsForm, affine, chained, linear, pinhole, plane, rigid, sphere
+from percept_obs.observability.directions import in_words, mainly
 from percept_obs.points import (
     NotLinear,
     UnseenDirection,
@@ -15,7 +16,6 @@ from percept_obs.points import (
     point_block,
     rigid_body,
 )
-from percept_obs.points.directions import in_words, mainly
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT
 

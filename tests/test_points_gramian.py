@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from percept_obs import Camera, PointsScenario, luenberger, record, track
-from percept_obs.observability.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points import UnseenDirection, riccati, rigid_body
+from percept_obs.points.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points.scenarios import along_the_line_of_sight, lost_offset, moving_body
 
 START_ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])

@@ -12,7 +12,7 @@ from points_settings import CASES, as_array, random_settings, run_in_node
 from percept_obs.labs.points.lab import points_lab, run_of
 from percept_obs.labs.points.settings import PICTURES
 from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
-from percept_obs.observability.gramian import gramian
+from percept_obs.points.gramian import gramian
 from percept_obs.points.manoeuvre import Manoeuvre
 
 

@@ -8,7 +8,7 @@ import pytest
 from lab_settings import FRONT
 
 from percept_obs.labs.points.lab import points_lab, recording_of, run_of
-from percept_obs.observability.gramian import gramian, linear_gramian
+from percept_obs.points.gramian import gramian, linear_gramian
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
 

@@ -10,8 +10,8 @@ from test_utias import EKF_SETTINGS
 from utias_folder import utias_folder
 
 from percept_obs import FirstSight, luenberger, track
-from percept_obs.observability.gramian import gramian
 from percept_obs.points import riccati
+from percept_obs.points.gramian import gramian
 from percept_obs.points.ray import ray_error, ray_turning
 from percept_obs.points.utias import OUT_OF_SIGHT, load_utias_points
 from percept_obs.recording.utias import load_utias, utias_tables

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from percept_obs.figures import axis, given, look, words
 from percept_obs.figures.base import Drawing, canvas, figure, legend_above
-from percept_obs.observability.gramian import DecayBound
 from percept_obs.points import PointsRun
+from percept_obs.points.gramian import DecayBound
 
 
 @figure("there is no run, one has no truth, or its error is not positive where it is fitted")

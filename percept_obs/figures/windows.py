@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 
 from percept_obs.figures import axis, given, look, words
 from percept_obs.figures.base import Drawing, canvas, figure, legend_above
-from percept_obs.observability.gramian import Gramian
 from percept_obs.observability.windowed import Excitation
+from percept_obs.points.gramian import Gramian
 from percept_obs.studies.consistency import Consistency
 
 
@@ -64,13 +64,13 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     Examples
     --------
     >>> from percept_obs import Camera, figures, record
-    >>> from percept_obs.observability.gramian import gramian
+    >>> from percept_obs.points.gramian import gramian
     >>> from percept_obs.points.scenarios import moving_body
     >>> found = gramian(record(moving_body(1), 5, Camera(0.1)), 2)
     >>> print(figures.gramian(found).text.split("; ")[1])
     least is seen in the 2 s from 0 s on, mainly of r_z, r_y, r_x.
     """
-    found = given.several(found, Gramian, "observability.gramian.gramian()")
+    found = given.several(found, Gramian, "points.gramian.gramian()")
     names = given.labels_for(labels, [f"{one.window:g} s window" for one in found])
     ax = canvas(ax, 3.2)
     yield "Smallest eigenvalue of the Gramian over the beginning of its window, on a logarithmic axis."

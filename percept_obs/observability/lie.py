@@ -12,8 +12,8 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
+from percept_obs.observability.directions import in_words
 from percept_obs.observability.linearised import System, as_form, fitting, rate_of
-from percept_obs.points.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.validation import MOST_TERMS, checked, limit

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.observability.bound import Bound, Prior, cramer_rao
+from percept_obs.observability.directions import in_words
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import LieRanks, lie_ranks
 from percept_obs.observability.linearised import System, fitting
 from percept_obs.observability.windowed import Excitation, instants, windowed
 from percept_obs.observers import extended_kalman
-from percept_obs.points.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.verdict import number

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.points.directions import in_words
+from percept_obs.observability.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.signal import slack_of
 

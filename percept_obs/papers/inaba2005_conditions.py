@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.observability.gramian import gramian as windowed
-from percept_obs.observability.gramian import linear_gramian as windowed_linear
 from percept_obs.papers.base import Norm, at_most, column, equal, explicit, filled_in, identities, reader, vanishes
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, rigid_body
+from percept_obs.points.gramian import gramian as windowed
+from percept_obs.points.gramian import linear_gramian as windowed_linear
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 from percept_obs.recording import record

@@ -9,7 +9,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from percept_obs.observability.gramian import Gramian, gramian
 from percept_obs.papers.base import Norm, less, reader, separates, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
 from percept_obs.points import (
@@ -22,6 +21,7 @@ from percept_obs.points import (
     riccati,
     scheduled,
 )
+from percept_obs.points.gramian import Gramian, gramian
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import Camera, record
 from percept_obs.system.motion import TIME, linear

@@ -12,8 +12,8 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Indices, vectorised
+from percept_obs.observability.directions import in_words, unobservable
 from percept_obs.points.block import PointBlock, point_block
-from percept_obs.points.directions import in_words, unobservable
 from percept_obs.recording import Recording
 from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion

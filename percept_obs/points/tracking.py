@@ -17,8 +17,8 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.course import Course
 from percept_obs.tracking.following import DoesNotFit, follow
+from percept_obs.tracking.grid import TimeGrid
 from percept_obs.validation import checked, numbers
 
 KEPT = 100
@@ -66,7 +66,7 @@ class FirstSight:
 @follow.register
 def _follow_points(
     observer: LuenbergerObserver,
-    along: Course,
+    along: TimeGrid,
     start: FirstSight | Sequence[float] | None,
     believed: Motion | None,
     language: Language | None,
@@ -110,7 +110,7 @@ def _follow_points(
 class _Task:
     """What is to be followed, at which steps."""
 
-    along: Course
+    along: TimeGrid
     form: PointsForm
     matrix: LyapunovMatrix
     coefficients: Array

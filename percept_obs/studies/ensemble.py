@@ -20,8 +20,8 @@ from percept_obs.studies.part import Plan
 from percept_obs.studies.results import dataset, settings
 from percept_obs.studies.varying import CAMERA, Grid, camera_with, grid_of, refuse_gains, units
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.course import Hold
 from percept_obs.tracking.following import DoesNotFit, named_start, track
+from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import Kind, checked, limit, needed
 

@@ -23,7 +23,7 @@ from percept_obs.studies.varying import camera_with
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
-from percept_obs.tracking.course import Hold
+from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import SETTLED_PART
 
 NOT_RUN, DONE, NOT_IN_FRONT = range(3)

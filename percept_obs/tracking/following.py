@@ -19,7 +19,7 @@ from percept_obs.observers.inversion import Unobservable, elapsed, first_innovat
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.course import Course, Hold, laid_out
+from percept_obs.tracking.grid import Hold, TimeGrid, time_grid
 from percept_obs.tracking.run import Run
 from percept_obs.validation import Kind, checked, limit, refuse_kind, warn
 
@@ -131,12 +131,12 @@ def track(
         f"numbers, from {steps:.3g} steps",
         "track a shorter part, recording.between(begin, end), or take longer steps",
     )
-    along = laid_out(recording, step, hold, longest_hold)
+    along = time_grid(recording, step, hold, longest_hold)
     return follow(observer, along, start, believed, language)
 
 
 @singledispatch
-def follow(observer: Any, along: Course, start: Any, believed: Motion | None, language: Language | None) -> Run:
+def follow(observer: Any, along: TimeGrid, start: Any, believed: Motion | None, language: Language | None) -> Run:
     """Let an observer follow a course; each kind of observer registers how it does.
 
     Raises
@@ -148,7 +148,9 @@ def follow(observer: Any, along: Course, start: Any, believed: Motion | None, la
 
 
 @follow.register
-def _follow(observer: Observer, along: Course, start: Start, believed: Motion | None, language: Language | None) -> Run:
+def _follow(
+    observer: Observer, along: TimeGrid, start: Start, believed: Motion | None, language: Language | None
+) -> Run:
     form, recording, index = observer.form, along.recording, along.index
     believed = believed or recording.motion
     _refuse_misfits(along, observer, believed)
@@ -230,7 +232,7 @@ def _reader(
     return by_row(tables, constants, (*estimate, *([which] if unobservable else [])), language), len(begun)
 
 
-def _warn_of_long_steps(observer: Observer, along: Course) -> None:
+def _warn_of_long_steps(observer: Observer, along: TimeGrid) -> None:
     """Tell before the run, from gains and times alone, when a step will no longer resolve the observer."""
     if observer.fastest is None:
         return
@@ -250,7 +252,7 @@ def _warn_of_long_steps(observer: Observer, along: Course) -> None:
         warn(StepTooLong(told))
 
 
-def _refuse_misfits(along: Course, observer: Observer, believed: Motion) -> None:
+def _refuse_misfits(along: TimeGrid, observer: Observer, believed: Motion) -> None:
     form, recording = observer.form, along.recording
     view = recording.view
     if form.view is None or not form.view.fits(view):
@@ -299,7 +301,7 @@ def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates
     return dict(zip(names, map(float, start), strict=True))
 
 
-def _known(along: Course, believed: Motion) -> Array:
+def _known(along: TimeGrid, believed: Motion) -> Array:
     """Parameters of motion and view at the instants of the steps."""
     rows, view = believed.constants, along.recording.view
     if rows is None:

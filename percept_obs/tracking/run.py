@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
-from percept_obs.tracking.course import Hold
+from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.information import NOTHING, Fit, Information, gathered, one_point, relative_deviation
 from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
 from percept_obs.validation import checked

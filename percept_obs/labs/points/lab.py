@@ -37,7 +37,6 @@ from percept_obs.labs.shared.samples import is_sampled, looks_at, refuse_longer,
 from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
-from percept_obs.observability.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import (
     FirstSight,
@@ -47,6 +46,7 @@ from percept_obs.points import (
     luenberger,
 )
 from percept_obs.points.form import JUDGED, PointsForm, points_form
+from percept_obs.points.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points.manoeuvre import Manoeuvre, velocities
 from percept_obs.points.run import REMEDY
 from percept_obs.recording import Camera, Recording, record

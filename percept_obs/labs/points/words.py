@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.observability.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points import PointsRun
 from percept_obs.points.form import points_form
+from percept_obs.points.gramian import decay_bound, gramian, linear_gramian
 from percept_obs.points.ray import ray_turning
 
 BOUND_WINDOW = 4.0

@@ -1,4 +1,4 @@
-// Directions of a state in words, as points/directions.py has them.
+// Directions of a state in words, as observability/directions.py has them.
 
 import { short } from "../../common/model/scales.js";
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
+from percept_obs.observability.directions import mainly
 from percept_obs.observability.windows import OverWindows, check_samples, gathered
 from percept_obs.points.conditions import conditions
-from percept_obs.points.directions import mainly
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.recording import Recording

@@ -17,7 +17,7 @@ Hold = Literal["zero", "first", "exact"]
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class TimeGrid:
     """A recording, laid out in steps for an observer that follows it.
 
     Parameters
@@ -99,11 +99,11 @@ class Course:
         return np.asarray(held)
 
 
-def laid_out(recording: Recording, step: float, hold: Hold, longest_hold: float) -> Course:
+def time_grid(recording: Recording, step: float, hold: Hold, longest_hold: float) -> TimeGrid:
     """A recording in steps no longer than given, one from each sample to the next where that is short enough."""
     if recording.longest_interval <= step * (1 + STEP_ROUNDING):
-        return Course(recording, recording.time, recording.places, hold, longest_hold)
-    return Course(recording, *step_grid(recording.time, step), hold, longest_hold)
+        return TimeGrid(recording, recording.time, recording.places, hold, longest_hold)
+    return TimeGrid(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 
 def _bridged(recording: Recording, hold: Hold) -> Array:
