@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import os
 import re
 import secrets
@@ -260,6 +261,10 @@ class Server:
 @contextmanager
 def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     """JupyterLab on a folder, with everything else that it writes kept in an empty folder `home`."""
+    if importlib.util.find_spec("jupyterlab") is None:
+        from conftest import missing  # only here, for notebooks' kernels import this module, too
+
+        missing("jupyterlab", "JupyterLab is missing; get it with: python -m pip install 'percept-obs[lab]'.")
     for name, text in SETTINGS.items():
         file = home / f"settings/@jupyterlab/{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)

@@ -314,7 +314,7 @@ def serious_violations(page, widths=("", "400px")):
     """What axe-core finds to be serious or critical inside the lab, everything open, at some widths."""
     axe = FRONT / "node_modules/axe-core/axe.min.js"
     if not axe.exists():
-        missing(f"axe-core is missing: run npm ci in {FRONT}.")
+        missing("node", f"axe-core is missing: run npm ci in {FRONT}.")
     page.evaluate(UNFOLD)
     page.evaluate(axe.read_text())
     serious = []

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import platformdirs
 import pytest
-import utias_folder as lookup
+from conftest import missing
 from numpy.typing import NDArray
 from utias_folder import utias_folder
 
@@ -28,6 +28,7 @@ ADDRESS = (
 )
 SHA256 = "ac7f9d90199d376875ef13a472d94b728e84f38ce70b7c7ed145060c895e02e5"
 
+TABLES = Path(__file__).with_name("data") / "utias"
 TABLE_TOLERANCE = 1e-4
 # The table prints pixels to three decimals, so it may be off by half of the last one.
 PIXEL_TOLERANCE = 0.0005 + 1e-9
@@ -50,17 +51,22 @@ def unset(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def tables() -> StereoTables:
-    return utias_tables(utias_folder())
+def folder() -> Path:
+    """The recording's folder, found before the network is cut."""
+    return utias_folder()
 
 
-def assert_columns_agree(converted: dict[str, Values], file: Path) -> None:
-    reference = np.genfromtxt(file, delimiter=",", names=True)
-    assert list(converted) == list(reference.dtype.names or ())
-    for name, values in converted.items():
-        assert np.isfinite(values).all(), name
-        tolerance = PIXEL_TOLERANCE if name in ("u_px", "v_px") else TABLE_TOLERANCE
-        np.testing.assert_allclose(values, reference[name], rtol=0, atol=tolerance, err_msg=name)
+@pytest.fixture(scope="module")
+def tables(folder: Path) -> StereoTables:
+    return utias_tables(folder)
+
+
+def assert_agree(name: str, columns: list[Values]) -> None:
+    """Compare every so-many-th sample with the row of another program's table."""
+    reference = np.genfromtxt(TABLES / f"{name}.csv", delimiter=",", names=True)
+    for column, values in zip(reference.dtype.names or (), columns, strict=True):
+        tolerance = PIXEL_TOLERANCE if column in ("u_px", "v_px") else TABLE_TOLERANCE
+        np.testing.assert_allclose(values, reference[column], rtol=0, atol=tolerance, err_msg=column)
 
 
 def along(track: Sighting) -> Values:
@@ -70,21 +76,11 @@ def along(track: Sighting) -> Values:
 
 
 def test_camera_agrees_with_its_table(tables: StereoTables) -> None:
-    file = utias_folder("camera.csv") / "camera.csv"
-    reference = np.genfromtxt(file, delimiter=",", names=True)
-    orientation = tables.path.orientation
+    path = tables.path
     assert len(tables.time) == 1900
-
-    quaternion = np.column_stack([reference[name] for name in ("qx", "qy", "qz", "qw")])
-    same_sign = np.sign((orientation * quaternion).sum(axis=1, keepdims=True))
-    converted = {
-        "time_s": tables.time,
-        **dict(zip(("px_m", "py_m", "pz_m"), tables.path.position.T, strict=True)),
-        **dict(zip(("qx", "qy", "qz", "qw"), (same_sign * orientation).T, strict=True)),
-        **dict(zip(("vx_mps", "vy_mps", "vz_mps"), tables.path.velocity.T, strict=True)),
-        **dict(zip(("wx_radps", "wy_radps", "wz_radps"), tables.path.angular_velocity.T, strict=True)),
-    }
-    assert_columns_agree(converted, file)
+    orientation = path.orientation * np.sign(path.orientation[:, :1])  # of q and -q the one with qx > 0
+    vectors = (path.position, orientation, path.velocity, path.angular_velocity)
+    assert_agree("camera", [column[::50] for column in (tables.time, *np.hstack(vectors).T)])
 
 
 def test_tracks_agree_with_their_table(tables: StereoTables) -> None:
@@ -92,17 +88,10 @@ def test_tracks_agree_with_their_table(tables: StereoTables) -> None:
     assert (len(places), sum(len(samples) for samples, _ in places)) == (44, 2739)
 
     samples, landmark = np.hstack(places)
-    u, v = tables.pixels[samples, landmark].T
-    converted = {
-        "time_s": tables.time[samples],
-        "point_id": np.concatenate([np.full(len(samples), k) for k, (samples, _) in enumerate(places)]),
-        "u_px": u,
-        "v_px": v,
-        "depth_m_truth": tables.points[samples, landmark, 2],
-        "depth_stereo_m": tables.stereo_depth[samples, landmark],
-        "landmark_id": landmark,
-    }
-    assert_columns_agree(converted, utias_folder("tracks.csv") / "tracks.csv")
+    number = np.repeat(np.arange(44), [len(samples) for samples, _ in places])
+    depths = (tables.points[samples, landmark, 2], tables.stereo_depth[samples, landmark])
+    columns = (tables.time[samples], number, *tables.pixels[samples, landmark].T, *depths, landmark)
+    assert_agree("tracks", [column[::20] for column in columns])
 
 
 def test_nothing_is_left_outside_the_tracks(tables: StereoTables) -> None:
@@ -171,16 +160,14 @@ def test_the_pixels_are_those_of_the_landmark(tables: StereoTables) -> None:
 
 
 @pytest.mark.parametrize("inside", ["", "dataset3.mat"])
-def test_folder_and_file_name_the_same_recording(inside: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = utias_folder()
+def test_folder_and_file_name_the_same_recording(folder: Path, inside: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert find_utias(folder / inside) == folder / "dataset3.mat"
     assert find_utias(str(folder / inside)) == folder / "dataset3.mat"
     monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(folder / inside))
     assert find_utias() == folder / "dataset3.mat"
 
 
-def test_a_path_goes_before_the_variable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = utias_folder()
+def test_a_path_goes_before_the_variable(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path / "nowhere"))
     assert find_utias(folder) == folder / "dataset3.mat"
 
@@ -201,9 +188,9 @@ def test_a_wrong_variable_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         find_utias()
 
 
-def test_a_corrupted_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_corrupted_file_is_refused(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "dataset3.mat"
-    shutil.copyfile(utias_folder() / "dataset3.mat", file)
+    shutil.copyfile(folder / "dataset3.mat", file)
     content = bytearray(file.read_bytes())
     content[len(content) // 2] ^= 1
     file.write_bytes(content)
@@ -244,8 +231,8 @@ def test_another_file_is_not_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.usefixtures("unset")
-def test_the_recording_is_fetched_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    content, asked = (utias_folder() / "dataset3.mat").read_bytes(), []
+def test_the_recording_is_fetched_once(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    content, asked = (folder / "dataset3.mat").read_bytes(), []
 
     def answer(address: str, timeout: float) -> io.BytesIO:
         asked.append(address)
@@ -260,12 +247,10 @@ def test_the_recording_is_fetched_once(cache: Path, monkeypatch: pytest.MonkeyPa
     assert [file.name for file in cache.iterdir()] == ["dataset3.mat"]
 
 
-@pytest.mark.usefixtures("unset")
-def test_without_the_recording_tests_skip_but_fail_in_ci(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lookup, "BESIDE_THE_REPOSITORY", tmp_path)
-    monkeypatch.delenv("CI", raising=False)
-    with pytest.raises(pytest.skip.Exception, match="set PERCEPT_OBS_UTIAS"):
-        utias_folder()
-    monkeypatch.setenv("CI", "true")
-    with pytest.raises(pytest.fail.Exception, match="set PERCEPT_OBS_UTIAS"):
-        utias_folder()
+def test_a_missing_need_skips_unless_it_must_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PERCEPT_OBS_MUST_RUN", "node chromium")
+    with pytest.raises(pytest.skip.Exception, match="no recording"):
+        missing("utias", "no recording")
+    monkeypatch.setenv("PERCEPT_OBS_MUST_RUN", "node utias")
+    with pytest.raises(pytest.fail.Exception, match="no recording"):
+        missing("utias", "no recording")

@@ -21,7 +21,7 @@ def modules(node, tmp_path_factory):
     """A copy of the front end with the packages that its lock file names."""
     npm = shutil.which("npm")
     if npm is None:
-        missing("npm is missing. Debian: sudo apt-get install npm. macOS and Windows: it comes with Node.js.")
+        missing("node", "npm is missing. Debian: sudo apt-get install npm. macOS and Windows: it comes with Node.js.")
     folder = tmp_path_factory.mktemp("front")
     for part in ("src", "tests"):
         shutil.copytree(FRONT / part, folder / part)
@@ -29,7 +29,7 @@ def modules(node, tmp_path_factory):
         shutil.copy(FRONT / name, folder)
     installed = subprocess.run([npm, "ci", "--no-audit", "--no-fund"], cwd=folder, capture_output=True, text=True)
     if installed.returncode:
-        missing(f"the front end's packages cannot be had: {installed.stderr[-300:]}")
+        missing("node", f"the front end's packages cannot be had: {installed.stderr[-300:]}")
     return folder
 
 

@@ -152,7 +152,7 @@ def test_a_lab_of_the_site_is_alive(shown, what):
 def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
     modules = FRONT / "node_modules"
     if not (modules / "lighthouse").exists():
-        missing(f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
+        missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
     names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
     command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *names]
     told = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()

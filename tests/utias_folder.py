@@ -1,32 +1,27 @@
-"""Where the tests find the UTIAS recording and the tables that another program made from it."""
+"""Folder of the UTIAS recording, fetched once, for the tests that need it."""
 
 from __future__ import annotations
 
-import os
+from functools import lru_cache
 from pathlib import Path
 
-import pytest
+from conftest import missing
 
-BESIDE_THE_REPOSITORY = Path(__file__).parents[2] / "shared/data/utias"
+from percept_obs.recording.utias import find_utias
 
 
-def utias_folder(*tables: str) -> Path:
-    """Folder that holds dataset3.mat and the named tables; without one the test skips, or fails in CI."""
-    named = os.environ.get("PERCEPT_OBS_UTIAS")
-    folders = [BESIDE_THE_REPOSITORY]
-    if named:
-        place = Path(named).expanduser()
-        folders.insert(0, place.parent if place.is_file() else place)
-    wanted = ("dataset3.mat", *tables)
-    for folder in folders:
-        if all((folder / name).is_file() for name in wanted):
-            return folder
+def utias_folder() -> Path:
+    """Return the folder that holds dataset3.mat; skip the test where it cannot be had."""
+    found = _search()
+    if isinstance(found, Path):
+        return found
+    missing("utias", f"The UTIAS recording is missing: {found}.")
 
-    message = (
-        f"{', '.join(wanted)} not found in {' or '.join(map(str, folders))}; set PERCEPT_OBS_UTIAS to "
-        "a folder that holds them (percept_obs.recording.utias.find_utias() fetches dataset3.mat; the tables "
-        "come with the project's data)"
-    )
-    if os.environ.get("CI", "").lower() == "true":
-        pytest.fail(message)
-    pytest.skip(message)
+
+@lru_cache
+def _search() -> Path | Exception:
+    """Search once, for a network that is missing may take a minute to say so."""
+    try:
+        return find_utias().parent
+    except (OSError, ValueError) as error:
+        return error
