@@ -27,7 +27,7 @@ def test_it_is_what_choosing_and_reporting_finds():
     mine = one_call.table[one_call.table["observer"] == "De Luca"].reset_index(drop=True)
     assert mine.drop(columns="cost").equals(table.drop(columns="cost"))
     assert one_call.start == pytest.approx(start)
-    assert one_call.left_out == {"errors after 3 s": "no recording in one of the parts lasts longer than 2.5 s"}
+    assert one_call.left_out == {"errors after 3 s": "no recording in one of the halves lasts longer than 2.5 s"}
     assert set(one_call.table["observer"]) == {"De Luca", LEAST_SQUARES}
 
 

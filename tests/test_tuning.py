@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, ZERO
-from tqdm.auto import tqdm
 
 from percept_obs import record, scenarios, track
 from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, integral_sliding_mode, range_identification
@@ -56,20 +55,6 @@ def test_a_row_has_the_errors_of_the_chosen_gains_on_the_other_half():
 def test_the_table_is_the_same_each_time():
     first, second = (reported().drop(columns="cost") for _ in range(2))
     assert first.equals(second)
-
-
-def test_progress_counts_every_run_and_those_that_are_refused(monkeypatch):
-    bars = []
-
-    class Bar(tqdm):
-        def __init__(self, *args, **kwargs):
-            super().__init__(*args, **kwargs)
-            bars.append(self)
-
-    monkeypatch.setattr("tqdm.auto.tqdm", Bar)
-    reported(ONE)
-    (bar,) = bars
-    assert bar.n == bar.total == len(GAINS[de_luca]) * 2 + 2 + 1 * 2 + 2
 
 
 def test_a_refusal_is_told_in_words():

@@ -6,7 +6,6 @@ import html
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -30,43 +29,43 @@ if TYPE_CHECKING:
 Split = Literal["alternating", "earlier and later"]
 
 LEAST_SQUARES = "least squares on 2 s"
-"""What stands beside the observers: a batch estimate that has no gains."""
+"""Label of the batch estimate in the table; it has no gains."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AllObservers:
-    """What every observer does on a set of recordings; in a notebook it shows itself as a table.
+    """Errors of every observer on a set of recordings; a notebook shows them as a table.
 
     Parameters
     ----------
     table : pandas.DataFrame
         One row for an observer, a reference and a time, as of `choose_and_report`.
-    choosing, reporting : tuples of Recording
-        On which gains were chosen, and on which errors are reported.
-    left_out : mapping of what to why
-        Recordings and times that could not be used; observers that could not be run say why in the table.
-    start : mapping of names to values
-        Where every observer started.
+    choosing, reporting : sequences of Recording
+        Those on which gains were chosen, and those on which errors are reported.
+    left_out : mapping of names to reasons
+        Recordings and times that could not be used; the table says why an observer could not be run.
+    start : mapping of coordinate names to values
+        Estimates at the first sample, for every observer.
     """
 
     table: pd.DataFrame
-    choosing: tuple[Recording, ...]
-    reporting: tuple[Recording, ...]
+    choosing: Sequence[Recording]
+    reporting: Sequence[Recording]
     left_out: Mapping[str, str]
     start: Mapping[str, float]
 
     @property
     def side_by_side(self) -> pd.DataFrame:
-        """An observer a row, as text."""
+        """The table as text, one row an observer; see `percept_obs.studies.tuning.side_by_side`."""
         return side_by_side(self.table)
 
     def _sentences(self) -> Iterator[str]:
         yield (
-            f"Relative errors of the distance, the median and in brackets what nine in ten stay below: gains chosen on "
+            f"Relative errors of the distance, the median and in brackets the 90 % quantile: gains chosen on "
             f"{len(self.choosing)} recordings, errors on {len(self.reporting)} others. Every observer starts at "
             + ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
         )
-        yield from (f"Left out: {what}, for {why}" for what, why in self.left_out.items())
+        yield from (f"Left out: {name}, for {reason}" for name, reason in self.left_out.items())
 
     def __repr__(self) -> str:
         return "\n".join([self.side_by_side.to_string(), *self._sentences()])
@@ -86,14 +85,14 @@ def all_observers(
     candidates: Mapping[Family, Sequence[Gains]] | None = None,
     **settings: Any,
 ) -> AllObservers:
-    """Run every observer on any set of recordings of single points, and say what could not be run and why.
+    """Run every observer on a set of recordings of single points, and say what could not be run and why.
 
     Parameters
     ----------
     recordings : sequence of Recording
         At least two that fit together: with the outputs, the imaging surface and the kind of motion of the first one.
     split : "alternating" or "earlier and later"
-        Gains are chosen on every other recording, from the first one on; or on the half that begins earlier, which is
+        Choose gains on every other recording, from the first one on; or on the half that begins earlier, which is
         stricter where neighbours see the same movement.
     start : mapping of coordinate names to values, optional
         Estimates at the first sample; twice the median distance of the recordings to choose on when left out.
@@ -102,7 +101,7 @@ def all_observers(
     references : sequence of str
         "truth", or names of measured distances; gains are chosen by the first of them.
     candidates : mapping of families to their gains, optional
-        Those of every observer's own file when left out.
+        The candidates in every observer's own file when left out.
     **settings
         Passed to `track`, such as ``hold`` and ``step``.
 
@@ -113,7 +112,11 @@ def all_observers(
     Raises
     ------
     ValueError
-        If fewer than two recordings are left, or none of the times.
+        If fewer than two recordings can be used, or none of the times.
+
+    See Also
+    --------
+    percept_obs.studies.tuning.choose_and_report : takes both halves as they are given
 
     Examples
     --------
@@ -134,29 +137,29 @@ def all_observers(
     first = recordings[0]
     system = PerspectiveSystem(first.motion, first.imaging_surface)
     form = system.partition(*first.names)
-    whys = [_why_not(each, form, first, references, min(after)) for each in recordings]
-    judged = list(zip(range(1, len(recordings) + 1), recordings, whys, strict=True))
-    left_out = {f"recording {number} ({each.source})": why for number, each, why in judged if why}
-    fit = [each for _, each, why in judged if not why]
-    if len(fit) < 2:
-        told = "; ".join(f"{what}: {why}" for what, why in left_out.items())
+    reasons = [_why_not(each, form, first, references, min(after)) for each in recordings]
+    left_out = {
+        f"recording {number} ({each.source})": reason
+        for number, (each, reason) in enumerate(zip(recordings, reasons, strict=True), 1)
+        if reason
+    }
+    usable = [each for each, reason in zip(recordings, reasons, strict=True) if not reason]
+    if len(usable) < 2:
+        unusable = "; ".join(f"{name}: {reason}" for name, reason in left_out.items())
         raise ValueError(
-            f"{len(fit)} of {len(recordings)} recordings can be used, and two are needed, one to choose gains on and "
-            f"one to report on; cut one in two with between(){'; left out: ' + told if told else ''}"
+            f"{len(usable)} of {len(recordings)} recordings can be used, and two are needed, one to choose gains on "
+            f"and one to report on; cut one in two with between(){'; left out: ' + unusable if unusable else ''}"
         )
-    choosing, reporting = _parts(fit, split)
-    shorter = min(max(float(each.elapsed[-1]) + slack_of(each.time) for each in part) for part in (choosing, reporting))
-    lasting = [seconds for seconds in after if seconds <= shorter]
+    choosing, reporting = _halves(usable, split)
+    shorter = min(max(float(each.elapsed[-1]) + slack_of(each.time) for each in half) for half in (choosing, reporting))
     left_out |= {
-        f"errors after {seconds:g} s": f"no recording in one of the parts lasts longer than {shorter:.3g} s"
+        f"errors after {seconds:g} s": f"no recording in one of the halves lasts longer than {shorter:.3g} s"
         for seconds in after
         if seconds > shorter
     }
-    inverse = first.imaging_surface.inverse_distance.name
     if start is None:
         distances = np.concatenate([each.reference(references[0]) for each in choosing])
-        start = {inverse: 1 / (2 * float(np.nanmedian(distances)))}
-
+        start = {first.imaging_surface.inverse_distance.name: 1 / (2 * float(np.nanmedian(distances)))}
     tried = {make: make.candidates for make in OBSERVERS} if candidates is None else candidates
     steps = sum(len(each.time) for each in choosing) * max(map(len, tried.values()), default=0)
     settings = {"language": choose(None, steps)} | settings
@@ -166,15 +169,15 @@ def all_observers(
 
     whole = first.names == tuple(symbol.name for symbol in first.imaging_surface.image_coordinates)
     batch = {LEAST_SQUARES: moving_window_least_squares} if whole else {}
-    table = choose_and_report(choosing, reporting, form, follow, tried, batch, after=lasting, references=references)
-    parts = tuple(choosing), tuple(reporting)
-    return AllObservers(table, *parts, MappingProxyType(left_out), MappingProxyType(dict(start)))
+    lasting = [seconds for seconds in after if seconds <= shorter]
+    table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references)
+    return AllObservers(table, choosing, reporting, left_out, start)
 
 
 def _why_not(
     recording: Recording, form: PartitionedSystem, first: Recording, references: Sequence[str], shortest: float
 ) -> str:
-    """Why a recording cannot stand in the same table as the first one; empty if it can."""
+    """Reason why a recording does not fit into the same table as the first one; empty if it does."""
     if recording.outputs.ndim != 2 or recording.names != first.names:
         return f"its outputs are {', '.join(recording.names)}, those of the first {', '.join(first.names)}"
     if form.view is None or not form.view.fits(recording.view):
@@ -183,23 +186,20 @@ def _why_not(
         return f"its motion is {recording.motion.name} with other coefficients than that of the first"
     if not np.isfinite(recording.outputs[0]).all():
         return "its first sample was lost, and observers start from it: cut it with between()"
-    lacking = [
-        r for r in references if not (r in recording.distances or (r == "truth" and recording.truth is not None))
-    ]
-    if lacking:
+    there = {*recording.distances, *(["truth"] if recording.truth is not None else [])}
+    if lacking := [name for name in references if name not in there]:
         return f"it has no {' and no '.join(lacking)} to compare with; name other references"
-    unknown = [name for name in references if np.isnan(recording.reference(name)).all()]
-    if unknown:
+    if unknown := [name for name in references if np.isnan(recording.reference(name)).all()]:
         return f"its {' and '.join(unknown)} is known at no sample"
     if recording.elapsed[-1] < shortest - slack_of(recording.time):
         return f"it lasts {recording.elapsed[-1]:.3g} s, and the first error is asked for after {shortest:g} s"
     return ""
 
 
-def _parts(recordings: Sequence[Recording], split: Split) -> tuple[list[Recording], list[Recording]]:
-    """Recordings to choose on and to report on."""
+def _halves(recordings: Sequence[Recording], split: Split) -> tuple[Sequence[Recording], Sequence[Recording]]:
+    """Recordings to choose gains on, and recordings to report errors on."""
     if split == "alternating":
-        return list(recordings[::2]), list(recordings[1::2])
+        return recordings[::2], recordings[1::2]
     if split == "earlier and later":
         ordered = sorted(recordings, key=lambda recording: float(recording.time[0]))
         return ordered[: len(ordered) // 2], ordered[len(ordered) // 2 :]

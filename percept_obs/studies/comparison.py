@@ -1,19 +1,18 @@
-"""Comparing observers on the same recordings: a tidy table, its summary, distance errors, and the best setting."""
+"""Comparison of observers on the same recordings: a table of runs, its summary, distance errors, the best setting."""
 
 from __future__ import annotations
 
 import math
 import time
 import warnings
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percept_obs.compile import choose
+from percept_obs.compile import Array, choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.signal import from_the_start, slack_of
@@ -25,11 +24,11 @@ from percept_obs.validation import bar, checked
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
-
+Follow = Callable[[Recording, Observer], Run]
+"""Function that runs an observer on a recording, such as ``lambda r, o: track(r, o, start)``."""
 
 MEASURES = ("settling_time", "final", "rms", "worst", "cost")
-"""Columns of `compare` of which a summary has the median and quantiles."""
+"""Columns of `compare` of which `summary` has the median and quantiles."""
 
 
 @checked
@@ -64,14 +63,19 @@ def compare(
     -------
     pandas.DataFrame
         One row for a recording and an observer, with errors of the inverse distance in 1/m: observer, recording,
-        outcome (a kind of `Outcome`), settling_time (s, infinite if it has not converged), final, rms, worst (after the
-        given time), resets, diverged_at (s since the first sample, infinite if it does not), cost (s of computing for
-        a s of data).
+        outcome (a kind of `Outcome`), settling_time (s, infinite if it has not converged), final, rms and worst (from
+        `after` on), resets, diverged_at (s since the first sample, infinite if it does not), cost (seconds of computing
+        for a second of data).
 
     Raises
     ------
     ValueError
         If there are no recordings or no observers, a recording has no truth, or an observer does not fit.
+
+    See Also
+    --------
+    summary : medians and quantiles of the table
+    percept_obs.ensemble : many runs of one observer
     """
     import pandas as pd
 
@@ -82,17 +86,16 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
-    language = choose(None, sum(len(recording.time) for recording in recordings))
-    settings = {"language": language} | settings
-    follow = {name: partial(track, observer=each, start=start, **settings) for name, each in observers.items()}
+    settings = {"language": choose(None, sum(len(recording.time) for recording in recordings))} | settings
+    follow = {label: partial(track, observer=each, start=start, **settings) for label, each in observers.items()}
     brief = recordings[0].between(*recordings[0].time[:2].tolist())
     for run in bar(follow.values(), "compiling"):
-        run(brief)  # so that compiling is no part of the cost
+        run(brief)  # so that the cost is without compiling
     rows = []
     for recording, label in bar([*product(recordings, follow)], "runs"):
         (run,), cost = timed(follow[label], [recording])
-        surface, found = recording.imaging_surface, run.outcome(tolerance, *coordinates)
-        error = np.abs(surface.inverse(run.error))
+        outcome = run.outcome(tolerance, *coordinates)
+        error = np.abs(recording.imaging_surface.inverse(run.error))
         late = error[from_the_start(run.elapsed, after)]
         if not len(late):
             raise ValueError(f"no sample of {recording.source!r} lies {after} s or more after its first one")
@@ -100,22 +103,23 @@ def compare(
             {
                 "observer": label,
                 "recording": recording.source,
-                "outcome": found.kind,
-                "settling_time": found.settled if found.converged else math.inf,
-                "final": _known(error[-1]),
-                "rms": _known(math.sqrt(np.mean(late**2))),
-                "worst": _known(late.max()),
+                "outcome": outcome.kind,
+                "settling_time": outcome.settled if outcome.converged else math.inf,
+                "final": error[-1],
+                "rms": math.sqrt(np.mean(late**2)),
+                "worst": late.max(),
                 "resets": len(run.resets),
                 "diverged_at": math.inf if run.diverged_at is None else run.diverged_at - float(run.time[0]),
                 "cost": cost,
             }
         )
-    return pd.DataFrame(rows)
+    # a run that diverged has no error
+    return pd.DataFrame(rows).fillna({"final": math.inf, "rms": math.inf, "worst": math.inf})
 
 
 @checked
 def summary(table: pd.DataFrame) -> pd.DataFrame:
-    """What `compare` found, an observer a row.
+    """Summarise a comparison, one row an observer.
 
     Parameters
     ----------
@@ -125,19 +129,23 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        runs; failed (not converged), reset (runs with a reset), diverged; and for
-        settling_time, final, rms, worst, cost the median with the 16 % and 84 % quantiles (columns name, name_low,
-        name_high).
+        runs; failed (not converged), reset (runs with a reset), diverged; and for settling_time, final, rms, worst and
+        cost the median with the 16 % and 84 % quantiles (columns name, name_low, name_high).
+
+    See Also
+    --------
+    described : the summary as text
     """
     import pandas as pd
 
     observers = table.groupby("observer", sort=False)
-    found = {
-        "runs": observers.size(),
-        "failed": observers["settling_time"].agg(lambda times: np.isinf(times).sum()),
-        "reset": observers["resets"].agg(lambda counts: (counts > 0).sum()),
-        "diverged": observers["diverged_at"].agg(lambda times: np.isfinite(times).sum()),
+    counts = {
+        "failed": np.isinf(table["settling_time"]),
+        "reset": table["resets"] > 0,
+        "diverged": np.isfinite(table["diverged_at"]),
     }
+    found = {"runs": observers.size()}
+    found |= {name: flags.groupby(table["observer"], sort=False).sum() for name, flags in counts.items()}
     for column, (end, share) in product(MEASURES, (("", 0.5), ("_low", 0.16), ("_high", 0.84))):
         # by rank, for infinite values have no mean
         found[column + end] = observers[column].agg(np.quantile, share, method="nearest")
@@ -146,7 +154,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
 @checked
 def described(found: pd.DataFrame) -> str:
-    """A summary as text: counts, and medians with their quantiles."""
+    """Format a `summary` as text: counts, and medians with their quantiles."""
     import pandas as pd
 
     columns = {name: found[name].map("{:.0f}".format) for name in ("runs", "failed", "reset", "diverged")}
@@ -157,13 +165,8 @@ def described(found: pd.DataFrame) -> str:
     return str(pd.DataFrame(columns).to_string())
 
 
-def _known(value: float) -> float:
-    """An error, infinite where a diverged run has none."""
-    return float(value) if math.isfinite(value) else math.inf
-
-
 def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -> tuple[list[Run], float]:
-    """Runs on recordings, and how many seconds of computing a second of data takes."""
+    """Return the runs on recordings, and the seconds of computing for a second of data."""
     begin = time.perf_counter()
     runs = [follow(recording) for recording in recordings]
     taken = time.perf_counter() - begin
@@ -176,9 +179,9 @@ def relative_distance_errors(
     after: float,
     reference: str = "truth",
     absence: float = math.inf,
-    points: Container[int] | None = None,
+    points: Collection[int] | None = None,
 ) -> Array:
-    """Relative errors of the estimated distance, a given time after points came into sight.
+    """Relative errors of the estimated distance, a given time after each point came into sight.
 
     Parameters
     ----------
@@ -189,40 +192,45 @@ def relative_distance_errors(
     reference : str
         "truth", or the name of a measured distance of the recordings, such as "stereo".
     absence : float
-        Seconds without a sample after which it is another sighting.
-    points : container of int, optional
-        Whose sightings count, if there are several; all of them when left out.
+        Seconds without a sample after which a new sighting begins.
+    points : collection of int, optional
+        Indices of the points to use; all of them when left out.
 
     Returns
     -------
     array of shape (number of sightings that last as long,)
-        |estimate - reference| / reference; infinite where the estimate is not in front of the camera, NaN
-        where there is none.
+        |estimate - reference| / reference; infinite where the estimate is not in front of the camera, NaN where there
+        is none.
 
     Raises
     ------
     ValueError
-        If the time is negative, no sighting lasts as long, or a recording has no such reference.
+        If the time is negative, no sighting lasts as long, or a recording has no such reference or point.
+
+    See Also
+    --------
+    compare : errors of the inverse distance of several observers, over time
     """
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     errors: list[float] = []
     sources: list[str] = []
     for run in runs:
-        sources.append(repr(run.recording.source))
         recording = run.recording
+        sources.append(repr(recording.source))
         shape = (len(recording.time), -1)
-        there = set(range(recording.seen[0].size))
-        asked = set(points) if isinstance(points, Iterable) else there
-        if not asked <= there:
-            raise ValueError(f"the points {sorted(asked - there)} are not there; there are 0 to {max(there)}")
-        known, seen = recording.reference(reference).reshape(shape), recording.seen.reshape(shape)
+        known = range(recording.seen[0].size)
+        used = known if points is None else points
+        if not set(used) <= set(known):
+            raise ValueError(f"there are no points {sorted(set(used) - set(known))}; there are 0 to {max(known)}")
+        distance, estimate = (each.reshape(shape) for each in (recording.reference(reference), run.distance))
+        seen = recording.seen.reshape(shape) & np.isfinite(distance)
         for sighting in recording.sightings(absence):
-            samples = np.flatnonzero((seen & np.isfinite(known))[: sighting.last + 1, sighting.point])
-            later = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
-            if len(later) and (points is None or sighting.point in points):
-                place = (later[0], sighting.point)
-                errors.append(abs(run.distance.reshape(shape)[place] / known[place] - 1))
+            samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
+            late = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
+            if len(late) and sighting.point in used:
+                place = (late[0], sighting.point)
+                errors.append(abs(estimate[place] / distance[place] - 1))
     if not errors:
         raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s; after must be shorter")
     return np.array(errors)
@@ -232,13 +240,13 @@ def relative_distance_errors(
 def best_setting(
     recordings: Sequence[Recording],
     observers: Iterable[Observer],
-    follow: Callable[[Recording, Observer], Run],
+    follow: Follow,
     after: Sequence[float] = (2.0,),
     reference: str = "truth",
 ) -> Observer:
-    """The observer whose median relative distance error is least, added up over the given times.
+    """Choose the observer with the least median relative distance error, summed over the given times.
 
-    Choose on some recordings and report on others, or the report flatters.
+    Choose on some recordings and report on others: errors on the recordings that were chosen on are too small.
 
     Parameters
     ----------
@@ -247,7 +255,7 @@ def best_setting(
     observers : iterable of Observer
         One structure with different gains, or several structures.
     follow : function of (recording, observer)
-        How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
+        Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
     after : sequence of float
         Seconds since the first sample.
     reference : str
@@ -257,6 +265,11 @@ def best_setting(
     ------
     ValueError
         If there are no recordings, observers or times, or no recording lasts as long.
+
+    See Also
+    --------
+    percept_obs.studies.tuning.choose_and_report : chooses the gains of several observers and reports their errors
+    percept_obs.studies.likelihood.tune_by_likelihood : chooses a filter's gains without a truth
     """
     candidates = list(observers)
     if not (len(recordings) and candidates and len(after)):
@@ -267,7 +280,7 @@ def best_setting(
 
     def score(observer: Observer) -> float:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
+            warnings.simplefilter("ignore", StepTooLong)  # a chattering candidate has large errors, so it is not chosen
             runs = [follow(recording, observer) for recording in recordings]
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best

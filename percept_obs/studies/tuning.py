@@ -1,10 +1,9 @@
-"""Gains chosen on some recordings, and what they do on others: every observer in one table."""
+"""Gains chosen on some recordings and errors reported on others, for every observer in one table."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from percept_obs.observability.windowed import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
-from percept_obs.studies.comparison import best_setting, relative_distance_errors, timed
+from percept_obs.studies.comparison import Follow, best_setting, relative_distance_errors, timed
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
@@ -24,14 +23,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Gains = Mapping[str, float]
-Follow = Callable[[Recording, Observer], Run]
 Estimate = Callable[[Recording], Run]
 
-SHARE = 0.9
-"""The share of recordings whose errors the table bounds, beside half of them."""
+QUANTILE = 0.9
+"""Quantile of the errors that the table has next to the median."""
 
 USUAL_SPEED = 0.2
-"""Lengths a second at which candidates are meant to be used: the root mean square of |w| that they were made for."""
+"""Root mean square of |w|, in lengths a second, that the candidates' gains are made for."""
 
 COLUMNS = (
     *("observer", "gains", "at_edge", "reference", "after", "median", "nine_in_ten"),
@@ -59,14 +57,14 @@ def choose_and_report(
     choosing, reporting : sequences of Recording
         With a truth; none in both.
     form : PartitionedSystem
-        What the observers observe.
+        The system that the observers observe.
     follow : function of (recording, observer)
-        How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
+        Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
     candidates : mapping of families such as `identifier_based` to their gains, optional
-        Those with the least sum of median errors after the given times are chosen; those of every observer's own file
-        when left out.
+        Those with the least sum of median errors after the given times are chosen; the candidates in every observer's
+        own file when left out.
     batch : mapping of labels to functions of a recording, optional
-        Estimates to stand beside the observers, such as `moving_window_least_squares`; nothing is chosen for them.
+        Further estimates for the table, such as `moving_window_least_squares`; nothing is chosen for them.
     after : sequence of float
         Seconds since the first sample.
     references : sequence of str
@@ -79,88 +77,89 @@ def choose_and_report(
     -------
     pandas.DataFrame
         One row for an observer, a reference and a time, with relative errors of the distance over those reporting
-        recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of those that are
-        the smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
-        nine_in_ten (the 90 % quantile), behind (number of recordings that have no estimate in front of the camera
-        then), reset, diverged (numbers of recordings), cost (s of computing for a s of data), refusal: why the
-        observer cannot follow these recordings, if it cannot; its numbers are then NaN; and doubt: that the steps were
-        too long for it, if they were.
+        recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of gains at the
+        smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
+        nine_in_ten (the 90 % quantile), behind (number of recordings without an estimate in front of the camera
+        then), reset, diverged (numbers of recordings), cost (seconds of computing for a second of data), refusal (why
+        the observer cannot follow these recordings, if it cannot; its numbers are then NaN) and doubt (that the steps
+        were too long for it, if they were).
 
     Raises
     ------
     ValueError
         If there are no recordings or candidates, a recording is in both halves, or all are too short or one has no
         such reference.
+
+    See Also
+    --------
+    side_by_side : the table as text, one row an observer
+    percept_obs.studies.all_observers.all_observers : splits the recordings and chooses the start as well
     """
     import pandas as pd
 
     if not len(choosing) or not len(reporting):
         raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
     if {id(recording) for recording in choosing} & {id(recording) for recording in reporting}:
-        raise ValueError("a recording is in both halves: gains flatter the report if they were chosen on it")
+        raise ValueError("a recording is in both halves: its errors would be too small if gains were chosen on it")
     if candidates is None:
         candidates = {make: make.candidates for make in OBSERVERS}
     if not candidates or not all(len(gains) for gains in candidates.values()):
         raise ValueError("every observer needs at least one candidate for its gains")
-    questions = list(product(references, after))
     if not len(references) or not len(after):
         raise ValueError(f"{len(references)} references and {len(after)} times: at least one of each is needed")
     unit = own_length(form, choosing) if length is None else length
+    questions = list(product(references, after))
     rows: list[dict[str, Any]] = []
-
-    def answer(label: str, gains: str, edge: str, estimate: Estimate) -> None:
-        with warnings.catch_warnings(record=True) as doubts:
-            warnings.simplefilter("always", StepTooLong)
-            runs, cost = timed(estimate, reporting)
-        chatters = [str(doubt.message) for doubt in doubts if issubclass(doubt.category, StepTooLong)]
-        told = {"observer": label, "gains": gains, "cost": cost, "refusal": "", "doubt": "".join(chatters[:1])}
-        told["at_edge"] = edge
-        told["reset"] = sum(len(run.resets) > 0 for run in runs)
-        told["diverged"] = sum(run.diverged_at is not None for run in runs)
-        for reference, seconds in questions:
-            errors = relative_distance_errors(runs, seconds, reference)
-            errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
-            # the quantile by rank, for infinite errors have no mean
-            numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, SHARE, method="nearest")}
-            numbers["behind"] = np.isinf(errors).sum()
-            rows.append({**told, "reference": reference, "after": seconds, **numbers})
-
-    runs_of = {make: len(settings) * len(choosing) + len(reporting) for make, settings in candidates.items()}
-    with bar(None, "choosing gains", sum(runs_of.values()), unit="run") as progress:
-
-        def counted(recording: Recording, observer: Observer) -> Run:
-            progress.update()
-            return follow(recording, observer)
-
-        for make, settings in candidates.items():
-            progress.set_postfix_str(make.name, refresh=False)
-            goal, refusal, chosen = progress.n + runs_of[make], make.refusal(form), None
-            try:
-                observers = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
-                chosen = best_setting(choosing, observers, counted, after, references[0]) if observers else None
-            except DoesNotFit as misfit:
-                refusal = str(misfit)
-            if chosen is None:
-                told = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal, "doubt": ""}
-                rows += [{**told, "reference": reference, "after": seconds} for reference, seconds in questions]
-            else:
-                values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
-                answer(
-                    chosen.name,
-                    ", ".join(f"{n} {v:.3g}" for n, v in values.items()),
-                    ", ".join(_at_edge(values, observers)),
-                    partial(_swapped, counted, chosen),
-                )
-            progress.update(goal - progress.n)
-        for label, estimate in (batch or {}).items():
-            answer(label, "", "", estimate)
+    for make, settings in bar(candidates.items(), "choosing gains", unit="observer"):
+        refusal = make.refusal(form)
+        try:
+            tried = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
+            chosen = best_setting(choosing, tried, follow, after, references[0]) if tried else None
+        except DoesNotFit as error:
+            refusal, chosen = str(error), None
+        if chosen is None:
+            about = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal, "doubt": ""}
+            rows += [about | {"reference": reference, "after": seconds} for reference, seconds in questions]
+            continue
+        values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
+        about = {
+            "observer": chosen.name,
+            "gains": ", ".join(f"{name} {value:.3g}" for name, value in values.items()),
+            "at_edge": ", ".join(_at_edge(values, tried)),
+        }
+        rows += _errors(lambda recording, chosen=chosen: follow(recording, chosen), reporting, questions, about)
+    for label, estimate in (batch or {}).items():
+        rows += _errors(estimate, reporting, questions, {"observer": label, "gains": "", "at_edge": ""})
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
-    """The length in metres in which |w| has the root mean square `USUAL_SPEED` along recordings; 1 without a form.
+def _errors(
+    estimate: Estimate, recordings: Sequence[Recording], questions: Sequence[tuple[str, float]], about: dict[str, Any]
+) -> list[dict[str, Any]]:
+    """Rows of the table for one observer."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", StepTooLong)
+        runs, cost = timed(estimate, recordings)
+    too_long = [str(warning.message) for warning in caught if issubclass(warning.category, StepTooLong)]
+    about = about | {"cost": cost, "refusal": "", "doubt": "".join(too_long[:1])}
+    about["reset"] = sum(len(run.resets) > 0 for run in runs)
+    about["diverged"] = sum(run.diverged_at is not None for run in runs)
+    rows = []
+    for reference, seconds in questions:
+        errors = relative_distance_errors(runs, seconds, reference)
+        errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
+        # the quantile by rank, for infinite errors have no mean
+        numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, QUANTILE, method="nearest")}
+        numbers["behind"] = np.isinf(errors).sum()
+        rows.append({**about, "reference": reference, "after": seconds, **numbers})
+    return rows
 
-    How fast the camera moves past a point, not how far away it is, decides what a hidden gain does: w e is fed back.
+
+def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
+    """Length in metres in which |w| has the root mean square `USUAL_SPEED` along recordings; 1 without a form.
+
+    The error of a hidden coordinate shrinks at a rate that grows with |w|, which depends on how fast the camera moves
+    past a point and not on how far away the point is.
     """
     if form.culprits:
         return 1.0
@@ -177,7 +176,7 @@ def _at_edge(chosen: Gains, observers: Sequence[Observer]) -> list[str]:
 
 @checked
 def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
-    """What `choose_and_report` found as text, an observer a row.
+    """Format the table of `choose_and_report` as text, one row an observer.
 
     Parameters
     ----------
@@ -187,29 +186,24 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A column for each reference and time, with the median error and in brackets what nine in ten stay below;
-        behind (recordings, at the time with the most), reset, diverged, cost (us for a s of data), and a remark: the
-        gains, those that lie at an edge of their candidates, steps that are too long, or why the observer cannot
-        follow.
+        A column for each reference and time, with the median error and in brackets the 90 % quantile; behind
+        (recordings, at the time with the most), reset, diverged, cost (us for a second of data), and a remark: the
+        gains, those at an edge of their candidates, steps that are too long, or why the observer cannot follow.
     """
     import pandas as pd
 
-    lines = {}
-    for label, rows in table.groupby("observer", sort=False):
-        refusal = rows["refusal"].iloc[0]
-        line = {}
-        for row in rows.itertuples():
-            told = "–" if refusal else f"{row.median:.1%} ({row.nine_in_ten:.0%})"
-            line[f"{row.reference} {row.after:g} s"] = told.replace("inf%", "none")
+    def error(row: Any) -> str:
+        return "–" if row.refusal else f"{row.median:.1%} ({row.nine_in_ten:.0%})".replace("inf%", "none")
+
+    def line(rows: pd.DataFrame) -> dict[str, str]:
+        first = rows.iloc[0]
+        found = {f"{row.reference} {row.after:g} s": error(row) for row in rows.itertuples()}
         for name in ("behind", "reset", "diverged"):
-            line[name] = "–" if refusal else f"{rows[name].max():.0f}"
-        line["cost"] = "–" if refusal else f"{1e6 * rows['cost'].iloc[0]:.0f} us/s"
-        gains, edge = rows["gains"].iloc[0], rows["at_edge"].iloc[0]
-        remark = f"{gains}; at the edge of what was tried: {edge}" if edge else gains
-        remark = "; ".join(filter(None, [remark, rows["doubt"].iloc[0]]))
-        lines[label] = line | {"remark": f"cannot: {refusal}" if refusal else remark}
+            found[name] = "–" if first.refusal else f"{rows[name].max():.0f}"
+        found["cost"] = "–" if first.refusal else f"{1e6 * first.cost:.0f} us/s"
+        edge = first.at_edge and f"; at the edge of what was tried: {first.at_edge}"
+        remark = "; ".join(filter(None, [first.gains + edge, first.doubt]))
+        return found | {"remark": f"cannot: {first.refusal}" if first.refusal else remark}
+
+    lines = {label: line(rows) for label, rows in table.groupby("observer", sort=False)}
     return pd.DataFrame.from_dict(lines, orient="index")
-
-
-def _swapped(follow: Follow, observer: Observer, recording: Recording) -> Run:
-    return follow(recording, observer)
