@@ -162,7 +162,6 @@ def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
 
 
 SWUNG = "w = [0, 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
-OF_ALL = np.eye(9) + 0.1 * np.ones((9, 9))
 OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
 
 
@@ -176,13 +175,12 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     changes.append({"points": places, "hidden": [None] * 12, **typed, "P": "1 + t", "start": "error"})
     first = {"weight": "riccati", "size": 0.05, "hidden": [None, [0.0, 0.4], None]}
     changes += [
-        {"P": "q = exp(-t); P = [[P + 1, q/2, 0], [q/2, 1, 0], [0, 0, 1 + t]]", "start": "error"},
+        {"P": "q = exp(-t); P = [P + 1, 1 + q/2, 1 + t]", "start": "error"},
         {"P": "[1, 2, P]", "size": 4.0, "state": "independent"},
-        {"P": OF_ALL, "start": "error", "hidden": [None, [0.2, 0.6], None]},
-        {"P": OF_ALL, "state": "independent"},
-        {**first, "P0": "P = [[2P, P, 0], [P, 2P, 0], [0, 0, P/4]]", "state": "origin", "spin": 0.3},
-        {**first, "P0": OF_ALL / 9, "state": "independent"},
-        {"weight": "lyapunov", "P0": OF_ALL, "decrease": 0.02},
+        {"P": [1.5, 2, 3], "start": "error", "hidden": [None, [0.2, 0.6], None]},
+        {**first, "P0": "P = [2P, 2P, P/4]", "state": "origin", "spin": 0.3},
+        {**first, "P0": "[0.1, 0.2, P]", "state": "independent"},
+        {"weight": "lyapunov", "P0": "[2, 1, 1]", "decrease": 0.02},
     ]
     tasks = [lab.check({**lab.settings, **OF_POINTS, **change}) for change in changes]
     assert tasks[2]["P"] == "P = 1 + t"
@@ -213,16 +211,13 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
         (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
         (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
         (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
-        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives w1; it must be one expression"),
+        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P: there is no formula"),
         (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
-        (points_lab, {"P": "[1, 1, 1 - t]"}, "P is not positive definite: it has the eigenvalue .* at 1.02 s"),
-        (points_lab, {"P": [[1, 2, 0], [2, 1, 0], [0, 0, 1]]}, "it has the eigenvalue -1 at 0 s"),
-        (points_lab, {"P": "[[1, t, 0], [2t, 1, 0], [0, 0, 1]]"}, "row 1 has t in column 2, and its row 2 has 2.t"),
-        (points_lab, {"P": np.eye(4)}, "P is of 4 x 4; it must be .* or of 9 x 9, for the state has 9 entries"),
-        (points_lab, {"P": "[[1, 2, 0]]"}, r"P is of 1 x 3; it must be a number, a diagonal \[a, b, c\]"),
-        (points_lab, {"P": [["1", "__import__('os')"]]}, "P: an entry is the text '1'.*never text; it must be"),
-        (points_lab, {"P": "1; P = 2"}, "P gives an expression; it must be one expression"),
-        (points_lab, {"P": "P = 1; P = 2"}, "P is given twice"),
+        (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
+        (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
+        (points_lab, {"P": "[[1, t, 0], [t, 1, 0], [0, 0, 1]]"}, r"it must be a number or a diagonal \[a, b, c\]"),
+        (points_lab, {"P": "1; P = 2"}, "P gives an expression, P; it must be one expression"),
+        (points_lab, {"P": "P = 1; P = 2"}, "P gives P, P; it must be one expression"),
         (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
     ],
 )

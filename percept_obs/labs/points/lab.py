@@ -21,14 +21,7 @@ from percept_obs.labs.points.texts import (
     state_of,
     typed_velocities,
 )
-from percept_obs.labs.points.typed_weight import (
-    USED_BY,
-    as_text,
-    gives_P,
-    read_weight,
-    refuse_P,
-    weight_of,
-)
+from percept_obs.labs.points.typed_weight import as_text, gives_P, read_weight, refuse_P, weight_for_the_page, weight_of
 from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
@@ -122,9 +115,9 @@ class PointsLab(Lab):
         return read_motion(text, BLOCKS)
 
     def typed_for_the_page(self, text: str) -> Settings:
-        """A typed P, or the coefficients of each state with a typed motion."""
+        """Texts of a typed P, or of each state's coefficients under a typed motion."""
         if gives_P(text):
-            return read_weight(text).for_the_page()
+            return weight_for_the_page(read_weight(text))
         typed = self.typed(text)
         moved = typed_velocities(typed, velocities())
         states = {state: coefficients_for_the_page(state, moved) for state in STATES}
@@ -135,11 +128,11 @@ class PointsLab(Lab):
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong.
 
-        Points without a word on hiding are seen, and a P without a word on its kind is meant as it is typed.
+        Points are seen where `hidden` is missing, and P is typed where `weight` is missing.
         """
         if isinstance(settings, Mapping):
-            given = {name: as_text(name, settings[name]) for name in USED_BY if name in settings}
-            settings = {**({"weight": "typed"} if "P" in given else {}), **settings, **given}
+            typed = {name: as_text(settings[name]) for name in ("P", "P0") if name in settings}
+            settings = {**({"weight": "typed"} if "P" in typed else {}), **settings, **typed}
         points = settings.get("points") if isinstance(settings, Mapping) else None
         if isinstance(points, list | tuple) and points and "hidden" not in settings:
             settings = {**settings, "hidden": [None] * len(points)}
@@ -158,17 +151,10 @@ class PointsLab(Lab):
             if is_sampled(self._form.motion):
                 refuse_longer(self._form.motion, settings["duration"])
         _refuse_motion(settings)
-        refuse_P(settings, self._states(settings))
+        refuse_P(settings)
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
                 raise ValueError(f"hidden {k} is {times!r}; it must begin at 0 s or later and end after that")
-
-    def _states(self, settings: Settings) -> int:
-        """How many entries the state of settings has."""
-        if self._form is not None and settings["state"] == "own":
-            return self._form.states
-        layouts = part("points_lab")["states"][settings["state"]]["layouts"]
-        return len(layouts[len(settings["points"]) - 1]["names"])
 
     def analyse(self) -> Settings:
         """Sentences on the present settings, and the rate of decay that is guaranteed."""

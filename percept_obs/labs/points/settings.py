@@ -37,15 +37,14 @@ SCHEMA = Schema(
     P=Text(
         "P = 1 + exp(-t)",
         MOST_OF_P,
-        label="P over time: a number, a diagonal or a matrix",
-        about="a typed P, as text or array: a number, a diagonal, 3 x 3 for each vector of three states, or the whole; "
-        "the letter P stands for `size`",
+        label="P over time: a number or a diagonal",
+        about="a typed P: a number, or a diagonal of three for each vector of three states; P stands for `size`",
     ),
     P0=Text(
         "",
         MOST_OF_P,
-        label="P at the beginning: a diagonal or a matrix",
-        about="in the same way a Lyapunov or Riccati P at the beginning; empty for `size` times the identity",
+        label="P at the beginning: a diagonal",
+        about="a Lyapunov or Riccati P at the beginning, typed like P; empty for `size` times the identity",
     ),
     decrease=Number(0.0, 0, 100, (0, 0.5), 0.005, unit="1/s", about="of a Lyapunov P"),
     forgetting=Number(0.3, 0, 100, (0, 2), 0.02, unit="1/s", about="of a Riccati P"),

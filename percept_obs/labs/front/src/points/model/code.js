@@ -15,8 +15,8 @@ const WEIGHTS = {
 
 /** What is typed for P, in Python, for a state of so many entries. */
 function typedP(model, settings, n) {
-  const { block, varies, python } = readP(model, settings);
-  return { varies, text: block === 1 || block === n ? python : `np.kron(np.eye(${n / block}), ${python})` };
+  const { entries, varies, python } = readP(model, settings);
+  return { varies, text: entries === 1 ? python : `np.diag(${n / entries} * ${python})` };
 }
 
 export function pythonOf({ settings, truth, n, points, names: states }, model) {

@@ -13,19 +13,19 @@ import { entriesOf } from "./sparse.js";
  * layout    where the coefficients stand: rows, columns, which; begins, axes, states, entries of the points
  * functions  point: what one point tells, printed from its block; those of sparse.js, printed for the layout, those of P
  *           where it is computed
- * law       {computed, full, information, forgetting, pull} of P, of which all entries may differ from 0 if it is full
+ * law       {computed, information, forgetting, pull} of P
  * x, P      at the start, P with no more entries than `entriesOf` finds; it is null where it is given
  * tables    {steps, coefficients, width, inverses, images, points, first}: coefficients have a row of `width` numbers
- *           for each instant of a step, whose end is the next one's start; inverses {block, stays, rows} of a P that is
- *           given have the entries of one block of states likewise, or once if it stays; images have a row for each instant of each step, of all `points`, of which the
- *           layout's begin with `first`
+ *           for each instant of a step, whose end is the next one's start; inverses {entries, constant, rows} of a given P
+ *           have a diagonal for each instant likewise, or one if it is constant; images have a row for each instant of
+ *           each step, of all `points`, of which the layout's begin with `first`
  * path      takes the estimates
  * Returns the first row of the path at which the estimate was no longer finite, or -1; P holds its last value.
  */
 export function advance(layout, functions, law, x, P, tables, path) {
   const { steps, coefficients, width, inverses, images, points, first } = tables;
   const n = x.length;
-  const { pairs } = entriesOfP(layout, n, law.full);
+  const { pairs } = entriesOfP(layout, n);
   const now = new Float64Array(law.computed ? n + pairs.length : n);
   now.set(x);
   for (let k = n; k < now.length; k++) now[k] = P[pairs[k - n][0] * n + pairs[k - n][1]];
@@ -36,7 +36,7 @@ export function advance(layout, functions, law, x, P, tables, path) {
   for (let k = 0; k < steps.length && failed < 0; k++) {
     step(now, steps[k], (instant, stage, out) => {
       const row = EACH * k + instant;
-      const inverse = inverses.stays ? 0 : row * inverses.block ** 2;
+      const inverse = inverses.constant ? 0 : row * inverses.entries;
       const at = (((EACH + 1) * k + instant) * points + first) * 2;
       rate(stage, inverse, coefficients, row * width, images, at, out);
     });
@@ -51,19 +51,19 @@ export function advance(layout, functions, law, x, P, tables, path) {
   return failed;
 }
 
-function entriesOfP(layout, n, full) {
-  return derived(layout, `entries of P${full ? ", all" : ""}`, () => entriesOf(layout, n, full));
+function entriesOfP(layout, n) {
+  return derived(layout, "entries of P", () => entriesOf(layout, n));
 }
 
 /** A function that fills the rates of an estimate and, behind it, of P's entries. */
-function rateOf(layout, { point, moveX, place, correct, moveP, solveP }, { computed, full, information, forgetting, pull }, { block, rows }, n) {
+function rateOf(layout, { point, moveX, place, correct, moveP, solveP }, { computed, information, forgetting, pull }, { entries, rows }, n) {
   const points = layout.begins.length - 1;
   const correction = new Float64Array(n);
   const places = new Float64Array(3 * points);
   const given = new Float64Array(5);
   const told = new Float64Array(12 * points);
   const toldOf = Array.from({ length: points }, (_, k) => told.subarray(12 * k, 12 * k + 12));
-  const constant = Float64Array.from(entriesOfP(layout, n, full).pairs, ([i, j]) => (computed ? pull[i * n + j] : 0));
+  const constant = Float64Array.from(entriesOfP(layout, n).pairs, ([i, j]) => (computed ? pull[i * n + j] : 0));
   return (now, inverse, known, offset, images, at, out) => {
     moveX(now, known, offset, out);
     place(now, places);
@@ -85,16 +85,6 @@ function rateOf(layout, { point, moveX, place, correct, moveP, solveP }, { compu
     if (!anything) return;
     correct(told, correction);
     if (computed) solveP(now, correction);
-    if (computed) for (let i = 0; i < n; i++) out[i] += correction[i];
-    else addBlocks(out, rows, inverse, block, correction);
+    for (let i = 0; i < n; i++) out[i] += computed ? correction[i] : rows[inverse + (i % entries)] * correction[i];
   };
-}
-
-/** Add P^-1 times a vector, where all along the diagonal of P^-1 stands the same block, whose entries begin at a place. */
-function addBlocks(out, rows, at, block, vector) {
-  for (let first = 0; first < vector.length; first += block) {
-    for (let i = 0; i < block; i++) {
-      for (let j = 0; j < block; j++) out[first + i] += rows[at + i * block + j] * vector[first + j];
-    }
-  }
 }

@@ -5,7 +5,7 @@ import { derived } from "../../common/model/derived.js";
 import { PrintedKernels } from "../../common/model/kernels.js";
 import { typedModule } from "../../common/model/typed.js";
 import { textsOfP, textsOfX } from "./sparse.js";
-import { isComputed, isFull, misfit, textOfP } from "./weight.js";
+import { isComputed, textOfP } from "./weight.js";
 
 /** The name of a state that somebody brought. */
 export const OWN = "own";
@@ -13,7 +13,7 @@ export const OWN = "own";
 /** The layout of what is followed together: points that share nothing unknown are followed one by one. */
 export function layoutFollowed(model, settings) {
   const { state, points } = settings;
-  const together = state === "independent" && !isFull(model, settings) ? 1 : points.length;
+  const together = state === "independent" ? 1 : points.length;
   return model.states[state].layouts[together - 1];
 }
 
@@ -21,12 +21,10 @@ export function layoutFollowed(model, settings) {
 export class PointsKernels extends PrintedKernels {
   needed(settings) {
     const { states, locate, point, written } = this.model;
-    const { state, motion, points } = settings;
+    const { state, motion } = settings;
     const [typed] = typedModule(this.model, motion);
     const coefficients = typed ? written?.[motion]?.states?.[state] : states[state].coefficients;
     const moved = { ...typed, key: typed ? `${state} ${typed.key}` : state, texts: { coefficients } };
-    const why = misfit(this.model, settings, states[state].layouts[points.length - 1].names.length);
-    if (why) return [{ key: why, texts: {}, refusal: why }];
     return [{ key: "points", texts: { locate, point } }, moved, ...this.rates(settings), ...typedModule(this.model, textOfP(settings))];
   }
 
@@ -34,8 +32,7 @@ export class PointsKernels extends PrintedKernels {
   rates(settings) {
     const layout = layoutFollowed(this.model, settings);
     const n = layout.names.length;
-    const full = isFull(this.model, settings);
-    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n, full)) });
-    return [printed("x", textsOfX), ...(isComputed(settings) ? [printed(full ? "all of P" : "P", textsOfP)] : [])];
+    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n)) });
+    return [printed("x", textsOfX), ...(isComputed(settings) ? [printed("P", textsOfP)] : [])];
   }
 }

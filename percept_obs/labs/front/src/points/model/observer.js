@@ -6,7 +6,7 @@ import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { layoutFollowed } from "./kernels.js";
 import { product, pseudoInverse } from "./symmetric.js";
-import { inversesOf, isComputed, isFull, startOfP } from "./weight.js";
+import { inversesOf, isComputed, startOfP } from "./weight.js";
 
 /** Follows what a camera has recorded. */
 export class Observer {
@@ -48,10 +48,10 @@ export class Observer {
   }
 
   /** The inverse of a P that is given, made anew when what it depends on changes. */
-  inverses({ settings, functions, n }, places) {
+  inverses({ settings, functions }, places) {
     const { memory, model } = this.camera;
     const { weight, size, final, P, period, duration, step } = settings;
-    const key = [weight, size, final, weight === "typed" && [P, n], period, duration, step];
+    const key = [weight, size, final, weight === "typed" && P, period, duration, step];
     return memory.once("inverse of P", key, () => inversesOf(model, settings, places, functions));
   }
 
@@ -93,7 +93,7 @@ export class Observer {
     const own = layout.names.length;
     const count = layout.begins.length - 1;
     const begun = isComputed(settings) ? startOfP(this.camera.model, settings, own, scene.functions) : null;
-    const law = lawOf(settings, isFull(this.camera.model, settings), begun, own);
+    const law = lawOf(settings, begun, own);
     let x = start.slice(states, states + own);
     const P = begun?.slice() ?? null;
     const began = settings.start === "rays" ? firstSights(outputs, time.length, points, first, count) : new Map();
@@ -114,7 +114,7 @@ export class Observer {
         steps: steps.subarray(from, to),
         coefficients: coefficients.subarray(EACH * from * width),
         width,
-        inverses: inverses.stays ? inverses : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.block ** 2) },
+        inverses: inverses.constant ? inverses : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.entries) },
         images: held.subarray((EACH + 1) * 2 * points * from),
         points,
         first,
@@ -160,10 +160,10 @@ export class Observer {
 }
 
 /** How P moves, where it is computed. */
-function lawOf({ weight, forgetting, decrease }, full, begun, n) {
-  if (weight === "riccati") return { computed: true, full, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
-  if (weight === "lyapunov") return { computed: true, full, information: 0, forgetting: 0, pull: unit(n, -decrease) };
-  return { computed: false, full, information: 0, forgetting: 0, pull: null };
+function lawOf({ weight, forgetting, decrease }, begun, n) {
+  if (weight === "riccati") return { computed: true, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
+  if (weight === "lyapunov") return { computed: true, information: 0, forgetting: 0, pull: unit(n, -decrease) };
+  return { computed: false, information: 0, forgetting: 0, pull: null };
 }
 
 /** The samples at which points are first seen, with these points. */

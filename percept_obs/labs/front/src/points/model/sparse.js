@@ -7,11 +7,11 @@ const LONGEST = 400;
 
 /**
  * Where the entries of P stand that ever differ from 0, when it begins as blocks of 3 x 3: those of one vector, those of
- * two states that a point has, and what A carries these to.  All of them, if it is `full`.  One of a pair is kept: `at`
+ * two states that a point has, and what A carries these to.  One of a pair is kept: `at`
  * says where, or -1.
  */
-export function entriesOf({ rows, columns, begins, states }, n, full = false) {
-  const there = new Uint8Array(n * n).fill(full ? 1 : 0);
+export function entriesOf({ rows, columns, begins, states }, n) {
+  const there = new Uint8Array(n * n);
   const put = (i, j) => (there[i * n + j] = there[j * n + i] = 1);
   for (let i = 0; i < n; i++) for (let j = i - (i % 3); j <= i; j++) put(i, j);
   for (let p = 0; p + 1 < begins.length; p++) {
@@ -60,8 +60,8 @@ export function textsOfX({ rows, columns, which, begins, axes, states, entries }
 }
 
 /** Texts of the functions of P for a layout: `move` fills its rates, `solve` solves P x = right in place. */
-export function textsOfP(layout, n, full) {
-  const found = entriesOf(layout, n, full);
+export function textsOfP(layout, n) {
+  const found = entriesOf(layout, n);
   return { moveP: moveText(layout, found, n), solveP: solveText(found, n) };
 }
 
