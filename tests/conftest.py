@@ -7,17 +7,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by numpy; threads onl
 import gc
 import math
 import shutil
-import tempfile
 from collections import Counter
 from pathlib import Path
 
 import hypothesis
-import matplotlib
+import platformdirs
 import pytest
 
-from percept_obs.points import kernel as points_kernel
-
-matplotlib.use("Agg")
+os.environ["MPLBACKEND"] = "Agg"
+# Kernels and servers with a home of their own take loops in machine code from here too.
+os.environ.setdefault("NUMBA_CACHE_DIR", str(platformdirs.user_cache_path("percept_obs")))
 
 hypothesis.settings.register_profile("here", deadline=None)
 hypothesis.settings.register_profile("ci", deadline=None, derandomize=True, database=None)
@@ -32,14 +31,6 @@ BROWSERS = (
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
 )
-
-
-def pytest_configure(config):
-    """One new folder for the loops that a session compiles: its workers and their kernels share it, not the user's."""
-    if not hasattr(config, "workerinput"):
-        folder = tempfile.TemporaryDirectory()
-        os.environ["NUMBA_CACHE_DIR"] = folder.name
-        config.add_cleanup(folder.cleanup)
 
 
 def pytest_itemcollected(item):
@@ -79,7 +70,7 @@ def node():
 def always_compiled():
     """Many short runs of many points, which pay for compiling their loop together."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(points_kernel, "STATE_WORK", math.inf)
+        patch.setattr("percept_obs.points.kernel.STATE_WORK", math.inf)
         yield
 
 

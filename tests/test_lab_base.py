@@ -13,39 +13,29 @@ from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.shared import lab as base
 from percept_obs.labs.shared import markup
 
-BUILT_FROM = ("package.json", "package-lock.json", "eslint.config.js", "tsconfig.json")
-
 
 @pytest.fixture(scope="session")
-def modules(node, tmp_path_factory):
-    """A copy of the front end with the packages that its lock file names."""
+def npm(node):
+    """Run a script of the front end with npm, where its packages are installed."""
     npm = shutil.which("npm")
-    if npm is None:
-        missing("node", "npm is missing. Debian: sudo apt-get install npm. macOS and Windows: it comes with Node.js.")
-    folder = tmp_path_factory.mktemp("front")
-    for part in ("src", "tests"):
-        shutil.copytree(FRONT / part, folder / part)
-    for name in BUILT_FROM:
-        shutil.copy(FRONT / name, folder)
-    installed = subprocess.run([npm, "ci", "--no-audit", "--no-fund"], cwd=folder, capture_output=True, text=True)
-    if installed.returncode:
-        missing("node", f"the front end's packages cannot be had: {installed.stderr[-300:]}")
-    return folder
+    if npm is None or not (FRONT / "node_modules").exists():
+        missing("node", f"The front end's packages are missing: get npm, and run npm ci in {FRONT}.")
+    return lambda *script: subprocess.run([npm, "run", "--silent", *script], cwd=FRONT, capture_output=True, text=True)
 
 
 @pytest.mark.node
 @pytest.mark.slow
-def test_the_bundle_is_the_build_of_the_sources(modules):
-    subprocess.run([shutil.which("npm"), "run", "build"], cwd=modules, check=True, capture_output=True)
-    built, committed = (hashlib.sha256((folder / "lab.js").read_bytes()).hexdigest() for folder in (modules, FRONT))
+def test_the_bundle_is_the_build_of_the_sources(npm, tmp_path):
+    npm("build", "--", f"--outfile={tmp_path / 'lab.js'}").check_returncode()
+    built, committed = (hashlib.sha256((folder / "lab.js").read_bytes()).hexdigest() for folder in (tmp_path, FRONT))
     assert built == committed, "run npm ci && npm run build in percept_obs/labs/front"
 
 
 @pytest.mark.node
 @pytest.mark.slow
-@pytest.mark.parametrize("task", ["lint", "types", "test"])
-def test_the_sources_pass_their_linter_their_types_and_their_own_tests(modules, task):
-    answer = subprocess.run([shutil.which("npm"), "run", task], cwd=modules, capture_output=True, text=True)
+@pytest.mark.parametrize("script", ["lint", "types", "test"])
+def test_the_sources_pass_their_linter_their_types_and_their_own_tests(npm, script):
+    answer = npm(script)
     assert answer.returncode == 0, answer.stdout + answer.stderr
 
 
