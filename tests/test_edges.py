@@ -189,7 +189,7 @@ def test_what_is_unseen_is_so_beside_the_largest():
     form = PointsForm(linear(np.zeros((3, 3)), [0.0, 0.0, 1.0]), np.eye(3), names=("a", "b", "c"))
     for scale in (1e-3, 1.0, 1e3):
         weak = scale * np.diag([0.5 * UNSEEN * 1e3, 1.0, 1e3])
-        assert Gramian(form, np.zeros(1), weak[None], 1.0).unseen().shape == (3, 1)
+        assert Gramian(form.names, np.zeros(1), weak[None], 1.0).unseen().shape == (3, 1)
 
 
 def test_the_bound_sees_all_of_its_window():

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from percept_obs.figures import axis, given, look, words
 from percept_obs.figures.base import Drawing, canvas, figure, legend_above
-from percept_obs.observability.windowed import Excitation
+from percept_obs.observability.windows import Excitation
 from percept_obs.points.gramian import Gramian
 from percept_obs.studies.consistency import Consistency
 

@@ -1,4 +1,4 @@
-"""What can be observed, in all its meanings, and how well at best."""
+"""Measures of observability, and bounds on what any observer can know."""
 
 from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.efficiency import Efficiency, efficiency
@@ -8,7 +8,7 @@ from percept_obs.observability.maps import BoundMap, MapKernel, bound_map, map_k
 from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observability.steering import Steering, steered, steering
-from percept_obs.observability.windowed import windowed
+from percept_obs.observability.windows import windowed
 
 __all__ = [
     "Bound",

@@ -12,11 +12,19 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.observability.linearised import Doubt, Linearised, System, fitting, linearised, places
+from percept_obs.observability.linearised import (
+    Doubt,
+    Linearised,
+    System,
+    linearised,
+    matching_form,
+    names_of,
+    positions,
+)
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 Prior = Mapping[str, float] | ArrayLike | None
 
@@ -38,7 +46,7 @@ class Bound:
     covariance : array of shape (K, n, n)
         After each sample, in the order of the form's coordinates.
     prediction : array of shape (K, n, n)
-        The same had there been no sample but those that the start needs.
+        Covariance at each sample without any samples but those that the start needs.
     information : array of shape (K, n, n)
         Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
 
@@ -85,7 +93,7 @@ class Bound:
         ValueError
             If there is no such coordinate.
         """
-        known = [symbol.name for symbol in self.form.coordinates]
+        known = names_of(self.form)
         if name not in known:
             raise ValueError(f"there is no coordinate {name!r}; there are {', '.join(known)}")
         return np.asarray(self.deviation[:, known.index(name)])
@@ -97,12 +105,12 @@ class Bound:
         return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
 
     def kept(self, sample: int = -1) -> tuple[Array, Array]:
-        """Shares of their standard deviations at the start that hidden directions keep once a sample has come.
+        """Standard deviations of hidden directions at the start after a sample, as shares of those before any.
 
         Parameters
         ----------
         sample : int
-            Its number.
+            Index of the sample.
 
         Returns
         -------
@@ -111,17 +119,17 @@ class Bound:
         directions : array of shape (n2, n2)
             Of the hidden coordinates at the start, one a column.
         """
-        hidden = places(self.form, self.form.hidden)
+        hidden = positions(self.form, self.form.hidden)
         root = np.linalg.cholesky(self.prediction[0])
-        size = np.eye(len(root))
-        left = root @ np.linalg.solve(size + root.T @ self.information[sample] @ root, root.T)
+        # (P0^-1 + J)^-1 with P0 = root root^T, without inverting P0
+        after = root @ np.linalg.solve(np.eye(len(root)) + root.T @ self.information[sample] @ root, root.T)
         before = np.linalg.cholesky(self.prediction[0][np.ix_(hidden, hidden)])
         inverse = np.linalg.inv(before)
-        values, vectors = np.linalg.eigh(inverse @ left[np.ix_(hidden, hidden)] @ inverse.T)
+        values, vectors = np.linalg.eigh(inverse @ after[np.ix_(hidden, hidden)] @ inverse.T)
         return np.sqrt(np.clip(values, 0.0, 1.0)), before @ vectors
 
     def __repr__(self) -> str:
-        last = ", ".join(f"{s.name} {d:.3g}" for s, d in zip(self.form.coordinates, self.deviation[-1], strict=True))
+        last = ", ".join(f"{name} {d:.3g}" for name, d in zip(names_of(self.form), self.deviation[-1], strict=True))
         return (
             f"<Bound of {', '.join(self.form.measured)} on {self.recording.source or 'a recording'}: least standard "
             f"deviations after {self.elapsed[-1]:.4g} s: {last}>"
@@ -137,7 +145,7 @@ def cramer_rao(
     doubt: Doubt = 0.0,
     step: float = LONGEST_STEP,
 ) -> Bound:
-    """The bound that no unbiased observer beats, along the truth of a recording.
+    """Cramer-Rao bound, which no unbiased observer beats, along the truth of a recording.
 
     For Gaussian noise and a start drawn from a normal distribution it is the covariance of a Kalman filter of the
     system linearised along the true trajectory.  It belongs to this one trajectory; averaged over trajectories drawn
@@ -173,6 +181,11 @@ def cramer_rao(
     ValueError
         If system and recording do not fit, there is no truth, or a variance makes no sense.
 
+    See Also
+    --------
+    efficiency : How near runs of an observer come to it.
+    bound_map : The bound at each place of the image.
+
     Notes
     -----
     Van Trees, Detection, Estimation, and Modulation Theory, part I (1968), section 2.4; Taylor, The Cramer-Rao
@@ -188,28 +201,27 @@ def cramer_rao(
     >>> print(f"{both.of('y3')[-1]:.1e} {one.of('y3')[-1]:.1e}")
     3.3e-05 3.9e-05
     """
-    form = fitting(system, recording)
-    if not (np.isfinite(step) and step > 0):
-        raise ValueError(f"the step is {step} s; it must be positive and finite")
+    form = matching_form(system, recording)
+    positive(step=step)
     noise = _noise(recording, form, noise_variance)
-    start, begun = _start(form, prior, noise[0])
-    with np.errstate(all="ignore"):  # what overflows is told below
+    start, from_sample = _start(form, prior, noise[0])
+    with np.errstate(all="ignore"):  # overflow is reported below
         along = linearised(form, recording, doubt, step)
-    if begun and not along.seen[0].all():
+    if from_sample and not along.seen[0].all():
         raise ValueError(
             "the first sample was lost, so that the measured outputs need a prior; give one, or cut it off"
         )
     used = along.seen.copy()
-    used[0] &= not begun
+    used[0] &= not from_sample
     with np.errstate(all="ignore"):
-        least, predicted = (covariances(along, start, noise, each) for each in (used, np.zeros_like(used)))
-        information = _information(along, noise, used)
-    if not all(np.isfinite(each).all() for each in (least, predicted, information)):
+        found = [_covariances(along, start, noise, each) for each in (used, np.zeros_like(used))]
+        found.append(_information(along, noise, used))
+    if not all(np.isfinite(each).all() for each in found):
         raise ValueError(
             "the bound leaves every range of numbers on the way: the doubt, the noise_variance or the prior is too "
             "large or too small, or the step too long"
         )
-    return Bound(form, recording, least, predicted, information)
+    return Bound(form, recording, *found)
 
 
 def _information(along: Linearised, noise: Array, used: Flags) -> Array:
@@ -223,28 +235,15 @@ def _information(along: Linearised, noise: Array, used: Flags) -> Array:
     return np.asarray(np.cumsum(np.swapaxes(rows, 1, 2) @ weights @ rows, axis=0)).reshape(count, n, n)
 
 
-def covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> Array:
-    """Covariance after each sample, shape (K, n, n): predicted by the linearised system, corrected by what is used.
-
-    Parameters
-    ----------
-    along : Linearised
-    start : array of shape (n, n)
-    noise : array of shape (K, m, m), or (1, m, m)
-    used : array of shape (K, m) of bool
-        The samples that correct.
-    """
+def _covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> Array:
+    """Covariance of a Kalman filter after each sample, shape (K, n, n), corrected by the samples that are used."""
     P, found = start, np.empty((len(used), *start.shape))
-    measured, constant = along.measured, len(noise) == 1
-    counts = used.sum(axis=1)
-    for k in range(len(used)):
+    for k, seen in enumerate(used):
         if k:
             Phi = along.transitions[k - 1]
             P = Phi @ P @ Phi.T + along.spreads[k - 1]
-        if counts[k]:
-            R, rows = noise[0 if constant else k], measured
-            if counts[k] < len(measured):
-                R, rows = R[np.ix_(used[k], used[k])], measured[used[k]]
+        if seen.any():
+            R, rows = noise[min(k, len(noise) - 1)][np.ix_(seen, seen)], along.measured[seen]
             shared = P[:, rows]
             P = P - shared @ np.linalg.solve(shared[rows] + R, shared.T)
         P = (P + P.T) / 2
@@ -253,6 +252,7 @@ def covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> A
 
 
 def _deviations(covariances: Array) -> Array:
+    """Standard deviations, shape (K, n)."""
     return np.sqrt(np.maximum(np.diagonal(covariances, axis1=1, axis2=2), 0.0))
 
 
@@ -272,37 +272,36 @@ def _noise(recording: Recording, form: PartitionedSystem, given: ArrayLike | Non
             f"the noise_variance has shape {values.shape}; expected a number, ({m},), ({m}, {m}) or ({count}, {m}, {m})"
         )
     values = values.reshape(-1, m, m)
-    _refuse_no_covariance("the noise_variance", values)
+    _require_covariance("the noise_variance", values)
     return values
 
 
 def _start(form: PartitionedSystem, prior: Prior, noise: Array) -> tuple[Array, bool]:
-    """Covariance at the first sample, and whether the measured outputs begin at it."""
+    """Covariance at the first sample, and True if the measured outputs begin at that sample."""
     n = len(form.coordinates)
     if prior is not None and not isinstance(prior, Mapping):
         start = np.array(prior, dtype=float)
         if start.shape != (n, n):
             raise ValueError(f"the prior has shape {start.shape}; expected ({n}, {n}), or variances by their names")
-        _refuse_no_covariance("the prior", start[None])
+        _require_covariance("the prior", start[None])
         return start, False
     variances = dict(prior or {})
-    unknown = set(variances) - {symbol.name for symbol in form.coordinates}
+    unknown = set(variances) - set(names_of(form))
     if unknown:
-        raise ValueError(
-            f"the prior names {', '.join(sorted(unknown))}; there are {', '.join(map(str, form.coordinates))}"
-        )
+        raise ValueError(f"the prior names {', '.join(sorted(unknown))}; there are {', '.join(names_of(form))}")
     named = [name in variances for name in form.measured]
     if any(named) and not all(named):
         raise ValueError(f"the prior names some of {', '.join(form.measured)}; name all measured outputs or none")
-    start = np.diag([variances.get(symbol.name, HIDDEN_VARIANCE) for symbol in form.coordinates])
+    start = np.diag([variances.get(name, HIDDEN_VARIANCE) for name in names_of(form)])
     if not any(named):
-        measured = places(form, form.measured)
+        measured = positions(form, form.measured)
         start[np.ix_(measured, measured)] = noise
-    _refuse_no_covariance("the prior", start[None])
+    _require_covariance("the prior", start[None])
     return start, not any(named)
 
 
-def _refuse_no_covariance(what: str, matrices: Array) -> None:
+def _require_covariance(what: str, matrices: Array) -> None:
+    """Raise ValueError unless matrices are finite, symmetric and positive definite."""
     if not np.isfinite(matrices).all() or not np.allclose(matrices, np.swapaxes(matrices, 1, 2)):
         raise ValueError(f"{what} is not finite and symmetric, as variances are; correct it")
     if not np.linalg.eigvalsh(matrices).min() > 0:

@@ -1,4 +1,4 @@
-"""Directions of a state: which of them no output can show, and what they are called in words."""
+"""Directions of a state: those that no output can show, and their names in words."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ NEGLIGIBLE = 1e-9
 """A direction that changes the outputs less than this, relatively, is not seen."""
 
 MOST_TERMS = 6
-"""States that are named of a direction with more of them, less one."""
+"""Most states in the name of a direction; of more, all but one of these are named."""
 
 
 def unobservable(A: Array, C: Array) -> Array:
-    """The largest subspace that C maps to 0 and every A maps into itself.
+    """Unobservable subspace: the largest one that C maps to 0 and every A maps into itself.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def unobservable(A: Array, C: Array) -> Array:
 
 
 def in_words(directions: Array, names: Sequence[str]) -> tuple[str, ...]:
-    """Directions as sums of named states, such as "r_x - d2_x".
+    """Name directions as sums of states, such as "r_x - d2_x".
 
     Parameters
     ----------
@@ -61,9 +61,10 @@ def in_words(directions: Array, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _reduced(rows: Array) -> Array:
+    """Reduced row echelon form."""
     rows = np.array(rows, dtype=float)
     for k in range(len(rows)):
-        # the earliest state whose entry is about the largest, so that directions read in the states' order
+        # pivot on the earliest state whose entry is about the largest, so that names follow the states' order
         candidates = np.abs(rows[k:]).max(axis=0)
         column = int(np.argmax(candidates > 0.5 * candidates.max()))
         pivot = k + int(np.argmax(np.abs(rows[k:, column])))
@@ -75,12 +76,13 @@ def _reduced(rows: Array) -> Array:
 
 
 def mainly(direction: Array, names: Sequence[str]) -> str:
-    """The states that a direction of shape (n,) changes most, such as "r_z, d2_z, d2_x", at most three."""
+    """Name the states that a direction of shape (n,) changes most, at most three, such as "r_z, d2_z, d2_x"."""
     size = np.round(np.abs(direction) / np.abs(direction).max(), 6)
     return ", ".join(names[k] for k in np.argsort(-size, kind="stable")[:3] if size[k] > 0)
 
 
 def _sum(row: Array, names: Sequence[str]) -> str:
+    """Text of a sum of states."""
     largest = np.abs(row).max()
     terms = [(value, name) for value, name in zip(row, names, strict=True) if abs(value) >= 1e-6 * largest]
     shown = terms if len(terms) <= MOST_TERMS else terms[: MOST_TERMS - 1]

@@ -1,4 +1,4 @@
-"""How near observers come to the bound: the root mean square of their errors over the least standard deviation."""
+"""Efficiency of observers: the root mean square of their errors over the least standard deviation."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags
 from percept_obs.observability.bound import Bound
+from percept_obs.observability.linearised import names_of
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
@@ -49,30 +50,31 @@ class Efficiency:
 
     @property
     def ratio(self) -> Array:
-        """That over the bound, shape (K,): 1 for an observer that uses all that the samples tell."""
+        """Root mean square error over the bound, shape (K,): 1 for an observer that uses all information."""
         return self.rms / self.bound
 
     def mean(self, begin: float = -math.inf, end: float = math.inf) -> float:
-        """The ratio, averaged over the samples between two times."""
-        return float(self.ratio[self._part(begin, end)].mean())
+        """Mean of the ratio over the samples between two times."""
+        return float(self.ratio[self._between(begin, end)].mean())
 
     def scatter(self, begin: float = -math.inf, end: float = math.inf) -> float:
-        """Standard deviation of that mean from one set of as many runs to another, by leaving out each run in turn."""
-        part = self._part(begin, end)
-        squares, count = (self.errors[:, part] / self.bound[part]) ** 2, len(self.errors)
+        """Standard deviation of `mean` over sets of as many runs, by the jackknife."""
+        inside = self._between(begin, end)
+        squares, count = (self.errors[:, inside] / self.bound[inside]) ** 2, len(self.errors)
         without = np.sqrt((squares.sum(axis=0) - squares) / (count - 1)).mean(axis=1)
         return float(math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2)))
 
     def bias(self, begin: float = -math.inf, end: float = math.inf) -> float:
         """Largest mean error over the runs, in bounds; an observer without bias stays at about 1 / sqrt(N)."""
-        part = self._part(begin, end)
-        return float(np.abs(self.errors[:, part].mean(axis=0) / self.bound[part]).max())
+        inside = self._between(begin, end)
+        return float(np.abs(self.errors[:, inside].mean(axis=0) / self.bound[inside]).max())
 
-    def _part(self, begin: float, end: float) -> Flags:
-        part = (self.time >= begin) & (self.time <= end)
-        if not part.any():
+    def _between(self, begin: float, end: float) -> Flags:
+        """Samples between two times, shape (K,)."""
+        inside = (self.time >= begin) & (self.time <= end)
+        if not inside.any():
             raise ValueError(f"no sample lies between {begin} and {end} s after the first one")
-        return np.asarray(part)
+        return np.asarray(inside)
 
     def __repr__(self) -> str:
         return f"<Efficiency of {len(self.errors)} runs: {self.mean():.3g} +- {self.scatter():.1g} bounds>"
@@ -96,6 +98,10 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
     ValueError
         If there are fewer than two runs, their truth is not the bound's, or there is no such coordinate.
 
+    See Also
+    --------
+    cramer_rao : The bound.
+
     Examples
     --------
     >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, cramer_rao, efficiency, ekf, pinhole
@@ -106,14 +112,13 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
     >>> 0.8 < efficiency(runs, cramer_rao(seen[0], form)).mean(5, 10) < 1.3
     True
     """
-    name = coordinate or bound.form.coordinates[-1].name
-    least = bound.of(name)
+    names = names_of(bound.form)
+    name = coordinate or names[-1]
+    least, truth = bound.of(name), bound.recording.truth
     if len(runs) < 2:
         raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, with noise of their own")
     for number, run in enumerate(runs, 1):
-        truths = [recording.truth for recording in (run.recording, bound.recording)]
-        one, other = (np.zeros(0) if truth is None else truth for truth in truths)
-        if one.shape != other.shape or not np.allclose(one, other):
+        own = run.recording.truth
+        if own is None or truth is None or own.shape != truth.shape or not np.allclose(own, truth):
             raise ValueError(f"run {number} is on another truth than the bound; both must follow the same point")
-    column = [symbol.name for symbol in bound.form.coordinates].index(name)
-    return Efficiency(bound.elapsed, np.array([run.error[:, column] for run in runs]), least)
+    return Efficiency(bound.elapsed, np.array([run.error[:, names.index(name)] for run in runs]), least)

@@ -2,42 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import INSTANTS, step
-from percept_obs.observability.linearised import System, fitting, flow_along, linearised, places
-from percept_obs.observability.windows import OverWindows, check_samples, gathered
+from percept_obs.observability.linearised import (
+    System,
+    flow_along,
+    linearised,
+    matching_form,
+    names_of,
+    outputs_of,
+    positions,
+)
+from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.validation import checked
 
-PERTURBED = 1e-3
-"""Share of a coordinate by which a run begins beside the truth."""
+PERTURBATION = 1e-3
+"""Perturbation of a run's start, relative to the size of the coordinate."""
 
 STEP = 0.05
-"""Longest step of such runs in seconds: of what a perturbation of this size leaves, its error is a small part."""
+"""Longest step of perturbed runs in seconds; its error is small against what such a perturbation leaves."""
 
-SOME = 24
-"""Windows that are looked at by perturbed runs."""
+MOST_WINDOWS = 24
+"""Windows of the empirical Gramian."""
 
 
-@dataclass(frozen=True, eq=False)
-class ErrorGramian(OverWindows):
+class ErrorGramian(Windows):
     """How much the outputs of a window change with the coordinates at its beginning.
 
-    Parameters
-    ----------
-    form : PartitionedSystem
-    time : array of shape (T,)
-        Beginnings of the windows in seconds.
-    matrices : array of shape (T, n, n)
-        In the order of the form's coordinates.
-    window : float
-        Length of the windows in seconds.
+    `time` holds the windows' beginnings; states are the form's coordinates, in its order.
 
     Examples
     --------
@@ -49,16 +46,6 @@ class ErrorGramian(OverWindows):
     >>> print(f"{found.smallest.min():.1e}")
     1.4e-01
     """
-
-    form: PartitionedSystem
-    time: Array
-    matrices: Array
-    window: float
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the coordinates."""
-        return tuple(symbol.name for symbol in self.form.coordinates)
 
 
 @checked
@@ -86,6 +73,10 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     ValueError
         If system and recording do not fit, there is no truth, or the window does not fit.
 
+    See Also
+    --------
+    empirical_gramian : Without derivatives.
+
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
@@ -95,30 +86,28 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     >>> print(f"{both:.1e} {one:.1e}")
     1.4e-01 2.5e-05
     """
-    form = fitting(system, recording)
-    check_samples(recording, window)
+    form = matching_form(system, recording)
+    check_window(recording, window, holds_samples=True)
     along = linearised(form, recording)
-    H = np.zeros((len(recording.time), len(along.measured), len(form.coordinates)))
-    H[:, np.arange(len(along.measured)), along.measured] = along.seen
-    begins, matrices = gathered(recording.time, np.swapaxes(H, 1, 2) @ H, along.transitions, window)
-    return ErrorGramian(form, recording.time[begins], matrices, window)
+    H = np.eye(len(form.coordinates))[along.measured] * along.seen[:, :, None]
+    begins, matrices = window_integrals(recording.time, np.swapaxes(H, 1, 2) @ H, along.transitions, window)
+    return ErrorGramian(names_of(form), recording.time[begins], matrices, window)
 
 
 @checked
 def empirical_gramian(
-    recording: Recording, system: System, window: float, perturbed: float = PERTURBED
+    recording: Recording, system: System, window: float, perturbed: float = PERTURBATION
 ) -> ErrorGramian:
-    """The same by perturbed runs: no derivative is taken, and what is not linear is seen (Krener and Ide 2009).
+    """The Gramian from runs that begin beside the truth, without derivatives.
 
-    From the beginning of each window two runs start beside the truth for every coordinate, one on either side.  With
-    the differences d_i of their outputs over twice the perturbation, the entry (i, j) is the integral of d_i^T d_j.
+    With d_i the change of the outputs by a unit change of coordinate i, the entries are the integrals of d_i^T d_j.
 
     Parameters
     ----------
     recording, system, window
         See `error_gramian`.
     perturbed : float
-        Share of a coordinate's size by which runs begin beside the truth.
+        Perturbation of the start, relative to the size of the coordinate.
 
     Returns
     -------
@@ -128,7 +117,11 @@ def empirical_gramian(
     Raises
     ------
     ValueError
-        As `error_gramian`, or if the share is not between 0 and 1.
+        As `error_gramian`, or if the perturbation is not between 0 and 1.
+
+    See Also
+    --------
+    error_gramian : Of the linearised system.
 
     Notes
     -----
@@ -143,16 +136,16 @@ def empirical_gramian(
     >>> print(f"{found.smallest.min():.1e}")
     1.5e-01
     """
-    form = fitting(system, recording)
-    check_samples(recording, window)
+    form = matching_form(system, recording)
+    check_window(recording, window, holds_samples=True)
     if not 0 < perturbed < 1:
         raise ValueError(f"the perturbed share is {perturbed}; it must lie between 0 and 1")
     time = recording.time
     last = int(np.searchsorted(time, time[-1] - window + slack_of(time), side="right")) - 1
-    begins = np.unique(np.linspace(0, last, SOME).round().astype(int))
+    begins = np.unique(np.linspace(0, last, MOST_WINDOWS).round().astype(int))
     ends = np.searchsorted(time, time[begins] + window - slack_of(time))
     matrices = _by_runs(form, recording, begins, ends, perturbed)
-    return ErrorGramian(form, time[begins], matrices, window)
+    return ErrorGramian(names_of(form), time[begins], matrices, window)
 
 
 def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, ends: Indices, share: float) -> Array:
@@ -161,11 +154,10 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
     n, time, truth = len(form.coordinates), recording.time, recording.truth
     usual = np.sqrt(np.mean(truth**2, axis=0))
     sizes = share * np.maximum(np.abs(truth[begins]), share * usual)
-    away = np.concatenate([np.eye(n), -np.eye(n)])  # all to one side, then all to the other
-    states = (truth[begins][:, None] + sizes[:, None] * away).reshape(-1, n)
+    signs = np.concatenate([np.eye(n), -np.eye(n)])  # central differences
+    states = (truth[begins][:, None] + sizes[:, None] * signs).reshape(-1, n)
     rate = flow_along(form, recording)
-    columns = [recording.names.index(name) for name in form.measured]
-    measured, seen = places(form, form.measured), np.isfinite(recording.outputs[:, columns])
+    measured, seen = positions(form, form.measured), np.isfinite(outputs_of(form, recording))
     found, before = np.zeros((len(begins), n, n)), np.zeros((len(begins), n, n))
     for j in range(int((ends - begins).max()) + 1):
         at, after = np.minimum(begins + j, ends), np.minimum(begins + j + 1, ends)
@@ -175,12 +167,13 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
         if j:
             found += (before + now) * (time[at] - time[np.minimum(begins + j - 1, ends)])[:, None, None] / 2
         before = now
-        pieces = max(1, int(np.ceil(h.max() / STEP - 1e-4)))
-        for k in range(pieces):
-            part, start = np.repeat(h / pieces, 2 * n), np.repeat(time[at] + k * h / pieces, 2 * n)
+        count = max(1, int(np.ceil(h.max() / STEP - 1e-4)))
+        length = np.repeat(h / count, 2 * n)
+        for k in range(count):
+            start = np.repeat(time[at], 2 * n) + k * length
 
-            def moving(instant: int, state: Array, start: Array = start, part: Array = part) -> Array:
-                return rate(start + float(INSTANTS[instant]) * part, state)
+            def moving(instant: int, state: Array, start: Array = start, length: Array = length) -> Array:
+                return rate(start + float(INSTANTS[instant]) * length, state)
 
-            states = step(states, part[:, None], moving)
+            states = step(states, length[:, None], moving)
     return found

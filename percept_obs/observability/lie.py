@@ -1,4 +1,4 @@
-"""Rank of the Lie derivatives' differentials: what the outputs and their time derivatives tell at an instant."""
+"""Rank of the Lie derivatives' differentials: observability at an instant from outputs and their derivatives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.directions import in_words
-from percept_obs.observability.linearised import System, as_form, fitting, rate_of
+from percept_obs.observability.linearised import System, as_form, matching_form, names_of, rate_of
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.validation import MOST_TERMS, checked, limit
@@ -49,21 +49,21 @@ class Codistribution:
 
     @property
     def matrix(self) -> sp.ImmutableMatrix:
-        """All rows."""
+        """All blocks, one below the other."""
         return sp.ImmutableMatrix.vstack(*self.blocks)
 
     @cached_property
     def rank(self) -> int:
         """Rank at almost every state and motion."""
-        return int(self.ranks_at(self._anywhere)[-1])
+        return self.ranks_at(self._random_values)[-1]
 
     @cached_property
     def unobservable(self) -> Array:
         """Directions that are lost at almost every state and motion, orthonormal, shape (n, n - rank).
 
-        They may turn with state and motion; these are those of one that is drawn.
+        They may turn with state and motion; these belong to values drawn at random.
         """
-        return self.lost_at(self._anywhere)
+        return self.lost_at(self._random_values)
 
     def ranks_at(self, values: Mapping[sp.Symbol, float]) -> tuple[int, ...]:
         """Rank with the orders up to 0, up to 1, and so on.
@@ -73,16 +73,14 @@ class Codistribution:
         values : mapping of symbols to floats
             Of coordinates, parameters and their derivatives.
         """
-        (rows,) = self._rows(values)
-        return tuple(int(rank) for rank in _ranks(rows[None], len(self.form.x1))[0])
+        return tuple(self._at(values).ranks[0].tolist())
 
     def lost_at(self, values: Mapping[sp.Symbol, float]) -> Array:
-        """Directions that no order shows, orthonormal, shape (n, q)."""
-        (rows,) = self._rows(values)
-        return lost(rows)
+        """Directions that no order shows, orthonormal, shape (n, q); see `ranks_at`."""
+        return _kernel(self._at(values).rows[0])
 
     def along(self, recording: Recording) -> LieRanks:
-        """The ranks along the truth of a recording."""
+        """Ranks along the truth of a recording."""
         time = recording.time
         columns: list[ArrayLike] = []
         if self.form.parameters:
@@ -93,26 +91,28 @@ class Codistribution:
                 known = np.gradient(known, time, axis=0)
                 columns += [*known.T, *(0.0 for _ in surface)]
         assert recording.truth is not None
-        rows = self._evaluate(*recording.truth.T, *columns)
-        return LieRanks(self.form, time, _scaled(rows))
+        return self._ranks(time, *recording.truth.T, *columns)
 
-    def _rows(self, values: Mapping[sp.Symbol, float]) -> Array:
+    def _at(self, values: Mapping[sp.Symbol, float]) -> LieRanks:
+        """Ranks at one state and motion."""
         missing = [str(symbol) for symbol in self._symbols if symbol not in values]
         if missing:
             raise ValueError(f"there are no values for {', '.join(missing)}; give them numbers")
-        given = [np.array([float(values[symbol])]) for symbol in self._symbols]
-        return _scaled(self._evaluate(*given))
+        return self._ranks(np.zeros(1), *([float(values[symbol])] for symbol in self._symbols))
 
-    def _evaluate(self, *columns: ArrayLike) -> Array:
-        found = vectorised(self._symbols, list(self.matrix))(*columns)
-        return np.stack(found, axis=-1).reshape(-1, *self.matrix.shape)
+    def _ranks(self, time: Array, *columns: ArrayLike) -> LieRanks:
+        entries = vectorised(self._symbols, list(self.matrix))(*columns)
+        rows = np.stack(entries, axis=-1).reshape(-1, *self.matrix.shape)
+        # rows of length 1, so that no order outweighs the others; rows of zeros stay
+        lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+        return LieRanks(self.form, time, np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0))
 
     @property
     def _symbols(self) -> tuple[sp.Symbol, ...]:
         return (*self.form.coordinates, *self.form.parameters, *(s for each in self.derivatives for s in each))
 
     @property
-    def _anywhere(self) -> dict[sp.Symbol, float]:
+    def _random_values(self) -> dict[sp.Symbol, float]:
         draw = np.random.default_rng(1).uniform(0.2, 0.9, len(self._symbols))
         drawn = dict(zip(self._symbols, draw.tolist(), strict=True))
         return drawn | self.form.values
@@ -150,7 +150,11 @@ class LieRanks:
     @cached_property
     def ranks(self) -> Array:
         """Rank with the orders up to 0, up to 1, and so on, shape (K, orders + 1)."""
-        return _ranks(self.rows, len(self.form.x1))
+        m, found = len(self.form.x1), []
+        for count in range(m, self.rows.shape[1] + 1, m):
+            singular = np.linalg.svd(self.rows[:, :count], compute_uv=False)
+            found.append((singular > NEGLIGIBLE * np.maximum(singular[:, :1], 1e-300)).sum(axis=1))
+        return np.stack(found, axis=1)
 
     @cached_property
     def smallest(self) -> Array:
@@ -159,18 +163,18 @@ class LieRanks:
 
     @property
     def holds(self) -> bool:
-        """Whether the rank is full at every sample."""
+        """True if the rank is full at every sample."""
         return bool((self.ranks[:, -1] == len(self.form.coordinates)).all())
 
     @property
     def weakest(self) -> int:
-        """Number of the sample of the least rank, and among those of the smallest singular value."""
+        """Index of the sample of the least rank; among several, of the smallest singular value."""
         worst = self.ranks[:, -1] == self.ranks[:, -1].min()
         return int(np.argmin(np.where(worst, self.smallest, np.inf)))
 
     def lost(self) -> tuple[str, ...]:
         """Directions that are lost at the weakest sample, in words."""
-        return in_words(lost(self.rows[self.weakest]), [symbol.name for symbol in self.form.coordinates])
+        return in_words(_kernel(self.rows[self.weakest]), names_of(self.form))
 
 
 @checked
@@ -188,7 +192,11 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
     orders : int, optional
         Largest number of derivatives; as many as there are coordinates, less one, when left out.
     varying : bool
-        Whether the motion varies, so that its parameters have time derivatives as well.
+        True if the motion varies, so that its parameters have time derivatives as well.
+
+    Returns
+    -------
+    Codistribution
 
     Raises
     ------
@@ -196,6 +204,10 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
         If the number of orders is negative.
     TooMuchWork
         If the expressions become too long.
+
+    See Also
+    --------
+    percept_obs.observability.lie_ranks : Along a recording.
 
     Examples
     --------
@@ -252,32 +264,17 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     >>> lie_ranks(record(scenarios.ma2005_eq35(), 2, Camera(1.0)), system.measure("y1"), orders=1).ranks.tolist()
     [[1, 2], [1, 2], [1, 2]]
     """
-    form = fitting(system, recording)
+    form = matching_form(system, recording)
     signal = recording.motion.signal
     varying = signal is not None and not signal.constant
-    if not varying:  # with numbers, for what is 0 then drops out
+    if not varying:  # numbers are put in, so that zeros drop out
         numbers = recording.motion.values | dict(recording.view.values)
         rate = sp.ImmutableMatrix(form.rate.xreplace({s: sp.Float(v) if v else sp.S.Zero for s, v in numbers.items()}))
         form = PartitionedSystem(form.x1, form.x2, rate, (), form.coordinates, form.view)
     return lie_derivatives(form, orders, varying).along(recording)
 
 
-def lost(rows: Array) -> Array:
+def _kernel(rows: Array) -> Array:
     """Directions that scaled rows of shape (q, n) do not show, orthonormal, shape (n, number of directions)."""
     _, singular, right = np.linalg.svd(rows)
     return np.asarray(right[int((singular > NEGLIGIBLE * max(singular[0], 1e-300)).sum()) :].T)
-
-
-def _scaled(rows: Array) -> Array:
-    """Rows of length 1, so that no order outweighs the others; rows of zeros stay."""
-    lengths = np.linalg.norm(rows, axis=2, keepdims=True)
-    return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0)
-
-
-def _ranks(rows: Array, outputs: int) -> Array:
-    """Ranks of the first block of rows, of the first two, and so on, shape (K, number of blocks)."""
-    found = []
-    for count in range(outputs, rows.shape[1] + 1, outputs):
-        singular = np.linalg.svd(rows[:, :count], compute_uv=False)
-        found.append((singular > NEGLIGIBLE * np.maximum(singular[:, :1], 1e-300)).sum(axis=1))
-    return np.stack(found, axis=1)

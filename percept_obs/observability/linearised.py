@@ -17,6 +17,7 @@ from percept_obs.validation import limit
 
 System = PartitionedSystem | PerspectiveSystem
 Doubt = float | Mapping[str, float]
+Rate = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,52 +26,46 @@ class Linearised:
 
     Parameters
     ----------
-    form : PartitionedSystem
-    recording : Recording
+    measured : integer array of shape (m,)
+        Positions of the measured coordinates.
+    seen : array of shape (K, m) of bool
+        Measured outputs that were sampled.
     transitions : array of shape (K - 1, n, n)
         Phi_k, in the order of the form's coordinates.
     spreads : array of shape (K - 1, n, n)
-        Q_k, what a doubt in the motion adds.
+        Q_k, from doubts in the motion.
     """
 
-    form: PartitionedSystem
-    recording: Recording
+    measured: Indices
+    seen: Flags
     transitions: Array
     spreads: Array
 
-    @property
-    def measured(self) -> Indices:
-        """Which of the coordinates are measured, shape (m,)."""
-        return places(self.form, self.form.measured)
 
-    @property
-    def seen(self) -> Flags:
-        """Which measured outputs were sampled, shape (K, m)."""
-        columns = [self.recording.names.index(name) for name in self.form.measured]
-        return np.isfinite(self.recording.outputs[:, columns])
+def names_of(form: PartitionedSystem) -> tuple[str, ...]:
+    """Names of a form's coordinates, in its order."""
+    return tuple(symbol.name for symbol in form.coordinates)
 
 
-def places(form: PartitionedSystem, names: tuple[str, ...]) -> Indices:
-    """Where coordinates stand among those of a form."""
-    known = [symbol.name for symbol in form.coordinates]
-    return np.array([known.index(name) for name in names], dtype=int)
+def positions(form: PartitionedSystem, names: tuple[str, ...]) -> Indices:
+    """Positions of named coordinates among those of a form."""
+    return np.array([names_of(form).index(name) for name in names], dtype=int)
+
+
+def outputs_of(form: PartitionedSystem, recording: Recording) -> Array:
+    """Samples of the outputs that a form measures, shape (K, m)."""
+    return recording.outputs[:, [recording.names.index(name) for name in form.measured]]
 
 
 def as_form(system: System) -> PartitionedSystem:
-    """The form itself, or a perspective system's with all image coordinates measured."""
+    """Return the form itself, or a perspective system's with all image coordinates measured."""
     if isinstance(system, PartitionedSystem):
         return system
     return system.partition(*(symbol.name for symbol in system.surface.image_coordinates))
 
 
-def fitting(system: System, recording: Recording) -> PartitionedSystem:
-    """The form of a system, for a recording with a truth.
-
-    Raises
-    ------
-    ValueError
-        If they do not fit each other, or the recording has no truth.
-    """
+def matching_form(system: System, recording: Recording) -> PartitionedSystem:
+    """Return the form of a system; raise ValueError if it does not fit the recording, or that has no truth."""
     form = as_form(system)
     if recording.truth is None or not np.isfinite(recording.truth).all():
         raise ValueError(
@@ -102,7 +97,7 @@ def linearised(
     Parameters
     ----------
     form, recording
-        As from `fitting`.
+        As from `matching_form`.
     doubt : float or mapping of names to floats
         See `cramer_rao`.
     longest : float
@@ -112,39 +107,30 @@ def linearised(
     count = max(1, int(np.ceil(lengths.max() / longest - 1e-4)))
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
-    h, rate = lengths / count, _rates_along(form, recording, doubt)
-    state = np.zeros((len(lengths), n, 2 * n + 1))
-    state[:, :, 0], state[:, :, 1 : n + 1] = recording.truth[:-1], np.eye(n)
+    f = rate_of(form)
+    rates = _along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
+    h = lengths / count
+    # state, transition and spread are integrated together: x' = f, Phi' = F Phi, S' = F S + S F^T + Q
+    whole = np.zeros((len(lengths), n, 2 * n + 1))
+    whole[:, :, 0], whole[:, :, 1 : n + 1] = recording.truth[:-1], np.eye(n)
     for k in range(count):
         begins = recording.time[:-1] + k * h
 
-        def moving(instant: int, state: Array, begins: Array = begins) -> Array:
-            f, F, Q = rate(begins + float(INSTANTS[instant]) * h, state[:, :, 0])
-            Phi, spread = state[:, :, 1 : n + 1], state[:, :, n + 1 :]
-            turned = F @ spread
-            return np.concatenate([f[:, :, None], F @ Phi, turned + np.swapaxes(turned, 1, 2) + Q], axis=2)
+        def moving(instant: int, whole: Array, begins: Array = begins) -> Array:
+            values = rates(begins + float(INSTANTS[instant]) * h, whole[:, :, 0])
+            F, Q = values[:, n:].reshape(-1, 2, n, n).swapaxes(0, 1)
+            turned = F @ whole[:, :, n + 1 :]
+            spread = turned + np.swapaxes(turned, 1, 2) + Q
+            return np.concatenate([values[:, :n, None], F @ whole[:, :, 1 : n + 1], spread], axis=2)
 
-        state = step(state, h[:, None, None], moving)
-    return Linearised(form, recording, state[:, :, 1 : n + 1], state[:, :, n + 1 :])
+        whole = step(whole, h[:, None, None], moving)
+    seen = np.isfinite(outputs_of(form, recording))
+    return Linearised(positions(form, form.measured), seen, whole[:, :, 1 : n + 1], whole[:, :, n + 1 :])
 
 
-def flow_along(form: PartitionedSystem, recording: Recording) -> Callable[[Array, Array], Array]:
+def flow_along(form: PartitionedSystem, recording: Recording) -> Rate:
     """The rate, shape (T, n), as a function of times (T,) and coordinates (T, n), with a recording's known motion."""
     return _along(form, recording, list(rate_of(form)))
-
-
-def _rates_along(
-    form: PartitionedSystem, recording: Recording, doubt: Doubt
-) -> Callable[[Array, Array], tuple[Array, Array, Array]]:
-    """The same with the rate's Jacobian and a doubt's spread a second, both of shape (T, n, n)."""
-    rate, n = rate_of(form), len(form.coordinates)
-    at = _along(form, recording, [*rate, *rate.jacobian(form.coordinates), *_spread(form, rate, doubt)])
-
-    def parts(times: Array, states: Array) -> tuple[Array, Array, Array]:
-        f, F, Q = np.split(at(times, states), [n, n + n * n], axis=1)
-        return f, F.reshape(-1, n, n), Q.reshape(-1, n, n)
-
-    return parts
 
 
 def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
@@ -153,9 +139,7 @@ def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([by_name[symbol] for symbol in form.coordinates])
 
 
-def _along(
-    form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]
-) -> Callable[[Array, Array], Array]:
+def _along(form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]) -> Rate:
     """Values of expressions, one a column, as a function of times and coordinates."""
     evaluate = vectorised((*form.coordinates, *form.parameters), expressions)
     surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
@@ -164,23 +148,17 @@ def _along(
 
 def _spread(form: PartitionedSystem, rate: sp.ImmutableMatrix, doubt: Doubt) -> sp.ImmutableMatrix:
     """Covariance that a doubt adds to the coordinates a second."""
-    n, x = len(rate), form.coordinates
-    if not isinstance(doubt, Mapping):
-        _refuse_no_variance("the doubt", doubt)
-        return sp.Float(doubt) * sp.eye(n)
+    x = form.coordinates
+    doubts = doubt if isinstance(doubt, Mapping) else dict.fromkeys(names_of(form), doubt)
     known = {symbol.name: symbol for symbol in (*x, *form.parameters)}
-    unknown = [name for name in doubt if name not in known]
+    unknown = [name for name in doubts if name not in known]
     if unknown:
         raise ValueError(f"there is no {', '.join(unknown)} to doubt; there are {', '.join(known)}")
-    total = sp.zeros(n, n)
-    for name, variance in doubt.items():
-        _refuse_no_variance(f"the doubt in {name}", variance)
+    total = sp.zeros(len(x), len(x))
+    for name, variance in doubts.items():
+        if not 0 <= variance < np.inf:
+            raise ValueError(f"the doubt in {name} is {variance}; it is a variance a second, finite and not negative")
         symbol = known[name]
         column = sp.Matrix([int(symbol == s) for s in x]) if symbol in x else rate.diff(symbol)
         total += sp.Float(variance) * column * column.T
     return total
-
-
-def _refuse_no_variance(what: str, value: float) -> None:
-    if not (np.isfinite(value) and value >= 0):
-        raise ValueError(f"{what} is {value}; it is a variance a second, finite and not negative")

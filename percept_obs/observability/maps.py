@@ -1,4 +1,4 @@
-"""Maps of the image: how well the distance of a point seen there can be known after some seconds."""
+"""Maps of the image: the bound on the distance of a point that is first seen at each place."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Printed, function_source, vectorised
-from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
+from percept_obs.recording.path import varying_path
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -26,12 +26,12 @@ START = sp.ImmutableMatrix(sp.symbols("X0 Y0 Z0", real=True))
 INFORMATION = sp.symbols("J11 J12 J13 J22 J23 J33", real=True)
 
 PLACE = (*PHI, *MOVED, *START)
-"""Where a point is at an instant: X = Phi X0 + d, for a motion X' = A X + b."""
+"""Symbols of a point at an instant: X = Phi X0 + d, for a motion X' = A X + b."""
 
 
 @dataclass(frozen=True)
 class MapKernel:
-    """What a map computes at a place of the image, as expressions that print in every language.
+    """Formulas of a map at one place of the image, as expressions that print in every language.
 
     For a point that begins at X0, with P0 the variance of hidden coordinates and R that of the noise::
 
@@ -48,7 +48,7 @@ class MapKernel:
     finish : expression of J's entries and of `PLACE`
         The relative standard deviation of the distance.
     shape : tuple of symbols
-        What shapes the surface, such as a plane's normal vector.
+        Parameters of the surface, such as a plane's normal vector.
 
     Examples
     --------
@@ -75,7 +75,7 @@ class MapKernel:
 
 @lru_cache(maxsize=64)
 def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
-    """What a map needs of a surface and its measured outputs, derived from the image and the distance of a point.
+    """Derive a map's formulas for a surface and measured outputs, from the image and the distance of a point.
 
     Examples
     --------
@@ -92,13 +92,14 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     begins = dict(zip(POINT, START, strict=True))
 
     def upper(rows: sp.ImmutableMatrix) -> Expressions:
+        """Entries of rows^T rows on and above the diagonal."""
         square = rows.T * rows
         return tuple(square[i, j] for i in range(3) for j in range(i, 3))
 
     prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(begins)
     rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(there) * PHI
     slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(there) * PHI
-    # slope J^-1 slope^T with J = L D L^T, for less is lost to rounding than with determinants
+    # slope J^-1 slope^T with J = L D L^T: less is lost to rounding than with determinants
     a, b, c, d, e, f = INFORMATION
     along, below = b / a, c / a
     second = d - along * b
@@ -120,11 +121,11 @@ class BoundMap:
     system : PerspectiveSystem
     measured : tuple of str
     y1, y2 : arrays of shapes (W,) and (H,)
-        Image coordinates of the places.
+        Image coordinates of the map's columns and rows.
     relative : array of shape (H, W)
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
-        After which time, and how far away the points are at the beginning.
+        Time after which the bound holds, and distance of the points at the beginning.
 
     Examples
     --------
@@ -146,7 +147,7 @@ class BoundMap:
     distance: float
 
     def at(self, y1: float, y2: float) -> float:
-        """The value at the place that is nearest."""
+        """Relative standard deviation at the nearest place."""
         return float(self.relative[np.argmin(np.abs(self.y2 - y2)), np.argmin(np.abs(self.y1 - y1))])
 
     def __repr__(self) -> str:
@@ -170,17 +171,17 @@ def bound_map(
     noise_variance: float = NOISE_VARIANCE,
     hidden_variance: float = HIDDEN_VARIANCE,
 ) -> BoundMap:
-    """How well the distance can be known, at each place of the image where a point is first seen.
+    """Cramer-Rao bound of the distance, at each place of the image where a point is first seen.
 
-    A point in space moves linearly, so that its bound needs no linearisation: information about where it began adds up.
-    At each place it is what `cramer_rao` says.
+    A point in space moves linearly, so that information about its start adds up without linearisation.  At each place
+    the bound is that of `cramer_rao`.
 
     Parameters
     ----------
     system : PerspectiveSystem
         With numbers, on a surface with two image coordinates.
     seconds : float
-        How long the points are seen.
+        Time over which the points are seen.
     distance : float
         Depth or range of all points at the beginning, in metres.
     measured : tuple of str, optional
@@ -201,6 +202,10 @@ def bound_map(
     ValueError
         If the system has no numbers or not two image coordinates, an output is not there, or a number is no time,
         distance, variance or range.
+
+    See Also
+    --------
+    cramer_rao : The bound along one recording.
 
     Examples
     --------
@@ -270,20 +275,12 @@ def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:
     """Phi and d of X(t) = Phi X(0) + d at times from 0 on, shapes (K, 3, 3) and (K, 3)."""
     evaluate = vectorised(motion.parameters, [*motion.A, *motion.b])
 
-    def rate(at: float, state: Array) -> Array:
-        A, b = np.split(np.array([float(e) for e in evaluate(*motion.known(at)[0])]), [9])
-        moving = A.reshape(3, 3) @ state
-        moving[:, 3] += b
-        return moving
+    def rate(time: float, state: Array) -> Array:
+        A, b = np.split(np.ravel(evaluate(*motion.known(time)[0])), [9])
+        moved = A.reshape(3, 3) @ state.reshape(3, 4)
+        moved[:, 3] += b
+        return moved.ravel()
 
-    state, found = np.eye(3, 4), [np.eye(3, 4)]
-    grid, index = step_grid(times, LONGEST_STEP)
-    for k, h in enumerate(np.diff(grid), 1):
-
-        def moving(instant: int, state: Array, begin: float = grid[k - 1], h: float = h) -> Array:
-            return rate(begin + float(INSTANTS[instant]) * h, state)
-
-        state = step(state, h, moving)
-        found.append(state)
-    whole = np.array(found)[index]
+    breaks = () if motion.signal is None or motion.signal.times is None else motion.signal.times
+    whole = varying_path(rate, np.eye(3, 4).ravel(), times, breaks).reshape(-1, 3, 4)
     return whole[:, :, :3], whole[:, :, 3]

@@ -14,8 +14,8 @@ from percept_obs.observability.bound import Bound, Prior, cramer_rao
 from percept_obs.observability.directions import in_words
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import LieRanks, lie_ranks
-from percept_obs.observability.linearised import System, fitting
-from percept_obs.observability.windowed import Excitation, instants, windowed
+from percept_obs.observability.linearised import System, matching_form
+from percept_obs.observability.windows import Excitation, Windows, instants, windowed
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
@@ -34,41 +34,41 @@ NOISE_VARIANCE = next(gain.value for gain in extended_kalman.gains if gain.name 
 WHY = MappingProxyType(
     {
         "printed": "(20) as printed is the larger eigenvalue of w w^T. It asks whether an instant shows anything at "
-        "all of {hidden}; the smaller eigenvalue, which asks whether it shows everything, is {smaller}.",
+        "all of {hidden}; the smaller eigenvalue, which asks whether it shows everything, is 0 at every instant.",
         "instant": "An instant lacks a direction, at {time} s for instance, but w changes along the trajectory, so "
         "that the instants of a window show together what one of them does not.",
         "window": "Persistency of excitation counts what w shows and leaves out how the hidden coordinates change. "
-        "What w does not show of {lost} is seen through g, which carries it into what is measured.",
+        "What w does not show of {unexcited} is seen through g, which carries it into what is measured.",
         "derivatives": "The rank asks whether a direction shows in some derivative, however little; over a window of "
         "{window} s it shows too little to count.",
         "stays": "The rank falls at single samples only, which a window bridges.",
         "nonlinear": "The perturbed runs leave the linearised ones: the perturbation is not small there.",
-        "noise": "Every direction is seen, but against this noise {length} s are too short to learn {lost} well.",
+        "noise": "Every direction is seen, but against this noise {length} s are too short to learn {unlearnt} well.",
         "early": "Over the whole recording the bound falls in every direction, although single windows miss one.",
         "none": "All measures agree: {all}.",
     }
 )
-"""Why two measures say different things."""
+"""Reasons why two measures disagree."""
 
 
 @dataclass(frozen=True)
 class Measure:
-    """What one measure of observability says of a trajectory.
+    """Result of one measure of observability for a trajectory.
 
     Parameters
     ----------
     name, asks : str
-        What it is called, and what it asks.
+        Name of the measure, and its question.
     holds : bool
-        Whether it says that the state is observable.
+        True if it finds the state observable.
     value : float
-        Its least value.
+        Least value of the measure.
     time : float
-        When it has it, in seconds since the first sample.
+        Seconds since the first sample at which the value is least.
     lost : tuple of str
-        Directions that it does not see there, in words.
+        Directions that are not seen there, in words.
     said : str
-        What the value is.
+        The value in words.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Measure:
 
     @property
     def cells(self) -> tuple[str, ...]:
-        """Of its row in the table."""
+        """Cells of the row in the table."""
         lost = "; ".join(self.lost) or ("" if self.holds else "everything hidden")
         return self.name, self.asks, "yes" if self.holds else "no", f"{self.said} at {self.time:.3g} s", lost
 
@@ -134,44 +134,44 @@ class Observability:
 
     @cached_property
     def measures(self) -> tuple[Measure, ...]:
-        """What each measure says, from an instant to the bound."""
+        """Results of all measures, from an instant to the bound."""
         return tuple(self._measures())
 
     def __getitem__(self, name: str) -> Measure:
-        """One of the measures by its name."""
+        """Result of one measure by its name."""
         return {measure.name: measure for measure in self.measures}[name]
 
     def _measures(self) -> Iterator[Measure]:
-        begun, end = self.recording.time[0], float(self.recording.elapsed[-1])
+        elapsed, window = self.recording.elapsed, f"{self.window:g} s"
         if self.instant is not None:
-            one, elapsed = self.instant, self.instant.time - begun
             if len(self.form.x1) < len(self.form.x2):
-                largest = one.eigenvalues[:, -1]
-                k, there = int(np.argmin(largest)), bool((largest > 0).all())
-                said = f"|w|^2 = {number(largest[k])}"
-                asks = "does an instant show anything hidden?"
-                yield Measure("(20) as printed", asks, there, float(largest[k]), float(elapsed[k]), (), said)
-            yield self._of_windows("instant", "does an instant show everything hidden?", one, "w w^T")
+                largest = self.instant.eigenvalues[:, -1]
+                k, value = int(np.argmin(largest)), float(largest.min())
+                asks, said = "does an instant show anything hidden?", f"|w|^2 = {number(value)}"
+                yield Measure("(20) as printed", asks, value > 0, value, float(elapsed[k]), (), said)
+            yield self._of_windows("instant", "does an instant show everything hidden?", self.instant, "w w^T")
         if self.excitation is not None:
-            asks = f"do {self.window:g} s of w show everything hidden?"
+            asks = f"do {window} of w show everything hidden?"
             yield self._of_windows("excitation", asks, self.excitation, "the integral of w w^T")
-        k, n = self.lie.weakest, len(self.form.coordinates)
-        said = f"rank {int(self.lie.ranks[k, -1])} of {n}"
+        k, lie = self.lie.weakest, self.lie
+        said = f"rank {int(lie.ranks[k, -1])} of {len(self.form.coordinates)}"
         asks = "do outputs and their derivatives tell states apart?"
-        at, least = float(self.recording.elapsed[k]), float(self.lie.smallest[k])
-        yield Measure("Lie rank", asks, self.lie.holds, least, at, self.lie.lost(), said)
-        asks = f"do {self.window:g} s of outputs change with every coordinate?"
+        yield Measure("Lie rank", asks, lie.holds, float(lie.smallest[k]), float(elapsed[k]), lie.lost(), said)
+        asks = f"do {window} of outputs change with every coordinate?"
         yield self._of_windows("error Gramian", asks, self.error, "Phi^T H^T H Phi")
         asks = "the same by perturbed runs, without derivatives"
         yield self._of_windows("empirical Gramian", asks, self.empirical, "the Gramian")
         shares, directions = self.bound.kept()
         left = float(shares[-1])
-        said = f"{100 * left:.3g} % of a deviation is left"
         lost = in_words(directions[:, shares >= LEARNT], self.form.hidden) if left >= LEARNT else ()
-        asks = "does what is hidden become known, against this noise?"
-        yield Measure("bound", asks, left < LEARNT, left, end, lost, said)
+        asks, said = (
+            "does what is hidden become known, against this noise?",
+            f"{100 * left:.3g} % of a deviation is left",
+        )
+        yield Measure("bound", asks, left < LEARNT, left, float(elapsed[-1]), lost, said)
 
-    def _of_windows(self, name: str, asks: str, found: Excitation | ErrorGramian, what: str) -> Measure:
+    def _of_windows(self, name: str, asks: str, found: Windows, what: str) -> Measure:
+        """Result of a measure over windows."""
         k = found.weakest
         least = max(float(found.smallest[k]), 0.0)
         said = f"smallest eigenvalue of {what} {number(least) if least > 1e-12 else '0'}"
@@ -180,34 +180,27 @@ class Observability:
 
     @cached_property
     def disagreements(self) -> tuple[str, ...]:
-        """Why measures say different things, one sentence or two for each reason."""
+        """Reasons why measures disagree, one sentence or two each."""
         says = {measure.name: measure.holds for measure in self.measures}
-        words = {"hidden": ", ".join(self.form.hidden), "window": f"{self.window:g}", "smaller": "0 at every instant"}
-        words["length"] = f"{self.recording.elapsed[-1]:.4g}"
-        reasons = []
-        if says.get("(20) as printed") and not says["instant"]:
-            reasons.append(WHY["printed"])
-        if "instant" in says and not says["instant"] and says["excitation"]:
-            words["time"] = f"{self['instant'].time:.3g}"
-            reasons.append(WHY["instant"])
-        if "excitation" in says and not says["excitation"] and says["error Gramian"]:
-            words["lost"] = "; ".join(self["excitation"].lost)
-            reasons.append(WHY["window"])
-        if says["Lie rank"] and not says["error Gramian"]:
-            reasons.append(WHY["derivatives"])
-        if not says["Lie rank"] and says["error Gramian"]:
-            reasons.append(WHY["stays"])
-        if says["error Gramian"] != says["empirical Gramian"]:
-            reasons.append(WHY["nonlinear"])
-        if says["error Gramian"] and not says["bound"]:
-            words["lost"] = "; ".join(self["bound"].lost)
-            reasons.append(WHY["noise"])
-        if not says["error Gramian"] and says["bound"]:
-            reasons.append(WHY["early"])
-        if not reasons:
-            words["all"] = "the state is observable" if says["bound"] else "it is not observable"
-            reasons = [WHY["none"]]
-        return tuple(reason.format(**words) for reason in reasons)
+        instant, excited = says.get("instant"), says.get("excitation")  # None without a canonical form
+        rank, error, bound = says["Lie rank"], says["error Gramian"], says["bound"]
+        holds = {
+            "printed": says.get("(20) as printed") and not instant,
+            "instant": instant is False and excited,
+            "window": excited is False and error,
+            "derivatives": rank and not error,
+            "stays": error and not rank,
+            "nonlinear": error != says["empirical Gramian"],
+            "noise": error and not bound,
+            "early": bound and not error,
+        }
+        reasons = [reason for reason, true in holds.items() if true] or ["none"]
+        words = {"hidden": ", ".join(self.form.hidden), "window": f"{self.window:g}"}
+        words |= {"length": f"{self.recording.elapsed[-1]:.4g}", "unlearnt": "; ".join(self["bound"].lost)}
+        words["all"] = "the state is observable" if bound else "it is not observable"
+        if instant is not None:
+            words |= {"time": f"{self['instant'].time:.3g}", "unexcited": "; ".join(self["excitation"].lost)}
+        return tuple(WHY[reason].format(**words) for reason in reasons)
 
     def __str__(self) -> str:
         rows = [HEADS, *(measure.cells for measure in self.measures)]
@@ -235,11 +228,11 @@ def how_observable(
     prior: Prior = None,
     noise_variance: ArrayLike | None = None,
 ) -> Observability:
-    """Ask every measure of observability at once, along the true trajectory of a recording.
+    """Compute every measure of observability along the true trajectory of a recording.
 
-    They are: what an instant shows, by w w^T, for one output also as Ma 2005, (20), prints it; persistency of
-    excitation over a window; the rank of the Lie derivatives' differentials; the Gramian of the linearised error
-    system over a window, and the same by perturbed runs; and the Cramer-Rao bound at the end.
+    They are: w w^T at an instant, for one output also as Ma 2005, (20), prints it; persistency of excitation over a
+    window; the rank of the Lie derivatives' differentials; the Gramian of the linearised error system over a window,
+    and from perturbed runs; and the Cramer-Rao bound at the end.
 
     Parameters
     ----------
@@ -262,6 +255,10 @@ def how_observable(
     ValueError
         If system and recording do not fit, there is no truth, or the window does not fit.
 
+    See Also
+    --------
+    instantaneous, windowed, lie_derivatives, cramer_rao : Single measures.
+
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
@@ -270,7 +267,7 @@ def how_observable(
     >>> [(measure.name, measure.holds) for measure in found.measures][2:5]
     [('excitation', False), ('Lie rank', True), ('error Gramian', True)]
     """
-    form = fitting(system, recording)
+    form = matching_form(system, recording)
     window = min(USUAL_WINDOW, float(recording.elapsed[-1]) / 4) if window is None else window
     given = noise_variance if noise_variance is not None else recording.noise_variance or NOISE_VARIANCE
     error, canonical = error_gramian(recording, form, window), not form.culprits

@@ -15,7 +15,7 @@ from percept_obs.validation import checked, expression
 @checked
 @dataclass(frozen=True)
 class InstantaneousObservability:
-    """What w(x1) alone tells about the hidden coordinates at an instant.
+    """Information about the hidden coordinates at an instant, from w(x1) alone.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class InstantaneousObservability:
 
     @property
     def suffices(self) -> bool:
-        """Whether an instant can suffice at all."""
+        """True if an instant can suffice at all."""
         return self.rank == len(self.form.x2)
 
     @cached_property
@@ -51,7 +51,7 @@ class InstantaneousObservability:
 
     @cached_property
     def condition(self) -> sp.Expr:
-        """What an instant needs: not zero where it suffices, and zero everywhere if it never does.
+        """Expression that is not zero where an instant suffices, and zero everywhere if it never does.
 
         With one hidden coordinate it is the sum of the squares of `factors`, else the determinant.
         """
@@ -63,8 +63,8 @@ class InstantaneousObservability:
     def eigenvalues(self) -> tuple[sp.Expr, ...]:
         """Eigenvalues of the information for one output, or for one hidden coordinate: zeros, and |w|^2.
 
-        What Ma 2005, (20), p. 67, prints as the condition for y1 alone is the last of them, the larger one; its (18)
-        asks for the smallest one, which is 0 everywhere.
+        Ma 2005, (20), p. 67, prints the last and larger one as the condition for y1 alone; its (18) asks for the
+        smallest one, which is 0 everywhere.
 
         Raises
         ------
@@ -80,19 +80,19 @@ class InstantaneousObservability:
 
     @cached_property
     def zero_set(self) -> list[dict[sp.Symbol, sp.Expr]]:
-        """Where all of w vanishes: solutions for the measured outputs, none if there is no such place."""
+        """Measured outputs where all of w vanishes, as solutions; none if there is no such place."""
         return sp.solve([written_out(entry) for entry in self.form.w], self.form.x1, dict=True)
 
     @cached_property
     def growth(self) -> sp.Expr | None:
-        """The factor c if |w|^2 = c |x1 - centre|^2, so that w is small in a circle; None if it is not."""
+        """Factor c if |w|^2 = c |x1 - centre|^2, so that w is small in a circle; None otherwise."""
         x1 = self.form.x1
         if len(x1) < 2 or not all(entry.is_polynomial(*x1) for entry in self.form.w):
             return None
         curvature = sp.hessian(sum(entry**2 for entry in self.form.w), x1) / 2
         growth = sp.factor(curvature[0, 0])
         if (curvature - growth * sp.eye(len(x1))).expand() != sp.zeros(len(x1)):
-            return None  # asked first, for the places where w vanishes may take sympy minutes to find
+            return None  # tested before the zero set, which may take sympy minutes to find
         one_centre = len(self.zero_set) == 1 and set(self.zero_set[0]) == set(x1)
         return growth if one_centre else None
 
@@ -126,13 +126,17 @@ class InstantaneousObservability:
 def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     """Observability at an instant, from w w^T (Ma 2005, (17)-(20), p. 67).
 
-    Ma's test asks the smallest eigenvalue of w w^T to be positive.  With one output and two hidden coordinates its
+    Ma's test requires the smallest eigenvalue of w w^T to be positive.  With one output and two hidden coordinates its
     rank is 1, so that the smallest eigenvalue is 0 everywhere.
 
     Raises
     ------
     NotAffine
         If there is no canonical form, and so no w.
+
+    See Also
+    --------
+    windowed : Over a window of a recording.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Move to see: how a camera should turn its velocity so that the images tell more of the distance."""
+"""Active vision: turn a camera's velocity so that the images tell more of the distance."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ VELOCITIES = (("v_c1", "v_c2", "v_c3"), ("b1", "b2", "b3"))
 @checked
 @dataclass(frozen=True)
 class Steering:
-    """The excitation of a form, and how it grows with the velocity.
+    """Excitation of a form as a function of the velocity, and its gradient.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Steering:
 
     @cached_property
     def form(self) -> CanonicalForm:
-        """With all image coordinates measured, so that the inverse distance alone is hidden."""
+        """Canonical form with all image coordinates measured; the inverse distance alone is hidden."""
         return self.system.measure(*(symbol.name for symbol in self.system.surface.image_coordinates))
 
     @property
@@ -90,7 +90,7 @@ class Steering:
 
 @checked
 def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -> Steering:
-    """How a velocity should turn for the excitation to grow fastest, in symbols; it needs no distance.
+    """Derive the turn of a velocity by which the excitation grows fastest; it needs no distance.
 
     Parameters
     ----------
@@ -100,10 +100,18 @@ def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -
         Parameters of the motion that may be chosen; the camera's velocity of a rigid motion and b of an affine one
         when left out.
 
+    Returns
+    -------
+    Steering
+
     Raises
     ------
     ValueError
         If the motion has no such parameters.
+
+    See Also
+    --------
+    steered : A scenario that is steered so.
 
     Notes
     -----
@@ -130,7 +138,7 @@ def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -
 def steered(
     scenario: Scenario, gain: float = 5.0, velocity: Sequence[str] | None = None, step: float = LONGEST_STEP
 ) -> Scenario:
-    """The same scenario with a velocity that turns towards more excitation, at the same speed.
+    """Steer a scenario's velocity towards more excitation, at the same speed.
 
     With the velocity v, v' = kappa (1 - v v^T / v^T v) d|w|^2 / dv.  It depends on the image and not on the distance,
     so that a camera can do it; here it sees the image without noise.
@@ -155,6 +163,10 @@ def steered(
     ValueError
         If the motion varies or has no such parameters, the velocity is zero, or a number is not positive.
 
+    See Also
+    --------
+    steering : The law in symbols.
+
     Examples
     --------
     >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, Scenario, affine, cramer_rao, pinhole, record
@@ -177,7 +189,7 @@ def steered(
     if not np.any(begin):
         raise ValueError("the velocity is zero, and turning does not change that; give the camera a speed")
     equations = _closed_loop(motion.A, motion.b, motion.parameters, surface, found.velocity)
-    count = int(np.ceil(scenario.duration / step - 1e-9)) + 1  # one more than the duration asks for
+    count = int(np.ceil(scenario.duration / step - 1e-9)) + 1  # one step more than the duration needs
     fixed = [{**motion.values, **surface.values}[symbol] for symbol in equations.parameters]
     table = Table(np.full(count, step), np.empty((count, EACH + 1, 0)), np.array([fixed]), np.empty((count + 1, 0)))
     trace = solve(equations, [*scenario.position, *begin], table, [gain])
@@ -189,7 +201,7 @@ def steered(
         )
     rows = np.tile([motion.values[symbol] for symbol in motion.parameters], (count + 1, 1))
     rows[:, [motion.parameters.index(symbol) for symbol in found.velocity]] = trace.states[:, 3:]
-    smooth = CubicSpline(step * np.arange(count + 1, dtype=float), rows)  # as a function of time it has no kinks
+    smooth = CubicSpline(step * np.arange(count + 1, dtype=float), rows)
     moving = replace(motion, signal=Signal(OverTime(lambda times: np.asarray(smooth(times)))))
     return replace(scenario, name=f"{scenario.name}, steered", motion=moving)
 
@@ -202,7 +214,7 @@ def _closed_loop(
     surface: ImagingSurface,
     velocity: tuple[sp.Symbol, ...],
 ) -> Equations:
-    """The point and the velocity that its image steers."""
+    """Equations of a point and of the velocity that its image steers."""
     found = Steering(PerspectiveSystem(Motion("steered", A, b, parameters), surface), velocity)
     seen = dict(zip(surface.image_coordinates, surface.image, strict=True))
     turning = (kappa * found.turning).xreplace(seen)

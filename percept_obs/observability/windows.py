@@ -1,37 +1,47 @@
-"""What is gathered over windows of a trajectory: matrices whose eigenvalues tell which directions are seen."""
+"""Information that windows of a trajectory gather, and the directions of the state that they miss."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import sympy as sp
 
-from percept_obs.compile import Array, Indices
+from percept_obs.compile import Array, Indices, vectorised
 from percept_obs.observability.directions import in_words
 from percept_obs.recording import Recording
-from percept_obs.system.signal import slack_of
-
-Piece = tuple[Array, Array]
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.validation import checked
 
 UNSEEN = 1e-6
 """A direction whose eigenvalue is below this share of the largest one is not seen."""
 
 
-class OverWindows:
+@dataclass(frozen=True, eq=False)
+class Windows:
     """Symmetric matrices, one for each window: how much of each direction of the state the window shows.
 
-    Who inherits it has `time` of shape (T,), `matrices` of shape (T, n, n), the `window` in seconds, and the `names`
-    of the n states.
+    Parameters
+    ----------
+    names : tuple of n str
+        Names of the states.
+    time : array of shape (T,)
+        Beginnings or ends of the windows in seconds.
+    matrices : array of shape (T, n, n)
+    window : float
+        Length of the windows in seconds.
+    scale : array of shape (T,), optional
+        Size with which eigenvalues are compared; the largest eigenvalue of each window when left out.
     """
 
+    names: tuple[str, ...]
     time: Array
     matrices: Array
     window: float
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the n states."""
-        raise NotImplementedError
+    scale: Array | None = None
 
     @cached_property
     def eigenvalues(self) -> Array:
@@ -45,75 +55,150 @@ class OverWindows:
 
     @property
     def least(self) -> float:
-        """The smallest of all windows, or 0 but for rounding where a direction is not seen."""
+        """Smallest eigenvalue of all windows; 0 but for rounding where a direction is not seen."""
         return float(self.smallest.min())
 
-    @property
-    def reference(self) -> Array:
-        """What eigenvalues are compared with, positive, shape (T,): the largest of each window."""
-        return np.maximum(self.eigenvalues[:, -1], 1e-300)
+    @cached_property
+    def _positive_scale(self) -> Array:
+        return np.maximum(self.eigenvalues[:, -1] if self.scale is None else self.scale, 1e-300)
 
     @property
     def holds(self) -> bool:
-        """Whether every direction is seen in every window."""
-        return bool((self.eigenvalues[:, 0] > UNSEEN * self.reference).all())
+        """True if every direction is seen in every window."""
+        return bool((self.smallest > UNSEEN * self._positive_scale).all())
 
     @cached_property
     def weakest(self) -> int:
-        """Number of the first window that misses most directions, or if none is missed, of the one that shows least."""
-        missed = (self.eigenvalues <= UNSEEN * self.reference[:, None]).sum(axis=1)
-        return int(np.argmax(missed) if missed.any() else np.argmin(self.eigenvalues[:, 0] / self.reference))
+        """Index of the first window that misses most directions; if none is missed, of the one that shows least."""
+        missed = (self.eigenvalues <= UNSEEN * self._positive_scale[:, None]).sum(axis=1)
+        return int(np.argmax(missed) if missed.any() else np.argmin(self.smallest / self._positive_scale))
 
     def unseen(self, window: int | None = None) -> Array:
-        """Directions of the state that a window does not show, orthonormal, shape (n, q).
+        """Directions of the state that a window does not show, orthonormal columns, shape (n, q).
 
         Parameters
         ----------
         window : int, optional
-            Its number; the weakest one when left out.
+            Its index; the weakest one when left out.
         """
         k = self.weakest if window is None else window
         values, vectors = np.linalg.eigh(self.matrices[k])
-        return np.asarray(vectors[:, values <= UNSEEN * self.reference[k]])
+        return np.asarray(vectors[:, values <= UNSEEN * self._positive_scale[k]])
 
     def lost(self, window: int | None = None) -> tuple[str, ...]:
-        """The same directions in words, such as "y2 - y3"."""
+        """Directions that a window does not show, in words such as "y2 - y3"; see `unseen`."""
         return in_words(self.unseen(window), self.names)
 
 
-def check_window(recording: Recording, window: float) -> None:
-    """Refuse a window that does not fit into a recording.
+class Excitation(Windows):
+    """Information about the hidden coordinates that w gathers over windows: the integral of w w^T.
+
+    `time` holds the windows' ends.  Eigenvalues are compared with the trace that the matrix would have if no two terms
+    of w cancelled: with one hidden coordinate its only eigenvalue could not be told from zero otherwise.
+    """
+
+
+@checked
+def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0) -> Excitation:
+    """Persistency of excitation along a recording.
+
+    Parameters
+    ----------
+    form : PartitionedSystem
+        With a canonical form.
+    recording : Recording
+        Its truth is used where there is one, else its outputs, with lost samples interpolated.
+    window : float
+        Seconds.
+
+    Returns
+    -------
+    Excitation
 
     Raises
     ------
+    NotAffine
+        If there is no canonical form, and so no w.
     ValueError
-        If it is not positive or longer than the recording.
+        If the window is not positive or longer than the recording.
+
+    See Also
+    --------
+    instantaneous : Observability at an instant, in symbols.
+    how_observable : All measures of observability side by side.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, record, scenarios, windowed
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = windowed(form, record(scenarios.ma2005_eq35(), 20), window=5)
+    >>> print(f"{found.smallest.min():.2f}")
+    0.48
     """
-    length = recording.elapsed[-1]
+    from scipy.integrate import cumulative_trapezoid
+
+    time = recording.time
+    check_window(recording, window)
+    found = instants(form, recording)
+    assert found.scale is not None
+    rows = np.column_stack([found.matrices.reshape(len(time), -1), found.scale])
+    integrals = cumulative_trapezoid(rows, time, axis=0, initial=0)
+    ends = time[from_the_start(recording.elapsed, window)]
+    begins = np.maximum(ends - window, time[0])
+    over = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in integrals.T], axis=-1)
+    matrices = over[:, :-1].reshape(-1, *found.matrices.shape[1:])
+    return Excitation(found.names, ends, matrices, window, over[:, -1])
+
+
+def instants(form: PartitionedSystem, recording: Recording) -> Excitation:
+    """The matrix w w^T at the samples, as windows of length 0; see `windowed`."""
+    canonical = form.canonical_form()
+    sizes = [sp.Add(*map(sp.Abs, sp.Add.make_args(entry))) for entry in canonical.w]  # no two terms cancel
+    scale = (_along(canonical, recording, sizes) ** 2).sum(axis=1)
+    return Excitation(canonical.hidden, recording.time, information_along(form, recording), 0.0, scale)
+
+
+def information_along(form: PartitionedSystem, recording: Recording) -> Array:
+    """The matrix w w^T at the samples, shape (K, n2, n2); see `windowed`."""
+    form = form.canonical_form()
+    w = _along(form, recording, list(form.w)).reshape(len(recording.time), *form.w.shape)
+    return w @ np.swapaxes(w, 1, 2)
+
+
+def _along(form: CanonicalForm, recording: Recording, expressions: Sequence[sp.Expr]) -> Array:
+    """Values of expressions in the measured outputs and parameters at the samples, one a column."""
+    time, names = recording.time, recording.names
+    source = recording.outputs
+    if recording.truth is not None:
+        source, names = recording.truth, tuple(map(str, recording.view.coordinates))
+    outputs = []
+    for name in form.measured:
+        column = source[:, names.index(name)]
+        seen = np.isfinite(column)
+        outputs.append(np.interp(time, time[seen], column[seen]))
+    surface = [recording.view.values[s] for s in recording.view.parameters]
+    entries = vectorised((*form.x1, *form.parameters), expressions)(*outputs, *recording.motion.known(time).T, *surface)
+    return np.stack(entries, axis=-1)
+
+
+def check_window(recording: Recording, window: float, holds_samples: bool = False) -> None:
+    """Raise ValueError unless a window is positive and fits into a recording, and holds two samples if it must."""
+    length, shortest = recording.elapsed[-1], float(np.diff(recording.time).min())
     if not 0 < window <= length + slack_of(recording.time):
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
-
-
-def check_samples(recording: Recording, window: float) -> None:
-    """Refuse a window that does not fit into a recording, or fits between two samples."""
-    check_window(recording, window)
-    shortest = float(np.diff(recording.time).min())
-    if window < shortest * (1 - 1e-9):
+    if holds_samples and window < shortest * (1 - 1e-9):
         raise ValueError(f"the window is {window} s, shorter than the {shortest:.4g} s between two samples; widen it")
 
 
-def gathered(time: Array, S: Array, Phi: Array, window: float) -> tuple[Indices, Array]:
+def window_integrals(time: Array, S: Array, Phi: Array, window: float) -> tuple[Indices, Array]:
     """Integrals of Phi^T S Phi over all windows that begin at a sample, without inverting a transition.
-
-    A piece of time has a transition and an integral; two pieces that follow each other make one.  The pieces of a
-    window wait in two stacks, so that each is joined a few times only, however many windows it is part of.
 
     Parameters
     ----------
     time : array of shape (K,)
         Seconds.
     S : array of shape (K, n, n)
-        What each sample shows.
+        Information of each sample.
     Phi : array of shape (K - 1, n, n)
         Transitions from each sample to the next.
     window : float
@@ -126,30 +211,24 @@ def gathered(time: Array, S: Array, Phi: Array, window: float) -> tuple[Indices,
     matrices : array of shape (T, n, n)
     """
     h = np.diff(time)[:, None, None]
-    integrals = h / 2 * (S[:-1] + np.swapaxes(Phi, 1, 2) @ S[1:] @ Phi)
+    G = h / 2 * (S[:-1] + _seen_through(Phi, S[1:]))
     ends = np.searchsorted(time, time + window - slack_of(time))
     begins = np.flatnonzero(ends < len(time))
-
-    front: list[Piece] = []
-    back: Piece | None = None
-    pushed, matrices = 0, []
-    for first in begins:
-        while pushed < ends[first]:
-            piece = (Phi[pushed], integrals[pushed])
-            back = piece if back is None else _join(back, piece)
-            pushed += 1
-        if not front:
-            # all pieces of the window, joined from the last one on
-            for j in range(pushed - 1, first - 1, -1):
-                piece = (Phi[j], integrals[j])
-                front.append(_join(piece, front[-1]) if front else piece)
-            back = None
-        whole = front.pop() if back is None else _join(front.pop(), back)
-        matrices.append((whole[1] + whole[1].T) / 2)
-    return begins, np.stack(matrices)
+    reached, left, size = begins.copy(), ends[begins] - begins, 1
+    whole = np.repeat(np.eye(S.shape[1])[None], len(begins), axis=0)
+    matrices = np.zeros_like(whole)
+    # a window is put together of spans of 1, 2, 4, ... intervals, as the binary digits of its length say
+    while left.any():
+        odd = left % 2 == 1
+        matrices[odd] += _seen_through(whole[odd], G[reached[odd]])
+        whole[odd] = Phi[reached[odd]] @ whole[odd]
+        reached[odd] += size
+        G = G[:-size] + _seen_through(Phi[:-size], G[size:])
+        Phi = Phi[size:] @ Phi[:-size]
+        left, size = left // 2, 2 * size
+    return begins, (matrices + np.swapaxes(matrices, 1, 2)) / 2
 
 
-def _join(first: Piece, second: Piece) -> Piece:
-    """One piece from two: the second one is seen through the first one's transition."""
-    (Phi, G), (Phi_next, G_next) = first, second
-    return Phi_next @ Phi, G + Phi.T @ G_next @ Phi
+def _seen_through(Phi: Array, G: Array) -> Array:
+    """Information about the states before the transitions: Phi^T G Phi."""
+    return np.asarray(np.swapaxes(Phi, 1, 2) @ G @ Phi)

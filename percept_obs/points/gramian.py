@@ -11,8 +11,8 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import by_step, instants, step
-from percept_obs.observability.directions import mainly
-from percept_obs.observability.windows import OverWindows, check_samples, gathered
+from percept_obs.observability.directions import in_words, mainly
+from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
@@ -39,43 +39,29 @@ VERDICTS = MappingProxyType(
 """What may be said of condition (14)."""
 
 
-@checked
 @dataclass(frozen=True, eq=False)
-class Gramian(OverWindows):
+class Gramian(Windows):
     """The integral of Phi^T S Phi over windows, from the state at their beginnings.
 
     Parameters
     ----------
-    form : PointsForm
-    time : array of shape (T,)
-        Beginnings of the windows in seconds.
-    matrices : array of shape (T, n, n)
-    window : float
-        Length of the windows in seconds.
+    names, time, matrices, window, scale
+        See `Windows`; `time` holds the windows' beginnings.
     states : array of shape (T, n), optional
         True states at the beginnings.
     """
 
-    form: PointsForm
-    time: Array
-    matrices: Array
-    window: float
     states: Array | None = None
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the states."""
-        return self.form.names
-
     def verdict(self) -> str:
-        """Whether (14) holds, in words; if not, which directions of the state are not seen."""
+        """Say in words if (14) holds; if not, which directions of the state are not seen."""
         k = self.weakest
         lost = self.unseen()
         words = {"window": f"{self.window:g}", "begin": f"{self.time[k]:.3g}", "least": f"{self.least:.3g}"}
         if not lost.shape[1]:
             direction = np.linalg.eigh(self.matrices[k])[1][:, 0]
-            return VERDICTS["holds"].format(**words, direction=mainly(direction, self.form.names))
-        named = self.form.describe(lost)
+            return VERDICTS["holds"].format(**words, direction=mainly(direction, self.names))
+        named = in_words(lost, self.names)
         one = len(named) == 1
         words |= {"count": str(len(named)), "directions": "; ".join(named)}
         text = VERDICTS["one fails" if one else "several fail"].format(**words)
@@ -206,7 +192,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    check_samples(recording, window)
+    check_window(recording, window, holds_samples=True)
     time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     P_there = (
@@ -258,9 +244,9 @@ def _transitions(form: PointsForm, time: Array) -> Array:
 
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
     """Integrals over all windows that begin at a sample."""
-    check_samples(recording, window)
+    check_window(recording, window, holds_samples=True)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
-    begins, matrices = gathered(time, information(used), _transitions(form, time), window)
+    begins, matrices = window_integrals(time, information(used), _transitions(form, time), window)
     states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
-    return Gramian(form, time[begins], matrices, window, states)
+    return Gramian(form.names, time[begins], matrices, window, states=states)

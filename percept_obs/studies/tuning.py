@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.observability.windowed import information_along
+from percept_obs.observability.windows import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
