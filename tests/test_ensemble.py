@@ -32,7 +32,7 @@ from percept_obs.studies import filling
 from percept_obs.studies.counting import OUTCOMES
 from percept_obs.studies.filling import Unfinished
 from percept_obs.studies.part import STATUS, Plan
-from percept_obs.validation import modules
+from percept_obs.validation import environment
 
 xr = pytest.importorskip("xarray")
 
@@ -274,6 +274,6 @@ def test_an_observer_that_does_not_fit_is_refused():
 
 
 def test_what_is_missing_is_told_with_how_to_get_it(monkeypatch):
-    monkeypatch.setattr(modules, "find_spec", lambda name: None)
+    monkeypatch.setattr(environment, "find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match=r"xarray is missing; get it with: .*'percept-obs\[cluster\]'"):
         ensemble(EQ35, ibo(AFFINE.measure("y1")))

@@ -208,7 +208,7 @@ def test_a_formula_is_written_for_the_browser():
 
 def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(
-        "percept_obs.validation.modules.find_spec", lambda module: None if module == "furo" else object()
+        "percept_obs.validation.environment.find_spec", lambda module: None if module == "furo" else object()
     )
     assert cli.main(["site", str(tmp_path / "new")]) == 1
     assert "furo is missing; get it with: python -m pip install 'percept-obs[site]'" in capsys.readouterr().err

@@ -51,7 +51,6 @@ STILL = affine(np.zeros((3, 3)), np.zeros(3))
         (lambda: record("ma2005_eq35"), r"scenario is the text 'ma2005_eq35'; .*scenarios.ma2005_eq35\(\)"),
         (lambda: record(scenarios.ma2005_eq35), r"the function ma2005_eq35; .*: call it: ma2005_eq35\(\)"),
         (lambda: ibo(["y1", "y2"]), r"form is the list \['y1', 'y2'\]; .*measure\(\"y1\", \"y2\"\)"),
-        (lambda: track(ibo(BOTH), SHORT), "recording and observer are swapped"),
         (lambda: track(SHORT, ibo), r"the function identifier_based; .*: call it: identifier_based\(form\)"),
         (lambda: compare(SHORT, ibo(BOTH)), "recordings is a Recording; .*: put it into a list"),
         (lambda: compare([SHORT], ibo(BOTH)), "observers is an Observer; .*: put it into a list"),

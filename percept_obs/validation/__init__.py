@@ -1,34 +1,23 @@
-"""What comes in from outside: of which kind it must be, how a number becomes sympy's, and how much work is allowed."""
+"""Validation of what users pass: kinds of arguments, sympy expressions, limits of work, the machine's abilities."""
 
-from percept_obs.validation.arguments import WrongKind, checked, numbers, positive, refuse_kind
-from percept_obs.validation.expressions import derived, expression, expressions, matrix
-from percept_obs.validation.files import write_whole
-from percept_obs.validation.kinds import Coefficients, Entries, Kind, are_numbers
-from percept_obs.validation.limits import MOST_TERMS, TooMuchWork, limit
-from percept_obs.validation.modules import needed
-from percept_obs.validation.progress import bar, workers
-from percept_obs.validation.warning import warn
-
-__all__ = [
-    "MOST_TERMS",
-    "Coefficients",
-    "Entries",
-    "Kind",
-    "TooMuchWork",
-    "WrongKind",
-    "are_numbers",
-    "bar",
-    "checked",
-    "derived",
-    "expression",
-    "expressions",
-    "limit",
-    "matrix",
-    "needed",
-    "numbers",
-    "positive",
-    "refuse_kind",
-    "warn",
-    "workers",
-    "write_whole",
-]
+from percept_obs.validation.arguments import WrongKind as WrongKind
+from percept_obs.validation.arguments import checked as checked
+from percept_obs.validation.arguments import numbers as numbers
+from percept_obs.validation.arguments import positive as positive
+from percept_obs.validation.arguments import refuse_kind as refuse_kind
+from percept_obs.validation.environment import bar as bar
+from percept_obs.validation.environment import needed as needed
+from percept_obs.validation.environment import warn as warn
+from percept_obs.validation.environment import workers as workers
+from percept_obs.validation.environment import write_whole as write_whole
+from percept_obs.validation.expressions import derived as derived
+from percept_obs.validation.expressions import expression as expression
+from percept_obs.validation.expressions import expressions as expressions
+from percept_obs.validation.expressions import matrix as matrix
+from percept_obs.validation.kinds import Coefficients as Coefficients
+from percept_obs.validation.kinds import Entries as Entries
+from percept_obs.validation.kinds import Kind as Kind
+from percept_obs.validation.kinds import are_numbers as are_numbers
+from percept_obs.validation.limits import MOST_TERMS as MOST_TERMS
+from percept_obs.validation.limits import TooMuchWork as TooMuchWork
+from percept_obs.validation.limits import limit as limit

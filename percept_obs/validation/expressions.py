@@ -1,4 +1,4 @@
-"""Numbers, symbols and expressions that are given become sympy's here, and nowhere else; text never does."""
+"""Numbers, symbols and expressions of users become sympy's here, and nowhere else; text never does."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.validation.arguments import WrongKind, came
+from percept_obs.validation.arguments import WrongKind, described
 
 
-def expression(value: Any, what: str) -> sp.Expr:
-    """What is given for a number or an expression, as sympy's.
+def expression(value: Any, name: str) -> sp.Expr:
+    """Number or expression as sympy's.
 
     Parameters
     ----------
     value : real number of Python, numpy or sympy, or expression
         Text is refused, for sympy would run it as code.
-    what : str
-        What it is given for.
+    name : str
+        Its name in messages.
 
     Raises
     ------
@@ -35,46 +35,45 @@ def expression(value: Any, what: str) -> sp.Expr:
     else:
         good = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
     if not good:
-        raise WrongKind(f"{what} is {came(value)}; give a finite real number or a sympy expression, never text")
+        raise WrongKind(f"{name} is {described(value)}; give a finite real number or a sympy expression, never text")
     return sp.sympify(value)
 
 
-def matrix(values: Any, what: str, rows: int | None = None, columns: int | None = None) -> sp.ImmutableMatrix:
-    """What is given for a matrix, or for a column, as sympy's.
+def expressions(values: Iterable[Any], name: str) -> tuple[sp.Expr, ...]:
+    """Several values, each as `expression` gives it."""
+    return tuple(expression(value, f"{name}, entry {k},") for k, value in enumerate(values, 1))
+
+
+def derived(values: Iterable[Any], name: str) -> tuple[sp.Basic, ...]:
+    """Several values as sympy's, without a look into those that are sympy's already, which takes long."""
+    return tuple(value if isinstance(value, sp.Basic) else expression(value, name) for value in values)
+
+
+def matrix(values: Any, name: str, rows: int | None = None, columns: int | None = None) -> sp.ImmutableMatrix:
+    """Matrix, or column, of what `expression` takes as sympy's.
 
     Parameters
     ----------
     values : array, nested sequences or sympy matrix
-        Of what `expression` takes.
-    what : str
-        What it is given for.
+    name : str
+        Its name in messages.
     rows, columns : int, optional
         Its shape; its own when left out.
 
     Raises
     ------
     WrongKind
-        If an entry is none.
+        If an entry is neither a number nor an expression.
     ValueError
         If it has another shape.
     """
-    array = np.array(values.tolist() if isinstance(values, sp.MatrixBase) else values, dtype=object)
-    array = array.reshape(-1, 1) if array.ndim < 2 else array
-    if isinstance(values, sp.MatrixBase):
-        array = array.reshape(values.shape)
+    symbolic = isinstance(values, sp.MatrixBase)
+    array = np.array(values.tolist() if symbolic else values, dtype=object)
+    if symbolic or array.ndim < 2:
+        array = array.reshape(values.shape if symbolic else (-1, 1))
     shape = array.shape if rows is None else (rows, columns)
     if array.ndim != 2 or array.shape != shape:
         raise ValueError(
-            f"{what} has the shape {array.shape}; expected {shape}, entries that are numbers or expressions"
+            f"{name} has the shape {array.shape}; expected {shape}, entries that are numbers or expressions"
         )
-    return sp.ImmutableMatrix(*array.shape, expressions(array.ravel(), what))
-
-
-def derived(values: Iterable[Any], what: str) -> tuple[sp.Basic, ...]:
-    """The same of values that were derived before: what is sympy's already is not looked through again."""
-    return tuple(value if isinstance(value, sp.Basic) else expression(value, what) for value in values)
-
-
-def expressions(values: Iterable[Any], what: str) -> tuple[sp.Expr, ...]:
-    """Each of several values as `expression` gives it."""
-    return tuple(expression(value, f"{what}, entry {k},") for k, value in enumerate(values, 1))
+    return sp.ImmutableMatrix(*array.shape, expressions(array.ravel(), name))

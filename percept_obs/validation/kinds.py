@@ -1,33 +1,80 @@
-"""Kinds of values, as annotations name them: whether a value is of one, and what it is called in words."""
+"""Kinds of values: what an annotation admits, as a test, in words, and by an example."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from numbers import Integral, Real
-from types import NoneType, UnionType
+from types import MappingProxyType, NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
-HUGE = 10**308
-"""Whole numbers and fractions from here on are no floats any more."""
+LARGEST_FLOAT = 10**308
+"""Integers and fractions from here on do not become floats."""
+
+EXAMPLES = MappingProxyType(
+    {
+        "Bound": "cramer_rao(recording, form)",
+        "Camera": "Camera(period=0.01)",
+        "Clock": "Clock(zero=0, tick=1e-3)",
+        "CanonicalForm": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',
+        "Consistency": "check_consistency(run)",
+        "DepthSource": "GivenDepth()",
+        "Family": "ibo",
+        "ImagingSurface": "pinhole()",
+        "LuenbergerObserver": "luenberger(form)",
+        "Motion": "affine(A, b) or rigid(w, v_c, v_p)",
+        "Observer": "ibo(form)",
+        "PartitionedSystem": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',
+        "PerspectiveSystem": "PerspectiveSystem(affine(), pinhole())",
+        "PixelCamera": "PixelCamera((720, 720), (320, 240))",
+        "PointsForm": "PointsForm(affine(A, b), np.eye(3))",
+        "Poses": 'read_tum("poses.txt")',
+        "Quadratic": "Quadratic(0.1)",
+        "Recording": "record(scenarios.ma2005_eq35())",
+        "Run": "track(recording, ibo(form))",
+        "Scenario": "scenarios.ma2005_eq35()",
+        "Scene": "scenarios.ma2005_eq35()",
+        "StructureAndMotion": 'StructureAndMotion(("v_c1",))',
+        "Uniform": "Uniform(0.01)",
+    }
+)
+"""Code that makes a value of a class, by the name of the class."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind that no class stands for; it annotates ``Annotated[..., Kind(...)]``."""
+    """A kind of values; it also annotates what no class stands for, as ``Annotated[..., Kind(...)]``.
+
+    Parameters
+    ----------
+    words : str
+        Its name in messages.
+    fits : function of a value
+        Return True if a value is of this kind.
+    example : str
+        Code that makes such a value.
+    by_type : bool
+        Whether the type of a value, or of an array's entries, decides; then a call is checked once a type.
+    entries, alternatives : tuples of Kind
+        Kinds of a sequence's entries, and of a union's members.
+    """
 
     words: str
     fits: Callable[[Any], bool]
     example: str = ""
+    by_type: bool = False
+    entries: tuple[Kind, ...] = ()
+    alternatives: tuple[Kind, ...] = ()
 
 
 def are_numbers(value: Any) -> bool:
-    """Whether numpy makes an array of real numbers of it, without reading text or dropping imaginary parts."""
+    """Return True if numpy makes an array of real numbers of a value without reading text or dropping anything."""
     if isinstance(value, str | bytes | Mapping | np.ma.MaskedArray) or callable(value):
         return False
     try:
@@ -38,22 +85,18 @@ def are_numbers(value: Any) -> bool:
 
 
 def is_real(value: Any) -> bool:
-    """Whether it is a real number of Python, numpy or sympy; True and False are none."""
+    """Return True for a real number of Python, numpy or sympy, but not for True and False."""
     if isinstance(value, np.ndarray):
         return not value.ndim and value.dtype.kind in "iuf"
     if isinstance(value, sp.Expr):
         return bool(value.is_number and value.is_extended_real)
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return False
-    return isinstance(value, float | np.number) or _within(value, HUGE)
+    if isinstance(value, int | Fraction):
+        return not isinstance(value, bool) and abs(value) < LARGEST_FLOAT
+    return isinstance(value, Real)
 
 
-def _within(value: Any, bound: int) -> bool:
-    return bool(-bound < value < bound)
-
-
-def _is_coefficient(value: Any) -> bool:
-    return are_numbers(value) or callable(value) or _are_expressions(value)
+def _is_expression(value: Any) -> bool:
+    return isinstance(value, sp.Expr) or is_real(value)
 
 
 def _are_expressions(value: Any) -> bool:
@@ -61,137 +104,118 @@ def _are_expressions(value: Any) -> bool:
         entries = np.array(value.tolist() if isinstance(value, sp.MatrixBase) else value, dtype=object).ravel()
     except (ValueError, TypeError):
         return False
-    return all(isinstance(entry, sp.Expr) or is_real(entry) for entry in entries)
+    return all(map(_is_expression, entries))
 
 
+def _is_coefficient(value: Any) -> bool:
+    return are_numbers(value) or callable(value) or _are_expressions(value)
+
+
+def _is_integer(value: Any) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
+
+
+Entries = Annotated[Any, Kind("an array of real numbers or of sympy expressions", _are_expressions)]
 Coefficients = Annotated[
     Any, Kind("an array of real numbers, a function of time, or an array of sympy expressions", _is_coefficient)
 ]
-"""What a motion is given by."""
-Entries = Annotated[Any, Kind("an array of real numbers or of sympy expressions", _are_expressions)]
-Expression = Annotated[Any, Kind("a real number or a sympy expression", lambda v: isinstance(v, sp.Expr) or is_real(v))]
+"""Coefficients of a motion."""
 
-_SCALARS: Mapping[Any, Kind] = {
-    float: Kind("a real number", is_real),
-    int: Kind("a whole number", lambda v: isinstance(v, Integral) and not isinstance(v, bool) and _within(v, 2**63)),
-    bool: Kind("True or False", lambda v: isinstance(v, bool | np.bool_)),
-    ArrayLike: Kind("an array of real numbers", are_numbers),
-    sp.Expr: Kind("a real number or a sympy expression", lambda v: isinstance(v, sp.Expr) or is_real(v)),
-    sp.ImmutableMatrix: Kind("a sympy matrix", lambda v: isinstance(v, sp.MatrixBase)),
-    NoneType: Kind("None", lambda v: v is None),
-    None: Kind("None", lambda v: v is None),
+FLOAT = Kind("a real number", is_real, by_type=True)
+ARRAY = Kind("an array of real numbers", are_numbers, by_type=True)
+NOTHING = Kind("None", lambda v: v is None, by_type=True)
+_KINDS: Mapping[Any, Kind] = {
+    float: FLOAT,
+    int: Kind("a whole number", _is_integer, by_type=True),
+    bool: Kind("True or False", lambda v: isinstance(v, bool | np.bool_), by_type=True),
+    str: Kind("text", lambda v: isinstance(v, str), by_type=True),
+    ArrayLike: ARRAY,
+    sp.Expr: Kind("a real number or a sympy expression", _is_expression, by_type=True),
+    sp.ImmutableMatrix: Kind("a sympy matrix", lambda v: isinstance(v, sp.MatrixBase), by_type=True),
+    NoneType: NOTHING,
+    None: NOTHING,
 }
+_ARRAYS = (np.ndarray, get_origin(NDArray[np.float64]))  # the second is an alias of the first from Python 3.12 on
 
 
 @cache
-def _named(kind: Any) -> Kind | None:
-    if get_origin(kind) is Annotated:
-        return next((extra for extra in kind.__metadata__ if isinstance(extra, Kind)), None)
-    arrays = (np.ndarray, get_origin(NDArray[np.float64]))  # the second is an alias of the first from Python 3.12 on
-    return _SCALARS[ArrayLike] if get_origin(kind) in arrays else _SCALARS.get(kind)
+def kind_of(annotation: Any) -> Kind:
+    """Kind of values that an annotation admits; built once, for reading annotations takes longer than a check."""
+    origin, inside = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return next(each for each in annotation.__metadata__ if isinstance(each, Kind))
+    if annotation in _KINDS or origin in _ARRAYS:
+        return _KINDS.get(annotation, ARRAY)
+    if origin in (Union, UnionType):
+        return _union(inside)
+    if origin is Literal:
+        names = ", ".join(map(repr, inside))
+        return Kind(f"one of {names}", lambda v: isinstance(v, type(inside[0])) and not isinstance(v, bool), "", True)
+    if origin is Callable:
+        return Kind("a function", callable, by_type=True)
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return _mapping(*map(kind_of, inside))
+    if isinstance(origin, type) and issubclass(origin, Iterable):
+        return _sequence(origin, inside)
+    return _instance(origin or annotation)
 
 
-def _alternatives(inside: tuple[Any, ...]) -> tuple[Any, ...]:
-    """The kinds of a union; those that make up numpy's ArrayLike stand for real numbers, not for complex or text."""
+def _union(inside: tuple[Any, ...]) -> Kind:
     arrays = set(get_args(ArrayLike))
-    if not arrays or not arrays <= set(inside):
-        return inside
-    return (ArrayLike, *(each for each in inside if each not in arrays))
+    if arrays and arrays <= set(inside):  # members of ArrayLike, which also admit complex numbers and text
+        inside = (ArrayLike, *(each for each in inside if each not in arrays))
+    kinds = tuple(map(kind_of, inside))
+    return Kind(
+        " or ".join(dict.fromkeys(kind.words for kind in kinds if kind is not NOTHING)),
+        lambda v: any(kind.fits(v) for kind in kinds),
+        next((kind.example for kind in kinds if kind.example), ""),
+        all(kind.by_type for kind in kinds),
+        tuple(entry for kind in kinds for entry in kind.entries),
+        kinds,
+    )
 
 
-@cache
-def _made_of(kind: Any) -> tuple[Any, tuple[Any, ...]]:
-    """What a kind was made by and of what: looking into annotations takes longer than looking at a value."""
-    origin, inside = get_origin(kind), get_args(kind)
-    return origin, _alternatives(inside) if origin in (Union, UnionType) else inside
+def _mapping(key: Kind, entry: Kind) -> Kind:
+    def fits(value: Any) -> bool:
+        return isinstance(value, Mapping) and all(key.fits(k) and entry.fits(v) for k, v in value.items())
+
+    return Kind(f"a mapping from {key.words} to {entry.words}", fits, entry.example)
 
 
-def fits(value: Any, kind: Any) -> bool:
-    """Whether a value is of an annotated kind."""
-    named = _named(kind)
-    if named:
-        return named.fits(value)
-    origin, inside = _made_of(kind)
-    if origin in (Union, UnionType):
-        return any(fits(value, each) for each in inside)
-    if origin is Literal:
-        return isinstance(value, type(inside[0])) and not isinstance(value, bool)
-    if origin is Callable:
-        return callable(value)
-    if origin is not None and issubclass(origin, Mapping):
-        return isinstance(value, Mapping) and all(fits(k, inside[0]) and fits(v, inside[1]) for k, v in value.items())
-    if origin is not None and issubclass(origin, Iterable):
-        return _each_fits(value, origin, inside)
-    if isinstance(origin, type):
-        return isinstance(value, origin)
-    if kind is Any or not isinstance(kind, type):
-        return True
-    if getattr(kind, "_is_protocol", False):
-        return not isinstance(value, type) and {name for name in dir(kind) if name[0] != "_"} <= set(dir(value))
-    return isinstance(value, kind)
+def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
+    """Kind of sequences and other iterables; arrays are sequences, and text is not."""
+    entry, of_floats = kind_of(inside[0]), inside[0] is float and inside[1:] in ((), (Ellipsis,))
+    admitted = (Sequence, np.ndarray, sp.MatrixBase, sp.Tuple) if issubclass(origin, Sequence) else Iterable
+
+    def fits(value: Any) -> bool:
+        if of_floats and issubclass(origin, Sequence):
+            return are_numbers(value) and np.ndim(value) == 1
+        if not isinstance(value, admitted) or isinstance(value, str | bytes | Mapping):
+            return False
+        if not hasattr(value, "__len__"):
+            return True  # looking into it would use it up
+        if isinstance(value, np.ndarray) and not value.ndim:
+            return False
+        if origin is tuple and inside[-1] is not Ellipsis:
+            each = list(value)
+            return len(each) == len(inside) and all(kind_of(a).fits(e) for a, e in zip(inside, each, strict=True))
+        return all(map(entry.fits, value))
+
+    return Kind(f"a sequence, each entry {entry.words}", fits, entry.example, entries=(entry,))
 
 
-def _each_fits(value: Any, origin: type, inside: tuple[Any, ...]) -> bool:
-    """Whether a value is a sequence of a kind; arrays are sequences, and text is none."""
-    if inside[0] is float and issubclass(origin, Sequence) and inside[1:] in ((), (Ellipsis,)):
-        return are_numbers(value) and np.ndim(value) == 1
-    several = (Sequence, np.ndarray, sp.MatrixBase, sp.Tuple) if issubclass(origin, Sequence) else Iterable
-    if not isinstance(value, several) or isinstance(value, str | bytes | Mapping):
-        return False
-    if not hasattr(value, "__len__"):
-        return True  # looking into it would use it up
-    if isinstance(value, np.ndarray) and not value.ndim:
-        return False
-    if origin is tuple and inside[-1] is not Ellipsis:
-        entries = list(value)
-        return len(entries) == len(inside) and all(map(fits, entries, inside))
-    return all(fits(entry, inside[0]) for entry in value)
+def _instance(cls: Any) -> Kind:
+    if cls is Any or not isinstance(cls, type):
+        return Kind(with_article(getattr(cls, "__name__", str(cls))), lambda _: True, by_type=True)
+    public = {name for name in dir(cls) if name[0] != "_"}
 
+    def has_members(value: Any) -> bool:
+        return not isinstance(value, type) and public <= set(dir(value))
 
-def depends_on_entries(kind: Any) -> bool:
-    """Whether an array may be of a kind by its shape or its entries, and not by their type alone."""
-    if _named(kind) is not None:
-        return kind is not ArrayLike and get_origin(kind) is Annotated
-    origin, inside = _made_of(kind)
-    if origin in (Union, UnionType):
-        return any(map(depends_on_entries, inside))
-    return isinstance(origin, type) and issubclass(origin, Iterable)
-
-
-def words(kind: Any) -> str:
-    """What an annotated kind is called."""
-    named = _named(kind)
-    if named:
-        return named.words
-    origin, inside = _made_of(kind)
-    if origin in (Union, UnionType):
-        return " or ".join(dict.fromkeys(words(each) for each in inside if each is not NoneType))
-    if origin is Literal:
-        return "one of " + ", ".join(map(repr, inside))
-    if origin is Callable:
-        return "a function"
-    if origin is not None and issubclass(origin, Mapping):
-        return f"a mapping from {words(inside[0])} to {words(inside[1])}"
-    if origin is not None and issubclass(origin, Iterable):
-        return f"a sequence, each entry {words(inside[0])}"
-    return "text" if kind is str else with_article(getattr(kind, "__name__", str(kind)))
+    fits = has_members if getattr(cls, "_is_protocol", False) else lambda value: isinstance(value, cls)
+    return Kind(with_article(cls.__name__), fits, EXAMPLES.get(cls.__name__, ""), by_type=True)
 
 
 def with_article(name: str) -> str:
-    """A class's name as a noun."""
+    """Name of a class as a noun."""
     return f"an {name}" if name[0] in "AEIO" else f"a {name}"
-
-
-def elements(kind: Any) -> tuple[Any, ...]:
-    """The kinds of the entries of the sequences that an annotated kind is or may be."""
-    origin, inside = get_origin(kind), get_args(kind)
-    if origin in (Union, UnionType):
-        return tuple(entry for each in inside for entry in elements(each))
-    return inside[:1] if isinstance(origin, type) and issubclass(origin, Iterable) and origin is not np.ndarray else ()
-
-
-def classes(kind: Any) -> tuple[str, ...]:
-    """Names of the classes that an annotated kind mentions."""
-    if isinstance(kind, type) and not get_args(kind):
-        return (kind.__name__,)
-    return tuple(name for each in get_args(kind) for name in classes(each))

@@ -1,4 +1,4 @@
-"""How much work is done at once: one place for the limit, which is looked at before the work begins."""
+"""Limits of the work that one call may ask for, checked before the work begins."""
 
 from __future__ import annotations
 
@@ -10,18 +10,17 @@ MOST_TERMS = 20_000
 
 
 class TooMuchWork(ValueError):
-    """What is asked for would take more memory or time than is allowed; nothing of it has begun."""
+    """A call would take more memory or time than is allowed; nothing of it has begun."""
 
 
-def limit(amount: float, what: str, remedy: str, most: float = MOST_NUMBERS) -> None:
+def limit(amount: float, unit: str, remedy: str, most: float = MOST_NUMBERS) -> None:
     """Refuse work before it begins.
 
     Parameters
     ----------
     amount : float
-        How much it would be.
-    what : str
-        Of what, such as "numbers of 3 states at 1e+09 instants".
+    unit : str
+        Such as "numbers of 3 states at 1e+09 instants".
     remedy : str
         What to change.
     most : float
@@ -30,7 +29,7 @@ def limit(amount: float, what: str, remedy: str, most: float = MOST_NUMBERS) -> 
     Raises
     ------
     TooMuchWork
-        If it is more than the limit.
+        If the amount is more than the limit.
     """
     if not amount <= most:
-        raise TooMuchWork(f"this would be {amount:.3g} {what}, and at most {most:.3g} are allowed; {remedy}")
+        raise TooMuchWork(f"this would be {amount:.3g} {unit}, and at most {most:.3g} are allowed; {remedy}")

@@ -1,0 +1,84 @@
+"""What depends on the machine and the caller: optional modules, cores, progress bars, whole files, warnings."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Iterable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+PACKAGE = __name__.partition(".")[0]
+
+
+def needed(extra: str, *modules: str) -> None:
+    """Refuse to go on without optional modules, and say which extra of this package brings them.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If one of them is missing.
+    """
+    missing = [module for module in modules if find_spec(module) is None]
+    if missing:
+        raise ModuleNotFoundError(
+            f"{', '.join(missing)} is missing; get it with: python -m pip install 'percept-obs[{extra}]'"
+        )
+
+
+def workers() -> int:
+    """Number of threads or processes to use: one a core, and one in a browser's Python.
+
+    Examples
+    --------
+    >>> workers() >= 1
+    True
+    """
+    return 1 if sys.platform in ("emscripten", "wasi") else os.cpu_count() or 1
+
+
+def bar(things: Iterable[Any] | None = None, label: str = "", total: float | None = None, **options: Any) -> Any:
+    """Progress bar in a notebook or a terminal that appears after two seconds and goes at the end.
+
+    Parameters
+    ----------
+    things : iterable, optional
+        Without them, call the bar's `update`.
+    label : str
+    total : float, optional
+        Number of things, where they do not tell.
+    **options
+        As tqdm takes them, such as ``unit``.
+
+    Examples
+    --------
+    >>> [2 * k for k in bar([1, 2, 3], "doubling")]
+    [2, 4, 6]
+    """
+    from tqdm.auto import tqdm
+
+    class Bar(tqdm):
+        monitor_interval = 0  # no thread of its own, which a browser's Python cannot start
+
+    return Bar(things, label, total, delay=2, leave=False, **options)
+
+
+def write_whole(target: Path, content: bytes) -> None:
+    """Write a file under another name and rename it, so that half a file is never found."""
+    other = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        other.write_bytes(content)
+        other.replace(target)
+    except OSError:
+        other.unlink(missing_ok=True)
+        raise
+
+
+def warn(warning: Warning) -> None:
+    """Warn at the line of the first caller outside of this package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and str(frame.f_globals.get("__name__", "")).partition(".")[0] == PACKAGE:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(warning, stacklevel=level)
