@@ -90,9 +90,9 @@ def is_real(value: Any) -> bool:
         return not value.ndim and value.dtype.kind in "iuf"
     if isinstance(value, sp.Expr):
         return bool(value.is_number and value.is_extended_real)
-    if isinstance(value, int | Fraction):
-        return not isinstance(value, bool) and abs(value) < LARGEST_FLOAT
-    return isinstance(value, Real)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    return not isinstance(value, int | Fraction) or bool(-LARGEST_FLOAT < value < LARGEST_FLOAT)
 
 
 def _is_expression(value: Any) -> bool:
