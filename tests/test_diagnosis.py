@@ -17,9 +17,9 @@ SESSION, DRAW = drawn(3, points=2)
 
 
 def test_the_point_that_explains_a_recording_leaves_its_noise():
-    left = explain(SESSION[0])
-    assert left.squares / left.count == pytest.approx(SESSION[0].noise_variance, rel=0.2)
-    assert abs(left.correlation) < 0.2
+    fit = explain(SESSION[0])
+    assert fit.squares / fit.count == pytest.approx(SESSION[0].noise_variance, rel=0.2)
+    assert abs(fit.correlation) < 0.2
     exact = record(scenarios.ma2005_eq35(), 4)
     assert np.sqrt(explain(exact).squares / explain(exact).count) < 1e-5
 
@@ -28,7 +28,7 @@ def test_lost_samples_and_one_output_are_explained_as_well():
     exact = record(scenarios.ma2005_eq35(), 4)
     outputs = exact.outputs.copy()
     outputs[50:120, 1] = np.nan
-    assert explain(replace(exact, outputs=outputs)).left.shape == outputs.shape
+    assert explain(replace(exact, outputs=outputs)).residuals.shape == outputs.shape
     alone = replace(exact, outputs=outputs[:, :1], names=("y1",), signal=None, truth=None)
     assert np.sqrt(explain(alone).squares / explain(alone).count) < 1e-5
 

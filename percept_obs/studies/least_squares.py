@@ -1,4 +1,4 @@
-"""Moving-window least squares: the batch reference that the observers are measured against."""
+"""Moving-window least squares: the batch estimate that observers are compared with."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import sympy as sp
-from scipy.linalg import expm
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
+from percept_obs.recording.many import transitions
+from percept_obs.recording.simulation import coefficients
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
 LARGEST_CONDITION = 1e6
-"""A window whose normal equations are conditioned worse than this determines no point."""
+"""Condition number of the normal equations beyond which a window determines no point."""
 
 
-@checked
 @dataclass(frozen=True, eq=False)
 class LeastSquares:
-    """Least squares where a run asks for its observer: what they are called, and what they estimate.
+    """Least squares in the place of a run's observer.
 
     Parameters
     ----------
@@ -41,12 +41,12 @@ class LeastSquares:
 
     @property
     def name(self) -> str:
-        """With the length of the window."""
+        """Name with the length of the window."""
         return f"least squares on {self.window:g} s"
 
     @cached_property
     def form(self) -> PartitionedSystem:
-        """With all image coordinates measured."""
+        """Form with all image coordinates measured."""
         recording = self.recording
         return PerspectiveSystem(recording.motion, recording.imaging_surface).measure(*recording.names)
 
@@ -88,10 +88,9 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     time, count = recording.time, len(recording.time)
     rays = np.stack(vectorised(surface.image_coordinates, surface.ray, surface.values)(*recording.outputs.T), axis=-1)
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-    on_ray = np.eye(3) - rays[:, :, None] * rays[:, None, :]
-    back = _back(recording)
-
-    matrix, right = np.zeros((count, 3, 3)), np.zeros((count, 3))
+    across_ray = np.nan_to_num(np.eye(3) - rays[:, :, None] * rays[:, None, :])  # a lost sample adds nothing
+    back = maps_between(recording.motion, time[::-1])[::-1]
+    squares = np.zeros((count, 4, 4))  # of the unknown (X, 1)
     # from the position at the window's end to that of the sample some places before it
     to_earlier = np.broadcast_to(np.eye(4), (count, 4, 4)).copy()
     for lag in range(count):
@@ -100,27 +99,22 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
             break
         if lag:
             to_earlier[ends] = back[ends - lag] @ to_earlier[ends]
-        seen = ends[np.isfinite(rays[ends - lag]).all(axis=1)]
-        rows = on_ray[seen - lag] @ to_earlier[seen, :3, :3]
-        matrix[seen] += np.swapaxes(rows, 1, 2) @ rows
-        right[seen] -= (np.swapaxes(rows, 1, 2) @ (on_ray[seen - lag] @ to_earlier[seen, :3, 3:]))[:, :, 0]
-    values = np.linalg.eigvalsh(matrix)
+        rows = across_ray[ends - lag] @ to_earlier[ends, :3]
+        squares[ends] += np.swapaxes(rows, 1, 2) @ rows
+    values = np.linalg.eigvalsh(squares[:, :3, :3])
     good = np.flatnonzero(values[:, 0] * LARGEST_CONDITION > values[:, -1])
-    points = np.linalg.solve(matrix[good], right[good][:, :, None])[:, :, 0]
-    distance = surface.distances(points)
+    points = np.linalg.solve(squares[good, :3, :3], -squares[good, :3, 3:])[:, :, 0]
+    in_front = surface.distances(points) > 0
     estimate = np.zeros((count, len(surface.coordinates)))
-    estimate[good[distance > 0]] = surface.project(points[distance > 0])
+    estimate[good[in_front]] = surface.project(points[in_front])
     always = np.zeros(count, dtype=int)
     return Run(recording, LeastSquares(recording, window), estimate, estimate, None, "zero", np.empty(0), always)
 
 
-def _back(recording: Recording) -> Array:
-    """Affine maps, shape (K - 1, 4, 4), from the position at a sample to that at the sample before it."""
-    time, motion = recording.time, recording.motion
-    middle = (time[:-1] + time[1:]) / 2
-    known = motion.known(middle)
-    together = list(sp.Matrix.hstack(sp.Matrix(motion.A), sp.Matrix(motion.b)))
-    entries = vectorised(motion.parameters, together)(*known.T)
-    generator = np.zeros((len(middle), 4, 4))
-    generator[:, :3, :] = np.stack(entries, axis=-1).reshape(-1, 3, 4)
-    return expm(-generator * np.diff(time)[:, None, None])
+def maps_between(motion: Motion, time: Array) -> Array:
+    """Affine maps of (X, 1) from each time to the next one, shape (K - 1, 4, 4), with the motion of the middle."""
+    lengths = np.diff(time)[:, None]
+    A, b = coefficients(motion, motion.known((time[1:] + time[:-1]) / 2))
+    maps = np.broadcast_to(np.eye(4), (len(lengths), 4, 4)).copy()
+    maps[:, :3] = transitions(lengths[:, :, None] * A, lengths * b, 1.0)
+    return maps

@@ -1,4 +1,4 @@
-"""What a camera's owner gets wrong: each mistake as an experiment, and the one that explains the samples."""
+"""Diagnosis of recordings: the usual mistakes with a camera, and the one that explains the samples."""
 
 from percept_obs.studies.diagnosis.diagnose import Diagnosis, Finding, diagnose
 from percept_obs.studies.diagnosis.explaining import explain

@@ -1,33 +1,33 @@
-"""What looks wrong with recordings, found by undoing one mistake after the other."""
+"""Diagnosis of recordings: undo one usual mistake after the other, and name the one that explains the samples."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from percept_obs.recording import Recording
 from percept_obs.recording.doubts import LARGEST_USUAL
-from percept_obs.studies.diagnosis.experiments import EXPERIMENTS, FRAMES, Experiment, possible, within_reach
+from percept_obs.studies.diagnosis.experiments import EXPERIMENTS, impossible, within_reach
 from percept_obs.studies.diagnosis.explaining import Explained, explain
 from percept_obs.validation import checked
 
 CLEARLY = 10.0
-"""Logarithm of the ratio of likelihoods from which on a mistake is named."""
+"""Logarithm of the likelihood ratio from which on a mistake is named."""
 
 FEWEST = 10
-"""Samples in a part of a recording that is explained by a point of its own."""
+"""Fewest samples from which a point is estimated."""
 
 PLACES = 12
-"""Places in a recording at which another point may begin, as first tried."""
+"""Places in a recording at which another point may begin, before the best one is refined."""
 
 FINEST = 1e-4
-"""What is left of the samples of the best camera, in focal lengths: a twentieth of a pixel."""
+"""Root mean square of the residuals of the best camera, in focal lengths: a twentieth of a pixel."""
 
 UNEXPLAINED = 1.5
-"""Times the noise that may be left before it is said that something is unexplained."""
+"""Ratio of the residuals to the noise from which on something is unexplained."""
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,16 @@ class Finding:
     key : str
         "time offset", "focal length", "sign of w", "frames swapped", "pixels", "distortion ignored" or "mismatch".
     sentence : str
-        What looks wrong.
+        The mistake in words.
     evidence : str
-        By which one knows.
+        By how much the residuals fall without it.
     gain : float
-        Logarithm by which the samples become more likely, less what its unknowns are worth; infinite without a doubt.
+        Logarithm by which the samples become more likely, less the price of the unknowns (Schwarz's criterion);
+        infinite if it is certain.
     value : float
         Such as the offset in seconds; NaN where there is none.
-    tried, left : arrays
-        The values that were tried and what each leaves of the samples: the root mean square, in focal lengths.
+    tried, left : tuples of float
+        The values that were tried and the root mean square of the residuals for each, in focal lengths.
     """
 
     key: str
@@ -62,14 +63,14 @@ class Finding:
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis:
-    """What looks wrong with recordings.
+    """Mistakes found in recordings.
 
     Parameters
     ----------
     findings : tuple of Finding
         Mistakes that explain the samples clearly better, the best first; one usually explains part of another.
     left : float
-        What the best point leaves of the samples as they are: the root mean square, in focal lengths.
+        Root mean square of the residuals of the samples as they are, in focal lengths.
     noise : float or None
         The standard deviation that the noise is said to have.
     not_tried : mapping of keys to reasons
@@ -78,7 +79,7 @@ class Diagnosis:
     findings: tuple[Finding, ...]
     left: float
     noise: float | None = None
-    not_tried: dict[str, str] = field(default_factory=dict)
+    not_tried: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def named(self) -> str:
@@ -87,7 +88,7 @@ class Diagnosis:
 
     @property
     def sentence(self) -> str:
-        """What looks wrong, with the evidence."""
+        """The mistake that explains most, with the evidence."""
         left = f"{1000 * self.left:.3g} thousandths of the focal length are left of the samples"
         left += "" if self.noise is None else f", with noise of {1000 * self.noise:.3g}"
         if self.findings:
@@ -98,8 +99,7 @@ class Diagnosis:
             said = f"None of the usual mistakes explains the samples, but something is not as it is known: {left}."
         else:
             said = f"Nothing looks wrong: {left}."
-        said += "".join(f" Not tried: {key}, for {reason}." for key, reason in self.not_tried.items())
-        return said
+        return said + "".join(f" Not tried: {key}, for {reason}." for key, reason in self.not_tried.items())
 
     def __repr__(self) -> str:
         return f"<Diagnosis: {self.sentence}>"
@@ -109,8 +109,8 @@ class Diagnosis:
 def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     """Look for the usual mistakes with a camera, in one recording or in several of points that one camera saw.
 
-    Each mistake is undone, and what one point leaves of each recording's samples is compared with what it leaves of
-    them as they are.  Samples whose rest is correlated in time count less.
+    Each mistake is undone, and the residuals of one point for each recording are compared with those of the recordings
+    as they are.  Samples whose residuals are correlated in time count less.
 
     Parameters
     ----------
@@ -121,6 +121,10 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     ------
     ValueError
         If there is none, one shows several points, or one is too short.
+
+    See Also
+    --------
+    percept_obs.figures.scan : draws the residuals of each value that was tried
 
     Examples
     --------
@@ -136,151 +140,113 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     >>> diagnose(replace(seen, motion=moved(-1))).named
     'sign of w'
     """
-    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
-    if not given:
+    several = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    if not several:
         raise ValueError("there is no recording; give one, or several of points that one camera saw")
-    variances = [recording.noise_variance for recording in given if recording.noise_variance is not None]
-    noise = math.sqrt(float(np.mean(variances))) if len(variances) == len(given) else None
-    pixels = _pixels(given)
-    if pixels:
+    variances = [recording.noise_variance for recording in several if recording.noise_variance is not None]
+    noise = math.sqrt(float(np.mean(variances))) if len(variances) == len(several) else None
+    size = np.abs(np.concatenate([[0.0], *(recording.outputs.ravel() for recording in several)]))
+    if np.nanmedian(size) > LARGEST_USUAL:
+        evidence = (
+            f"half of them are larger than {np.nanmedian(size):.4g}, up to {np.nanmax(size):.4g}, where no camera sees "
+            "farther to the side than a few focal lengths"
+        )
+        pixels = Finding("pixels", "the samples are pixels and not divided by the focal length", evidence, math.inf)
         return Diagnosis((pixels,), math.nan, noise)
-    bare = [within_reach(recording) for recording in given]
-    _refuse_short_ones(bare)
-    as_they_are = _Left.of(bare)
+    bare = [within_reach(recording) for recording in several]
+    for recording in bare:
+        if not (recording.seen.sum() >= 2 * FEWEST and recording.imaging_surface):
+            raise ValueError(
+                f"{recording!r} has {recording.seen.sum()} samples of all its outputs where its motion is known up to "
+                f"the largest offset that is tried; {2 * FEWEST} are needed"
+            )
+    before = _Fits(tuple(map(explain, bare)))
     findings, not_tried = [], {}
     for experiment in EXPERIMENTS:
-        reason = possible(experiment, bare)
-        if reason:
+        if reason := impossible(experiment, bare):
             not_tried[experiment.key] = reason
-        else:
-            findings.append(_tried(experiment, bare, as_they_are))
+            continue
+
+        def undone(value: float, undo: Callable[[Recording, float], Recording] = experiment.undo) -> _Fits:
+            return _Fits(tuple(explain(undo(recording, value)) for recording in bare))
+
+        best, after, left = _scan(undone, experiment.values, experiment.continuous)
+        if abs(best - experiment.none) < experiment.smallest:
+            continue
+        told, value = experiment.sentence(best), best if experiment.continuous else math.nan
+        gain, evidence = after.gain(before, 1), after.evidence(before)
+        findings.append(Finding(experiment.key, told, evidence, gain, value, experiment.values, left))
     if len(bare) > 1:
-        findings.append(_mismatched(bare, as_they_are))
+        findings.append(_mismatch(bare, before))
     else:
         not_tried["mismatch"] = "other points are needed to tell it from what all points share"
-    clear = sorted((f for f in findings if f is not None and f.gain > CLEARLY), key=lambda f: -f.gain)
-    return Diagnosis(tuple(clear), as_they_are.rms, noise, not_tried)
+    clear = sorted((found for found in findings if found.gain > CLEARLY), key=lambda found: -found.gain)
+    return Diagnosis(tuple(clear), before.rms, noise, not_tried)
 
 
 @dataclass(frozen=True, eq=False)
-class _Left:
-    """What is left of all samples."""
+class _Fits:
+    """Residuals of all recordings."""
 
-    parts: tuple[Explained, ...]
-
-    @classmethod
-    def of(cls, recordings: Sequence[Recording]) -> _Left:
-        return cls(tuple(map(explain, recordings)))
+    each: tuple[Explained, ...]
 
     @property
     def squares(self) -> float:
-        return sum(part.squares for part in self.parts)
+        return sum(fit.squares for fit in self.each)
 
     @property
     def rms(self) -> float:
-        return math.sqrt(self.squares / sum(part.count for part in self.parts))
+        return math.sqrt(self.squares / sum(fit.count for fit in self.each))
 
-    @property
-    def independent(self) -> float:
-        """How many numbers that are not correlated tell as much as all."""
-        correlations = [min(max(part.correlation, 0.0), 0.99) for part in self.parts]
-        return sum(part.count * (1 - r) / (1 + r) for part, r in zip(self.parts, correlations, strict=True))
+    def gain(self, before: _Fits, unknowns: int) -> float:
+        """Logarithm by which the samples are more likely than before, less Schwarz's price of the unknowns."""
+        count = sum(fit.effective_count for fit in self.each)
+        finest = FINEST**2 * sum(fit.count for fit in self.each)
+        return count / 2 * math.log((before.squares + finest) / (self.squares + finest)) - unknowns / 2 * math.log(
+            count
+        )
 
-    def gain(self, before: _Left, unknowns: int) -> float:
-        """Logarithm by which samples are more likely than before, less Schwarz's price of the unknowns."""
-        count, finest = self.independent, FINEST**2 * sum(part.count for part in self.parts)
-        ratio = (before.squares + finest) / (self.squares + finest)
-        return count / 2 * math.log(ratio) - unknowns / 2 * math.log(count)
-
-    def evidence(self, before: _Left) -> str:
+    def evidence(self, before: _Fits) -> str:
         fell = f"{1000 * before.rms:.3g} to {1000 * self.rms:.3g} thousandths of the focal length"
         return f"undone, what is left of the samples falls from {fell}"
 
 
-def _tried(experiment: Experiment, recordings: Sequence[Recording], before: _Left) -> Finding | None:
-    """What an experiment finds; nothing if its best value is none or is not worth a word."""
-
-    def left(value: float) -> _Left:
-        return _Left.of([experiment.undone(recording, value) for recording in recordings])
-
-    found = {value: left(value) for value in experiment.values}
-    tried, remaining = tuple(found), tuple(each.rms for each in found.values())
-    best = min(found, key=lambda value: found[value].squares)
-    if experiment.continuous:
-        best = _refined(lambda value: left(value).squares, best, experiment.values)
-    after = left(best)
-    if not experiment.worth_telling(best):
-        return None
-    words = {"late": "late" if best > 0 else "early", "frame": [*FRAMES][int(best) % len(FRAMES)]}
-    sentence = experiment.sentence.format(value=best, size=abs(best), **words)
-    gain = after.gain(before, 1)
-    value = best if experiment.continuous else math.nan
-    return Finding(experiment.key, sentence, after.evidence(before), gain, value, tried, remaining)
-
-
-def _refined(squares: Callable[[float], float], best: float, values: Sequence[float]) -> float:
-    """The best value between the neighbours of the best of some."""
+def _scan(
+    fits: Callable[[float], _Fits], values: Sequence[float], continuous: bool
+) -> tuple[float, _Fits, tuple[float, ...]]:
+    """Best value, its fits, and the residuals of each value; a continuous one is refined between its neighbours."""
     from scipy.optimize import minimize_scalar
 
-    place = list(values).index(best)
-    low, high = values[max(place - 1, 0)], values[min(place + 1, len(values) - 1)]
-    found = minimize_scalar(squares, bounds=(low, high), method="bounded", options={"xatol": 1e-3, "maxiter": 12})
-    return float(found.x)
+    tried = [fits(value) for value in values]
+    k = int(np.argmin([each.squares for each in tried]))
+    best, after = values[k], tried[k]
+    if continuous:
+        ends = values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)]
+        options = {"xatol": 1e-3, "maxiter": 12}
+        best = float(minimize_scalar(lambda v: fits(v).squares, bounds=ends, method="bounded", options=options).x)
+        after = fits(best)
+    return best, after, tuple(each.rms for each in tried)
 
 
-def _mismatched(recordings: Sequence[Recording], before: _Left) -> Finding | None:
-    """The recording that shows another point from some sample on, if one does."""
-    spread = [part.squares / part.count for part in before.parts]
-    number = int(np.argmax(spread))
-    recording, length = recordings[number], len(recordings[number].time)
-    others = [part for k, part in enumerate(before.parts) if k != number]
+def _mismatch(recordings: Sequence[Recording], before: _Fits) -> Finding:
+    """Finding that the recording with the largest residuals shows another point from some sample on."""
+    number = int(np.argmax([fit.squares / fit.count for fit in before.each]))
+    recording, time = recordings[number], recordings[number].time
+    others = (*before.each[:number], *before.each[number + 1 :])
 
-    def split(place: int) -> _Left:
-        ends = (recording.time[[0, place - 1]], recording.time[[place, -1]])
-        return _Left((*others, *(explain(recording.between(*end)) for end in ends)))
+    def split(place: float) -> _Fits:
+        k = round(place)
+        return _Fits((*others, *(explain(recording.between(*time[ends])) for ends in ([0, k - 1], [k, -1]))))
 
-    places = np.unique(np.linspace(FEWEST, length - FEWEST, PLACES).astype(int)).tolist()
-    found = {place: split(place) for place in places}
-    reach = max(1, (length - 2 * FEWEST) // PLACES)
-    while True:
-        best = min(found, key=lambda place: found[place].squares)
-        near = [p for p in (best - reach, best + reach) if FEWEST <= p <= length - FEWEST and p not in found]
-        if not near and reach == 1:
-            break
-        found |= {place: split(place) for place in near}
-        reach = max(1, reach // 2)
-    after = found[best]
-    when = float(recording.time[best])
+    places = np.unique(np.linspace(FEWEST, len(time) - FEWEST, PLACES).astype(int)).tolist()
+    best, after, left = _scan(split, places, continuous=True)
+    when = float(time[round(best)])
     return Finding(
         "mismatch",
         f"recording {number} ({recording.source or 'without a source'}) shows another landmark from {when:.4g} s on",
         f"{after.evidence(before)}, while one point each explains the others",
         after.gain(before, 4),
         when,
-        tuple(recording.time[sorted(found)].tolist()),
-        tuple(found[place].rms for place in sorted(found)),
+        tuple(time[places].tolist()),
+        left,
     )
-
-
-def _pixels(recordings: Sequence[Recording]) -> Finding | None:
-    """That the outputs are pixels, which their size alone tells."""
-    sizes = [np.abs(recording.outputs[np.isfinite(recording.outputs)]) for recording in recordings]
-    size = np.concatenate([[0.0], *sizes])
-    if not np.median(size) > LARGEST_USUAL:
-        return None
-    return Finding(
-        "pixels",
-        "the samples are pixels and not divided by the focal length",
-        f"half of them are larger than {np.median(size):.4g}, up to {size.max():.4g}, where no camera sees farther to "
-        f"the side than a few focal lengths",
-        math.inf,
-    )
-
-
-def _refuse_short_ones(recordings: Sequence[Recording]) -> None:
-    for recording in recordings:
-        if not (recording.seen.sum() >= 2 * FEWEST and recording.imaging_surface):
-            raise ValueError(
-                f"{recording!r} has {recording.seen.sum()} samples of all its outputs where its motion is known up to "
-                f"the largest offset that is tried; {2 * FEWEST} are needed"
-            )

@@ -1,7 +1,8 @@
-"""What a camera's owner may have got wrong, each as an experiment: the recordings as they are if it was so."""
+"""Usual mistakes with a camera, each as an experiment: the recordings as they would be without the mistake."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,7 +15,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import OverTime, Signal
 
 LARGEST_OFFSET = 0.25
-"""Seconds up to which images may be late or early."""
+"""Largest offset in seconds between images and motion that is tried."""
 
 VEHICLE = sp.ImmutableMatrix([[0, -1, 0], [0, 0, -1], [1, 0, 0]])
 FRAMES = {
@@ -22,48 +23,47 @@ FRAMES = {
     "was turned out of a vehicle's frame, but was the camera's before": VEHICLE.T,
     "is in a renderer's frame (x right, y up, z back)": sp.ImmutableMatrix.diag(1, -1, -1),
 }
-"""What happens to frames, and how the motion's axes turn back into the camera's (x right, y down, z forward)."""
+"""Wrong frames of a motion, each with the rotation into the camera's (x right, y down, z forward)."""
 
-UNBENT = 20
-"""Steps by which a distortion is taken out."""
+PASSES = 20
+"""Fixed-point iterations that take out a distortion."""
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """One mistake, and how the recordings would have been without it.
+    """One mistake, and how to undo it.
 
     Parameters
     ----------
     key : str
         Such as "time offset".
-    sentence : str
-        What is wrong, in words, with places for the value, its size, "late" or "early", and the frame.
+    sentence : function of a value
+        Says the mistake in words.
     values : tuple of float
-        What is tried; between neighbours the best one is looked for if there are several and it is `continuous`.
-    undone : function of a recording and a value
-        The recording without the mistake.
-    smallest : float
-        Values closer to `none` than that are not worth a word.
+        Values that are tried; the best one is refined between its neighbours if it is `continuous`.
+    undo : function of a recording and a value
+        Returns the recording without the mistake.
     none : float
-        The value that changes nothing.
-    continuous : bool
+        The value that changes nothing; NaN if the values number alternatives.
+    smallest : float
+        Smallest difference from `none` that is worth naming.
     """
 
     key: str
-    sentence: str
+    sentence: Callable[[float], str]
     values: tuple[float, ...]
-    undone: Callable[[Recording, float], Recording]
+    undo: Callable[[Recording, float], Recording]
+    none: float = math.nan
     smallest: float = 0.0
-    none: float = np.nan
-    continuous: bool = True
 
-    def worth_telling(self, value: float) -> bool:
-        """Whether the value differs enough from none."""
-        return not abs(value - self.none) < self.smallest
+    @property
+    def continuous(self) -> bool:
+        """True if values between those that are tried make sense."""
+        return not math.isnan(self.none)
 
 
 def later(motion: Motion, offset: float) -> Motion:
-    """The motion as it was so many seconds later."""
+    """Return the motion as it was `offset` seconds later."""
     signal = motion.signal
     assert signal is not None
     if callable(signal.samples):
@@ -74,14 +74,14 @@ def later(motion: Motion, offset: float) -> Motion:
 
 
 def turned(motion: Motion, into: sp.ImmutableMatrix) -> Motion:
-    """The motion in a frame with other axes."""
+    """Return the motion in a frame with other axes."""
     return replace(motion, A=into * motion.A * into.T, b=into * motion.b)
 
 
 def unbent(outputs: Array, bend: float) -> Array:
     """Image coordinates without the radial distortion y (1 + bend |y|^2) that they have."""
     straight = outputs
-    for _ in range(UNBENT):
+    for _ in range(PASSES):
         squared = (straight**2).sum(axis=-1, keepdims=True)
         straight = outputs / np.maximum(1 + bend * squared, 0.25)
     return np.asarray(straight)
@@ -90,48 +90,46 @@ def unbent(outputs: Array, bend: float) -> Array:
 EXPERIMENTS = (
     Experiment(
         "time offset",
-        "the images are {size:.3f} s {late} against the motion",
+        lambda offset: f"the images are {abs(offset):.3f} s {'late' if offset > 0 else 'early'} against the motion",
         tuple(np.linspace(-LARGEST_OFFSET, LARGEST_OFFSET, 11).tolist()),
         lambda recording, offset: replace(recording, motion=later(recording.motion, -offset)),
-        0.01,
-        0.0,
+        none=0.0,
+        smallest=0.01,
     ),
     Experiment(
         "focal length",
-        "the focal length is {value:.3f} times the one by which the images were divided",
+        lambda ratio: f"the focal length is {ratio:.3f} times the one by which the images were divided",
         tuple(np.linspace(0.7, 1.4, 8).tolist()),
         lambda recording, ratio: replace(recording, outputs=recording.outputs / ratio),
-        0.03,
-        1.0,
+        none=1.0,
+        smallest=0.03,
     ),
     Experiment(
         "sign of w",
-        "the angular velocity has the wrong sign",
+        lambda _: "the angular velocity has the wrong sign",
         (0.0,),
         lambda recording, _: replace(recording, motion=replace(recording.motion, A=recording.motion.A.T)),
-        continuous=False,
     ),
     Experiment(
         "frames swapped",
-        "the motion {frame}; it is needed in the camera's (x right, y down, z forward)",
+        lambda k: f"the motion {[*FRAMES][int(k)]}; it is needed in the camera's (x right, y down, z forward)",
         tuple(map(float, range(len(FRAMES)))),
         lambda recording, k: replace(recording, motion=turned(recording.motion, [*FRAMES.values()][int(k)])),
-        continuous=False,
     ),
     Experiment(
         "distortion ignored",
-        "the lens bends the images, by the factor 1 {value:+.3f} |y|^2",
+        lambda bend: f"the lens bends the images, by the factor 1 {bend:+.3f} |y|^2",
         tuple(np.linspace(-0.45, 0.45, 10).tolist()),
         lambda recording, bend: replace(recording, outputs=unbent(recording.outputs, bend)),
-        0.02,
-        0.0,
+        none=0.0,
+        smallest=0.02,
     ),
 )
 """Mistakes that all points of a camera share."""
 
 
-def possible(experiment: Experiment, recordings: Sequence[Recording]) -> str:
-    """Why an experiment cannot be made with these recordings; empty if it can."""
+def impossible(experiment: Experiment, recordings: Sequence[Recording]) -> str:
+    """Reason why an experiment cannot be made with these recordings; empty if it can."""
     motions = [recording.motion for recording in recordings]
     if experiment.key == "time offset" and all(motion.signal and motion.signal.constant for motion in motions):
         return "the motion is constant, so that no offset shows"
@@ -141,7 +139,7 @@ def possible(experiment: Experiment, recordings: Sequence[Recording]) -> str:
 
 
 def within_reach(recording: Recording) -> Recording:
-    """The part of a recording whose motion is known at all offsets that are tried, without what is not needed."""
+    """Return the part of a recording whose motion is known at all offsets that are tried, without its truth."""
     bare = replace(recording, truth=None, signal=None, distances={})
     times = recording.motion.signal.times if recording.motion.signal else None
     if times is None:
