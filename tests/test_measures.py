@@ -272,7 +272,7 @@ def test_other_requests_that_make_no_sense_are_refused():
         lie_derivatives(BOTH, 10**12)
     with pytest.raises(ValueError, match="no values for"):
         lie_derivatives(BOTH).ranks_at({})
-    with pytest.raises(ValueError, match="seen on no view"):
+    with pytest.raises(ValueError, match="made for no view"):
         how_observable(crossing(), SQUARE)
 
 

@@ -13,6 +13,7 @@ from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.tracking.following import require_match
 from percept_obs.validation import limit
 
 System = PartitionedSystem | PerspectiveSystem
@@ -72,20 +73,7 @@ def matching_form(system: System, recording: Recording) -> PartitionedSystem:
             "the recording has no truth at all of its samples; what can be known is asked along a true trajectory: "
             "simulate one with record(scenario), or cut the recording with between(begin, end)"
         )
-    if form.view is None or not form.view.fits(recording.view):
-        name = "no view" if form.view is None else f"the {form.view.name}"
-        raise ValueError(f"the system is seen on {name}, the recording on the {recording.view.name}; use the same view")
-    missing = [name for name in form.measured if name not in recording.names]
-    if missing:
-        raise ValueError(
-            f"the system measures {', '.join(missing)}, but the recording has {', '.join(recording.names)}"
-        )
-    expected = (*recording.motion.parameters, *recording.view.parameters)
-    if form.parameters != expected:
-        raise ValueError(
-            f"the system was derived for a motion with {', '.join(map(str, form.parameters)) or 'numbers only'}, the "
-            f"recording's has {', '.join(map(str, expected)) or 'numbers only'}; use the same kind of motion for both"
-        )
+    require_match(form, recording, recording.motion)
     return form
 
 

@@ -91,7 +91,7 @@ def _follow_points(
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
     coefficients, held = form.numbers(along.instants), along.held(filled=False)
     held = np.broadcast_to(held, (len(held), EACH + 1, *held.shape[2:]))
-    spoken = choose(language, len(along.grid) * form.states)
+    spoken = choose(language, len(along.times) * form.states)
     task = _Task(along, form, matrix, coefficients, held, began, sight, kept, spoken)
     state, P = np.full((len(time), form.states), np.nan), np.zeros((len(kept), form.states, form.states))
     ends = []
@@ -139,7 +139,7 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices
 def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Array, Array, float | None]:
     """Estimates at all samples, P at the kept ones, and when the estimate diverged."""
     matrix, along = task.matrix, task.along
-    time, grid, index = along.recording.time, along.grid, along.index
+    time, grid, index = along.recording.time, along.times, along.index
     block = np.ix_(states, states)
     P, n = matrix.start[block].copy(), len(states)
     pull = matrix.forgetting * P - matrix.decrease[block]

@@ -1,4 +1,4 @@
-"""An observer follows a recording, and the run that it leaves."""
+"""An observer follows a recording and leaves a run."""
 
 from percept_obs.tracking.following import DoesNotFit, StepTooLong, track
 from percept_obs.tracking.run import Run

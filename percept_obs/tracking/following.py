@@ -19,7 +19,7 @@ from percept_obs.observers.inversion import Unobservable, elapsed, first_innovat
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.grid import Hold, TimeGrid, time_grid
+from percept_obs.tracking.grid import Hold, TimeGrid, known_signals, time_grid
 from percept_obs.tracking.run import Run
 from percept_obs.validation import Kind, checked, limit, refuse_kind, warn
 
@@ -30,29 +30,23 @@ class DoesNotFit(ValueError):
     """An observer cannot follow this recording."""
 
 
-TOO_LONG = (
-    "from {time} s on, the {name} observer's fastest part decays with {rate}/s, too fast for a step of {step} s: their "
-    "product must stay below {limit}; {remedy}, or take steps below {shorter} s"
-)
-"""What is said of an observer whose steps are too long; live labs use the same words."""
-
-
 class StepTooLong(UserWarning):
     """The steps become too long for the fastest part of an observer, which will then chatter."""
 
 
-def width(observer: Any) -> int:
-    """How many numbers the state of an observer has."""
-    equations = getattr(observer, "equations", None)
-    return len(equations.state) if equations else int(observer.form.states)
+TOO_LONG = (
+    "from {time} s on, the {name} observer's fastest part decays with {rate}/s, too fast for a step of {step} s: their "
+    "product must stay below {limit}; {remedy}, or take steps below {shorter} s"
+)
+"""Message of `StepTooLong`, also of live labs."""
 
 
-def _follows(observer: Any) -> bool:
+def _can_follow(observer: Any) -> bool:
     return follow.dispatch(type(observer)) is not follow.dispatch(object)
 
 
-AnyObserver = Annotated[Any, Kind("an observer of a form", _follows, "ibo(form)")]
-"""Whatever `follow` knows how to run."""
+AnyObserver = Annotated[Any, Kind("an observer of a form", _can_follow, "ibo(form)")]
+"""Any observer that `follow` can run."""
 
 
 @checked
@@ -77,11 +71,11 @@ def track(
         Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
         observer's own start (hidden).  Several points may start at their `FirstSight`.
     hold : "zero", "first" or "exact"
-        What the observer takes for the outputs between samples: the last sample; a line to the next one, which a
-        running system does not have yet, so that it looks one sample ahead; or the exact signal without noise,
-        known in simulations only.  A lost sample prolongs the hold of a single point; one of several points is then
-        not seen until its next sample.  Estimates at the samples use no later one with the line either, but those
-        between would have to wait for it.
+        Signal that stands for the outputs between samples: the last sample; a line to the next one, which a running
+        system does not have yet, so that it looks one sample ahead; or the exact signal without noise, known in
+        simulations only.  A lost sample prolongs the hold of a single point; one of several points is then not seen
+        until its next sample.  Estimates at the samples use no later one with the line either, but those between
+        would have to wait for it.
     believed : Motion, optional
         The motion that the observer believes in; the recording's own when left out.
     step : float
@@ -91,17 +85,29 @@ def track(
     longest_hold : float
         Seconds after a sample from which on one of several points is not seen until its next one.
 
+    Returns
+    -------
+    Run
+        A `PointsRun` for several points.
+
     Raises
     ------
     DoesNotFit
         If view, outputs or motion do not fit the observer, or the first sample of a single point was lost.
     ValueError
         If the start, the hold or a time make no sense.
+    TooMuchWork
+        If there are too many steps.
 
     Warns
     -----
     StepTooLong
         If the fastest part of the observer becomes too fast for the steps.
+
+    See Also
+    --------
+    compare : Several observers on several recordings.
+    ensemble : Many runs with noise of their own.
 
     Notes
     -----
@@ -124,20 +130,20 @@ def track(
             raise ValueError(f"the {name} is {value}; it must be positive, in seconds")
     if not math.isfinite(step):
         raise ValueError(f"the step is {step} s; it must be finite")
-    length, each = float(recording.time[-1] - recording.time[0]), width(observer) + 2 * recording.outputs[0].size
+    length = float(recording.elapsed[-1])
+    states = len(observer.equations.state) if isinstance(observer, Observer) else int(observer.form.states)
     steps = max(length / step, len(recording.time))
     limit(
-        steps * each,
+        steps * (states + 2 * recording.outputs[0].size),
         f"numbers, from {steps:.3g} steps",
         "track a shorter part, recording.between(begin, end), or take longer steps",
     )
-    along = time_grid(recording, step, hold, longest_hold)
-    return follow(observer, along, start, believed, language)
+    return follow(observer, time_grid(recording, step, hold, longest_hold), start, believed, language)
 
 
 @singledispatch
-def follow(observer: Any, along: TimeGrid, start: Any, believed: Motion | None, language: Language | None) -> Run:
-    """Let an observer follow a course; each kind of observer registers how it does.
+def follow(observer: Any, grid: TimeGrid, start: Any, believed: Motion | None, language: Language | None) -> Run:
+    """Let an observer follow a recording on a grid; each kind of observer registers its own function.
 
     Raises
     ------
@@ -148,72 +154,70 @@ def follow(observer: Any, along: TimeGrid, start: Any, believed: Motion | None, 
 
 
 @follow.register
-def _follow(
-    observer: Observer, along: TimeGrid, start: Start, believed: Motion | None, language: Language | None
+def _follow_one_point(
+    observer: Observer, grid: TimeGrid, start: Start, believed: Motion | None, language: Language | None
 ) -> Run:
-    form, recording, index = observer.form, along.recording, along.index
+    form, recording = observer.form, grid.recording
     believed = believed or recording.motion
-    _refuse_misfits(along, observer, believed)
+    _require_fit(grid, observer, believed)
     places = [recording.names.index(name) for name in form.measured]
-    side_by_side = places == list(range(places[0], places[0] + len(places)))
-    columns: Any = slice(places[0], places[0] + len(places)) if side_by_side else places  # a slice copies nothing
-    samples, filled = recording.outputs[:, columns], recording.last_outputs[:, columns]
-    _warn_of_long_steps(observer, along)
-    known = _known(along, believed)
-    given = named_start(start, form.coordinates)
-    initial = state_at_start(
-        observer,
-        dict(zip(form.measured, samples[0].tolist(), strict=True)),
-        given,
-        zip(form.parameters, known[0].tolist(), strict=True),
-    )
+    adjacent = places == list(range(places[0], places[0] + len(places)))
+    columns: Any = slice(places[0], places[0] + len(places)) if adjacent else places  # a slice copies nothing
+    samples = recording.outputs[:, columns]
+    _warn_of_long_steps(observer, grid)
+    known = known_signals(believed, recording.view, grid.instants)
+    named = named_start(start, form.coordinates)
+    outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
+    initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
     arriving = np.empty((0, len(form.measured)))
     if observer.equations.update:
-        arriving = along.arriving(samples)
-        arriving[0, [name not in given for name in form.measured]] = np.nan  # one that is the start corrects nothing
-    table = Table(along.steps, along.held(filled=True)[..., columns], known, arriving)
-    language = choose(language, len(along.steps))
+        arriving = grid.arriving(samples)
+        arriving[0, [name not in named for name in form.measured]] = np.nan  # the start already uses these samples
+    table = Table(grid.steps, grid.held(filled=True)[..., columns], known, arriving)
+    language = choose(language, len(grid.steps))
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
-    states = along.at_samples(trace.states)
-    at_samples = known if len(known) == 1 else known[EACH * index]
+    states = grid.at_samples(trace.states)
+    at_samples = known if len(known) == 1 else known[EACH * grid.index]
+    filled = recording.last_outputs[:, columns]
     estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed, language)
-    diverged_at = None if trace.diverged is None else float(along.grid[trace.diverged])
-    resets = along.grid[trace.resets.nonzero()[0]]
-    return Run(recording, observer, estimate, states, diverged_at, along.hold, resets, unobservable)
+    diverged_at = None if trace.diverged is None else float(grid.times[trace.diverged])
+    resets = grid.times[trace.resets.nonzero()[0]]
+    return Run(recording, observer, estimate, states, diverged_at, grid.hold, resets, unobservable)
 
 
 def _estimates(
     observer: Observer, states: Array, samples: Array, known: Array, time: Array, language: Language
 ) -> tuple[Array, Indices]:
-    """Estimates at the samples, NaN for the unobservable coordinates, and which condition hides them at each sample.
+    """Estimates, NaN for unobservable coordinates, and the number of the condition that hides them, at each sample.
 
     They follow from state, outputs and parameters at the samples, and the seconds since the first one.
     """
-    form, state, wide = observer.form, observer.equations.state, len(observer.estimate)
-    seen = np.zeros(len(time), dtype=int)
+    form, state, width = observer.form, observer.equations.state, len(observer.estimate)
+    which = np.zeros(len(time), dtype=int)
     first = state.index(observer.estimate[0]) if observer.estimate[0] in state else 0
-    if not observer.unobservable and observer.estimate == state[first : first + wide]:
-        return states[:, first : first + wide], seen
+    if not observer.unobservable and observer.estimate == state[first : first + width]:
+        return states[:, first : first + width], which
     tables, numbers = [states, samples, time[:, None]], [gain.value for gain in observer.gains]
     if len(known) > 1:
         tables.append(known)
     else:
         numbers += known[0].tolist()
-    read, begun = _reader(observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language)
-    if begun:
-        (row,) = read([table[:1] for table in tables], np.array([*numbers, *np.zeros(begun)]))
+    evaluate, innovations = _evaluator(
+        observer.equations, form, observer.estimate, observer.unobservable, len(known) > 1, language
+    )
+    if innovations:  # the first innovations are constants, and follow from the estimate at the first sample
+        (row,) = evaluate([table[:1] for table in tables], np.array([*numbers, *np.zeros(innovations)]))
         numbers += (samples[0] - row[[form.coordinates.index(symbol) for symbol in form.x1]]).tolist()
-    found = read(tables, np.array(numbers))
-    estimate = found[:, :wide]
+    found = evaluate(tables, np.array(numbers))
+    estimate = found[:, :width]
     if observer.unobservable:
-        seen = found[:, wide].astype(int)
-        for symbol in form.x2:
-            estimate[seen != 0, form.coordinates.index(symbol)] = np.nan
-    return estimate, seen
+        which = found[:, width].astype(int)
+        estimate[np.ix_(which != 0, [form.coordinates.index(symbol) for symbol in form.x2])] = np.nan
+    return estimate, which
 
 
 @lru_cache(maxsize=512)
-def _reader(
+def _evaluator(
     equations: Equations,
     form: PartitionedSystem,
     estimate: Expressions,
@@ -221,66 +225,50 @@ def _reader(
     varying: bool,
     language: Language,
 ) -> tuple[Rows, int]:
-    """What reads the estimate, and which condition hides it, off state, outputs, elapsed time and varying parameters.
+    """Function of state, outputs, elapsed time and varying parameters for the estimate and the condition's number.
 
-    Its constants are the gains, the other parameters and so many first innovations, where they matter.
+    Its constants are the gains, the other parameters, and as many first innovations as are returned with it.
     """
     tables = (equations.state, form.x1, (elapsed,), *([form.parameters] if varying else []))
     which = sp.Piecewise(*((k, where.condition) for k, where in enumerate(unobservable, 1)), (0, True))
-    begun = tuple(e for e in first_innovation(form) if which.has(*first_innovation(form)))
-    constants = (*equations.gains, *(() if varying else form.parameters), *begun)
-    return by_row(tables, constants, (*estimate, *([which] if unobservable else [])), language), len(begun)
+    first = tuple(first_innovation(form)) if which.has(*first_innovation(form)) else ()
+    constants = (*equations.gains, *(() if varying else form.parameters), *first)
+    return by_row(tables, constants, (*estimate, *([which] if unobservable else [])), language), len(first)
 
 
-def _warn_of_long_steps(observer: Observer, along: TimeGrid) -> None:
-    """Tell before the run, from gains and times alone, when a step will no longer resolve the observer."""
+def _warn_of_long_steps(observer: Observer, grid: TimeGrid) -> None:
+    """Warn before the run, from gains and times alone, when a step will no longer resolve the observer."""
     if observer.fastest is None:
         return
-    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(along.elapsed[1:])
-    late = np.flatnonzero(rate * along.steps >= LARGEST_STEP_RATE)
+    since = grid.times - grid.times[0]
+    (rate,) = vectorised((elapsed,), [observer.fastest.rate], observer.gain_values)(since[1:])
+    late = np.flatnonzero(rate * grid.steps >= LARGEST_STEP_RATE)
     if len(late):
         k = late[0]
-        told = TOO_LONG.format(
-            time=f"{along.elapsed[k]:.3g}",
+        message = TOO_LONG.format(
+            time=f"{since[k]:.3g}",
             name=observer.name,
             rate=f"{rate[k]:.4g}",
-            step=f"{along.steps[k]:.3g}",
+            step=f"{grid.steps[k]:.3g}",
             limit=f"{LARGEST_STEP_RATE:g}",
             remedy=observer.fastest.remedy,
             shorter=f"{LARGEST_STEP_RATE / rate.max():.2g}",
         )
-        warn(StepTooLong(told))
+        warn(StepTooLong(message))
 
 
-def _refuse_misfits(along: TimeGrid, observer: Observer, believed: Motion) -> None:
-    form, recording = observer.form, along.recording
-    view = recording.view
-    if form.view is None or not form.view.fits(view):
-        raise DoesNotFit(
-            f"the {observer.name} observer was made for the {form.view.name if form.view else 'no'} surface "
-            f"{dict(form.values)}, but the recording was seen on the {view.name} {dict(view.values)}; derive the "
-            "observer for the recording's surface"
-        )
-    missing = [name for name in form.measured if name not in recording.names]
-    if missing:
-        raise DoesNotFit(
-            f"the observer measures {', '.join(form.measured)}, but the recording has only "
-            f"{', '.join(recording.names)}; measure less: system.measure({', '.join(map(repr, recording.names))})"
-        )
+def _require_fit(grid: TimeGrid, observer: Observer, believed: Motion) -> None:
+    """Raise DoesNotFit unless an observer can follow a recording with the motion that it believes in."""
+    form, recording = observer.form, grid.recording
+    require_match(form, recording, believed)
     lost = [n for n in form.measured if math.isnan(recording.outputs[0, recording.names.index(n)])]
     if lost:
         raise DoesNotFit(
             f"the first sample of {', '.join(lost)} was lost, but the {observer.name} observer starts from it; begin "
             "where all measured outputs are seen: recording.between(begin, end)"
         )
-    if along.longest_hold < math.inf:
+    if grid.longest_hold < math.inf:
         raise DoesNotFit(f"the {observer.name} observer needs its outputs at all times; leave longest_hold out")
-    expected = (*believed.parameters, *view.parameters)
-    if form.parameters != expected:
-        raise DoesNotFit(
-            f"the observer was derived for a motion with {', '.join(map(str, form.parameters))}, but the motion that "
-            f"it is to believe has {', '.join(map(str, expected))}; use the same kind of motion for both"
-        )
     if observer.constant_motion and believed.signal is not None and not believed.signal.constant:
         raise DoesNotFit(
             f"the {observer.name} observer needs a motion with constant coefficients, but the one that it is to "
@@ -288,7 +276,29 @@ def _refuse_misfits(along: TimeGrid, observer: Observer, believed: Motion) -> No
         )
 
 
-def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates: Symbols) -> dict[str, float]:
+def require_match(form: PartitionedSystem, recording: Recording, motion: Motion) -> None:
+    """Raise DoesNotFit unless a form has the recording's view, its outputs, and the parameters of a motion."""
+    view = recording.view
+    if form.view is None or not form.view.fits(view):
+        raise DoesNotFit(
+            f"the system was made for {f'the {form.view.name} surface' if form.view else 'no view'} "
+            f"{dict(form.values)}, but the recording was seen on the {view.name} {dict(view.values)}; use the same view"
+        )
+    missing = [name for name in form.measured if name not in recording.names]
+    if missing:
+        raise DoesNotFit(
+            f"the system measures {', '.join(form.measured)}, but the recording has only "
+            f"{', '.join(recording.names)}; measure less: system.measure({', '.join(map(repr, recording.names))})"
+        )
+    expected = (*motion.parameters, *view.parameters)
+    if form.parameters != expected:
+        raise DoesNotFit(
+            f"the system was derived for a motion with {', '.join(map(str, form.parameters)) or 'numbers only'}, the "
+            f"given one has {', '.join(map(str, expected)) or 'numbers only'}; use the same kind of motion for both"
+        )
+
+
+def named_start(start: Start, coordinates: Symbols) -> dict[str, float]:
     """Estimates at the start by the names of their coordinates."""
     if start is None:
         return {}
@@ -299,12 +309,3 @@ def named_start(start: Mapping[str, float] | Sequence[float] | None, coordinates
     if len(start) != len(names):
         raise ValueError(f"the start has {len(start)} values; expected {len(names)}: {', '.join(names)}")
     return dict(zip(names, map(float, start), strict=True))
-
-
-def _known(along: TimeGrid, believed: Motion) -> Array:
-    """Parameters of motion and view at the instants of the steps."""
-    rows, view = believed.constants, along.recording.view
-    if rows is None:
-        rows = believed.known(along.instants)
-    shape = [view.values[symbol] for symbol in view.parameters]
-    return np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))]) if shape else rows

@@ -1,4 +1,4 @@
-"""The table of known signals: what an observer may know at the instants of its steps."""
+"""Integration steps along a recording, and the known signals at the instants of every step."""
 
 from __future__ import annotations
 
@@ -12,27 +12,29 @@ import numpy as np
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import STEP_ROUNDING, by_step, instants, step_grid
 from percept_obs.recording import Recording
+from percept_obs.system.motion import Motion
+from percept_obs.system.view import View
 
 Hold = Literal["zero", "first", "exact"]
 
 
 @dataclass(frozen=True, eq=False)
 class TimeGrid:
-    """A recording, laid out in steps for an observer that follows it.
+    """Integration steps along a recording.
 
     Parameters
     ----------
     recording : Recording
-    grid, index : arrays of shapes (N + 1,) and (K,)
-        Ends of the steps in seconds, and where the samples stand among them, as from `step_grid`.
+    times, index : arrays of shapes (N + 1,) and (K,)
+        Ends of the steps in seconds, and the positions of the samples among them, as from `step_grid`.
     hold : "zero", "first" or "exact"
-        What is taken for the outputs between samples.
+        Signal that stands for the outputs between samples; see `track`.
     longest_hold : float
         Seconds after a sample from which on it is not held.
     """
 
     recording: Recording
-    grid: Array
+    times: Array
     index: Indices
     hold: Hold
     longest_hold: float
@@ -40,31 +42,25 @@ class TimeGrid:
     @cached_property
     def steps(self) -> Array:
         """Lengths of the steps in seconds, shape (N,)."""
-        return self.recording.intervals if self._a_step_a_sample else np.diff(self.grid)
+        return self.recording.intervals if self.one_step_a_sample else np.diff(self.times)
 
-    @cached_property
-    def elapsed(self) -> Array:
-        """Seconds from the first sample to the ends of the steps, shape (N + 1,)."""
-        return self.recording.elapsed if self._a_step_a_sample else self.grid - self.grid[0]
+    @property
+    def one_step_a_sample(self) -> bool:
+        """True if each step leads from a sample to the next."""
+        return len(self.times) == len(self.recording.time)
 
     @cached_property
     def instants(self) -> Array:
-        """The times at which the steps look at known signals, shape (N EACH + 1,)."""
-        return instants(self.grid)
+        """Times at which the steps need known signals, shape (N EACH + 1,)."""
+        return instants(self.times)
 
     def at_samples(self, rows: Array) -> Array:
-        """Those of rows at the steps' ends, shape (N + 1, ...), that stand at the samples, shape (K, ...)."""
-        return rows if self._a_step_a_sample else rows[self.index]
-
-    @property
-    def _a_step_a_sample(self) -> bool:
-        return len(self.grid) == len(self.recording.time)
+        """Rows at the samples, shape (K, ...), of those at the steps' ends, shape (N + 1, ...)."""
+        return rows if self.one_step_a_sample else rows[self.index]
 
     def arriving(self, samples: Array) -> Array:
-        """Samples of shape (K, m) at the steps' ends at which they arrive, NaN at the others, shape (N + 1, m)."""
-        if self._a_step_a_sample:
-            return samples.copy()
-        arriving = np.full((len(self.grid), samples.shape[1]), np.nan)
+        """Samples of shape (K, m) at the steps' ends, shape (N + 1, m); NaN where none arrives."""
+        arriving = np.full((len(self.times), samples.shape[1]), np.nan)
         arriving[self.index] = samples
         return arriving
 
@@ -74,12 +70,12 @@ class TimeGrid:
         Parameters
         ----------
         filled : bool
-            Whether lost samples are bridged by their neighbours; otherwise what is not seen is NaN.
+            True to bridge lost samples by their neighbours; otherwise they are NaN.
         """
         recording, time = self.recording, self.recording.time
         outputs = _bridged(recording, self.hold) if filled else recording.outputs
-        if self.hold == "zero" and self._a_step_a_sample and self.longest_hold == math.inf:
-            return outputs[:-1, None]
+        if self.hold == "zero" and self.one_step_a_sample and self.longest_hold == math.inf:
+            return outputs[:-1, None]  # a view: nothing is copied
         interval = np.repeat(np.arange(len(time) - 1), np.diff(self.index))
         before = outputs[interval][:, None]
         if self.hold == "zero":
@@ -94,24 +90,31 @@ class TimeGrid:
             held = by_step(recording.signal(self.instants))
             held = np.where(np.isnan(before), np.nan, held)
         if self.longest_hold < math.inf:
-            since = self.grid[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
+            since = self.times[:-1] - time[interval] if self.hold != "first" else np.diff(time)[interval]
             held[since >= self.longest_hold] = np.nan
         return np.asarray(held)
 
 
 def time_grid(recording: Recording, step: float, hold: Hold, longest_hold: float) -> TimeGrid:
-    """A recording in steps no longer than given, one from each sample to the next where that is short enough."""
+    """Divide a recording into steps no longer than given, one from each sample to the next where that is short."""
     if recording.longest_interval <= step * (1 + STEP_ROUNDING):
         return TimeGrid(recording, recording.time, recording.places, hold, longest_hold)
     return TimeGrid(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 
+def known_signals(motion: Motion, view: View, times: Array) -> Array:
+    """Parameters of motion and view at some times, shape (T, p), or (1, p) if all are constant."""
+    rows = motion.known(times) if motion.constants is None else motion.constants
+    shape = [view.values[symbol] for symbol in view.parameters]
+    return np.hstack([rows, np.tile(np.array(shape, dtype=float), (len(rows), 1))]) if shape else rows
+
+
 def _bridged(recording: Recording, hold: Hold) -> Array:
-    """The outputs with lost samples replaced: by the last one, or on the line between their neighbours."""
+    """Outputs with lost samples replaced by the last one, or on the line between their neighbours."""
     if hold != "first":
         return recording.last_outputs
     columns = []
     for column in recording.outputs.T:
-        there = np.isfinite(column)
-        columns.append(np.interp(recording.time, recording.time[there], column[there]) if there.any() else column)
+        seen = np.isfinite(column)
+        columns.append(np.interp(recording.time, recording.time[seen], column[seen]) if seen.any() else column)
     return np.stack(columns, axis=-1)

@@ -1,4 +1,4 @@
-"""What the samples themselves tell at the end of a run, by least squares: it needs neither a truth nor the observer."""
+"""Information in the samples at the end of a run, by least squares: it needs neither a truth nor the observer."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
+from percept_obs.tracking.grid import known_signals
 
 ENOUGH = 0.02
-"""Relative standard deviation at which no more samples are asked: a longer window only adds what the motion misses."""
+"""Relative standard deviation at which a window is long enough: a longer one only adds errors of the motion."""
 
 NOTHING = 1.0
 """Relative standard deviation from which on samples tell nothing."""
@@ -29,7 +30,7 @@ SPLIT = 500
 """Steps at most into which a window is divided; between their ends the outputs are interpolated."""
 
 LONGER = 2
-"""How often the window that is enough is doubled once more, to see whether the known motion still explains it."""
+"""Windows twice as long each, by which the known motion is tested once one is long enough."""
 
 SURELY = 3.5
 """Standard deviations by which an autocorrelation must differ from that of white noise to be one."""
@@ -40,22 +41,22 @@ FINEST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """What the samples of the last seconds tell of what an observer estimates.
+    """Least-squares estimate from the samples of the last seconds.
 
     Parameters
     ----------
     estimate : array of shape (n,)
         Least-squares coordinates at the last sample.
     deviation : float
-        Relative standard deviation of what is judged, as the noise leaves it; infinite where samples tell nothing.
+        Relative standard deviation of what is judged, from the noise; infinite where samples tell nothing.
     window : float
-        How many seconds at the end were needed for that.
+        Length of the samples used, in seconds.
     unexcited : float
-        Over how many seconds at the end the samples tell nothing; 0 where every window of them tells something.
+        Seconds at the end in which the samples tell nothing; 0 if every window tells something.
     noise : array of shape (m,)
-        Standard deviation of the measured outputs, as given or as large as what is left of them.
+        Standard deviation of the measured outputs, as given or that of the residuals.
     longer : tuple of Information
-        What longer windows tell, which agrees if the motion is as it is known.
+        Estimates from longer windows, which agree if the motion is as it is known.
     """
 
     estimate: Array
@@ -66,40 +67,41 @@ class Information:
     longer: tuple[Information, ...] = ()
 
     def disagreement(self, view: View, known: Array) -> float:
-        """How far longer windows are from it, relatively, beyond what the noise of both explains, or how vague."""
-        return max((self._beyond(other, view, known) for other in self.longer), default=0.0)
-
-    def _beyond(self, other: Information, view: View, known: Array) -> float:
-        if not other.deviation < NOTHING:
-            return math.inf
-        apart = float(view.relative_error(self.estimate[None], other.estimate[None], known)[0])
-        return max(apart - 2 * (self.deviation + other.deviation), 2 * (other.deviation - self.deviation))
+        """Relative distance to the estimates from longer windows beyond what noise explains, or their vagueness."""
+        found = 0.0
+        for other in self.longer:
+            if not other.deviation < NOTHING:
+                return math.inf
+            apart = float(view.relative_error(self.estimate[None], other.estimate[None], known)[0])
+            noise = 2 * (self.deviation + other.deviation)
+            found = max(found, apart - noise, 2 * (other.deviation - self.deviation))
+        return found
 
 
 ROUNDING = 1e-7
-"""Part of a column that differences of nearly equal numbers leave undecided."""
+"""Share of a column's norm below which differences of nearly equal numbers are rounding."""
 
 SMALL = 1e-4
-"""Relative change by which a slope is found."""
+"""Relative change of a coordinate for a difference quotient."""
 
 FAR = 1e3
-"""Where outputs are taken to be that are beyond all bounds."""
+"""Value of outputs that have left all bounds."""
 
 Fit = Callable[[int, list[Array]], tuple[Array, float, Array]]
-"""Least squares on the samples from one on, begun at the best of some coordinates: coordinates at the end, relative
-deviation, noise of each output."""
+"""Least squares on the samples from one on, from the best of some initial guesses; returns coordinates at the end,
+their relative deviation, and the noise of each output."""
 
 
-def gathered(fit: Fit, elapsed: Array, guess: Array) -> Information:
-    """Information from as many samples at the end as are needed, each window twice as long as the one before.
+def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
+    """Information from the shortest window at the end that suffices, each one tried twice as long as the last.
 
     Parameters
     ----------
-    fit : function of the number of a sample and of coordinates to begin at
+    fit : function of the index of a sample and of initial guesses
     elapsed : array of shape (K,)
         Seconds since the first sample.
     guess : array of shape (n,)
-        Coordinates at the last sample to begin at, such as an observer's; NaN where there are none.
+        Initial coordinates at the last sample, such as an observer's; NaN where there are none.
     """
     guesses = [guess] if np.isfinite(guess).all() else []
     count, length, unexcited = len(elapsed), min(FEWEST, len(elapsed)), 0.0
@@ -122,16 +124,17 @@ def gathered(fit: Fit, elapsed: Array, guess: Array) -> Information:
 def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     """Least squares on the outputs that a form measures, with the recording's known motion.
 
-    It finds the coordinates at the end that explain the samples best when the system's own equations run back from
-    there, each output weighted by its noise.  It begins at a guess, or at hidden coordinates of 0 if these explain the
-    samples better.
+    It finds the coordinates at the end that explain the samples best when the system's equations run backwards, each
+    output weighted by its noise, from a guess or from hidden coordinates of 0, whichever explains the samples better.
     """
+    from scipy.optimize import least_squares
+
     plant = Equations((*form.x1, *form.x2), tuple(form.rate), (), form.parameters)
     columns = [recording.names.index(name) for name in form.measured]
     order = [plant.state.index(symbol) for symbol in form.coordinates]
     inverse = np.argsort(order)
     size, measured, view = len(plant.state), len(form.x1), recording.view
-    given = (recording.noise_variance or 0.0) if isinstance(view, ImagingSurface) else 0.0
+    known_noise = (recording.noise_variance or 0.0) if isinstance(view, ImagingSurface) else 0.0
     at_end = recording.motion.known(recording.time[-1:])
 
     def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array]:
@@ -145,31 +148,25 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         plain[:measured] = [column[np.isfinite(column)][-1] for column in samples.T]
         begins = [plain, *(guess[inverse] for guess in guesses)]
         start = min(begins, key=lambda x: float(((samples - backwards(x))[seen] ** 2).sum()))
-        finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(given)) or FINEST
+        finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or FINEST
         noise = np.ones(measured)
         for _ in range(2):
-            start, left, jacobian = _least_squares(backwards, samples, noise, start)
-            of_each = np.sqrt((left**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
-            if _lengthened(left / np.maximum(of_each, finest)) > 1:  # it drifts: no reason to believe one output more
-                of_each[:] = math.sqrt((of_each**2).mean())
-            before, noise = noise, np.maximum(of_each, finest)
-        weighted = jacobian * (before / noise)[np.nonzero(seen)[1]][:, None]
+
+            def residuals(x: Array, noise: Array = noise) -> Array:
+                return np.asarray(((backwards(x) - samples) / noise)[seen])
+
+            solution = least_squares(residuals, start, x_scale="jac", max_nfev=50)
+            start, rest = solution.x, np.where(seen, samples - backwards(solution.x), 0.0)
+            spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
+            if _inflation(rest / np.maximum(spread, finest)) > 1:  # residuals drift: trust no output more than others
+                spread[:] = math.sqrt((spread**2).mean())
+            before, noise = noise, np.maximum(spread, finest)
+        weighted = solution.jac * (before / noise)[np.nonzero(seen)[1]][:, None]
         deviations = np.array([_deviation(weighted, k) for k in range(size)])[order]
-        deviations *= _lengthened(left / noise) if (of_each > finest).any() else 1.0
+        deviations *= _inflation(rest / noise) if (spread > finest).any() else 1.0
         return start[order], relative_deviation(view, start[order], deviations, at_end), noise
 
     return fit
-
-
-def _least_squares(
-    backwards: Callable[[Array], Array], samples: Array, noise: Array, start: Array
-) -> tuple[Array, Array, Array]:
-    """What explains the samples best, what is left of them (0 for lost ones), and the weighted Jacobian."""
-    from scipy.optimize import least_squares
-
-    seen = np.isfinite(samples)
-    found = least_squares(lambda x: ((backwards(x) - samples) / noise)[seen], start, x_scale="jac", max_nfev=50)
-    return found.x, np.where(seen, samples - backwards(found.x), 0.0), found.jac
 
 
 def _backwards(plant: Equations, recording: Recording, first: int, measured: int) -> Callable[[Array], Array]:
@@ -180,9 +177,7 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
     span = time[-1] - time[0]
     nodes = np.linspace(time[-1], time[0], 1 + max(3, math.ceil(span / max(LONGEST_STEP, span / SPLIT))))
     steps = np.diff(nodes)
-    rows = recording.motion.known(instants(nodes))
-    shape = [recording.view.values[symbol] for symbol in recording.view.parameters]
-    known = np.hstack([rows, np.broadcast_to(np.array(shape), (len(rows), len(shape)))])
+    known = known_signals(recording.motion, recording.view, instants(nodes))
     table = Table(steps, np.empty((len(steps), EACH + 1, 0)), known, np.empty((len(nodes), 0)))
 
     def outputs(x: Array) -> Array:
@@ -194,13 +189,14 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
     return outputs
 
 
-def _lengthened(left: Array) -> float:
-    """By how much a standard deviation grows where what is left of the samples drifts: each tells little anew.
+def _inflation(residuals: Array) -> float:
+    """Factor by which a standard deviation grows where residuals are correlated.
 
-    With the correlation r of neighbours, N samples count as N (1 - r)/(1 + r), as for a process of first order.
+    With the correlation r of neighbours the effective sample size is N (1 - r)/(1 + r), as for a process of first
+    order.
     """
-    pairs = np.count_nonzero(left[1:] * left[:-1])
-    r = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), np.finfo(float).tiny))
+    products = residuals[1:] * residuals[:-1]
+    pairs, r = np.count_nonzero(products), float(products.sum() / max((residuals**2).sum(), np.finfo(float).tiny))
     return math.sqrt((1 + r) / (1 - r)) if r * math.sqrt(pairs) > SURELY else 1.0
 
 
@@ -213,7 +209,7 @@ def _deviation(jacobian: Array, k: int) -> float:
 
 
 def relative_deviation(view: View, estimate: Array, deviations: Array, known: Array) -> float:
-    """What standard deviations of the coordinates are, relative to what is judged, to first order."""
+    """Relative standard deviation of what is judged, from those of the coordinates, to first order."""
     total = 0.0
     for k, deviation in enumerate(deviations):
         step = np.zeros(len(estimate))

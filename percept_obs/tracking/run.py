@@ -1,4 +1,4 @@
-"""A run: what an observer made of a recording, its errors, and in words how it went."""
+"""Run of an observer on a recording: estimates, errors, consistency, and its verdict."""
 
 from __future__ import annotations
 
@@ -10,17 +10,21 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
 from percept_obs.system.view import View
 from percept_obs.tracking.grid import Hold
-from percept_obs.tracking.information import NOTHING, Fit, Information, gathered, one_point, relative_deviation
+from percept_obs.tracking.information import (
+    NOTHING,
+    Fit,
+    Information,
+    information_at_end,
+    one_point,
+    relative_deviation,
+)
 from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
 from percept_obs.validation import checked
-
-Array = NDArray[np.float64]
 
 
 @checked
@@ -37,13 +41,13 @@ class Run:
     state : array of shape (K, s)
         The observer's state.
     diverged_at : float or None
-        When the state stopped being finite, by the recording's clock.
+        Time at which the state stopped being finite, by the recording's clock.
     hold : "zero", "first" or "exact"
-        How samples were held between them.
+        Hold of the samples, as in `track`.
     resets : array
         Times by the recording's clock at which the estimate was reset.
     unobservable : array of shape (K,) of int
-        Which of `Observer.unobservable` hides the hidden coordinates, counted from 1; 0 where they have an estimate.
+        Number of the `Observer.unobservable` that hides the hidden coordinates, from 1; 0 where they are estimated.
 
     Examples
     --------
@@ -62,7 +66,7 @@ class Run:
     diverged_at: float | None
     hold: Hold
     resets: Array
-    unobservable: NDArray[np.int_]
+    unobservable: Indices
 
     @property
     def time(self) -> Array:
@@ -76,7 +80,7 @@ class Run:
 
     @property
     def view(self) -> View:
-        """What the estimated coordinates are coordinates of."""
+        """View of the estimated coordinates."""
         return self.recording.view
 
     @property
@@ -127,10 +131,10 @@ class Run:
 
     @cached_property
     def nis(self) -> Array:
-        """Normalised innovation squared (NIS): that before the update, over its claimed variance, shape (K,).
+        """Normalised innovation squared (NIS): before the update, over its claimed variance, shape (K,).
 
         Its mean is the number of measured outputs if the claims are right; NaN where a sample was lost or is the
-        start itself, or where P equals R to rounding.  For what is raised see `whitened`.
+        start itself, or where P equals R to rounding.  Raises as `whitened` does.
         """
         return np.asarray((self.whitened**2).sum(axis=1))
 
@@ -146,7 +150,7 @@ class Run:
         ValueError
             If the observer claims no covariance or has no measurement update.
         """
-        values, vectors = self._left
+        values, vectors = self._residual_covariance
         across = np.swapaxes(vectors, 1, 2) @ self.innovation[:, :, None]
         return np.asarray((vectors @ (across / np.sqrt(values)[:, :, None]))[:, :, 0])
 
@@ -154,15 +158,15 @@ class Run:
     def log_likelihood(self) -> Array:
         """Logarithm of the probability density that the observer gives each innovation, shape (K,); NaN as `nis`.
 
-        For what is raised see `whitened`.
+        Raises as `whitened` does.
         """
-        values, _ = self._left
+        values, _ = self._residual_covariance
         log_det = (2 * math.log(self._noise_variance) - np.log(values)).sum(axis=1)  # of S = R (R - P)^-1 R
         return np.asarray(-(self.nis + log_det + values.shape[1] * math.log(2 * math.pi)) / 2)
 
     @cached_property
-    def _left(self) -> tuple[Array, Array]:
-        """Eigenvalues, NaN unless positive, and eigenvectors of the covariance R - P that an update leaves."""
+    def _residual_covariance(self) -> tuple[Array, Array]:
+        """Eigenvalues, NaN unless positive, and eigenvectors of the residuals' covariance R - P after an update."""
         measured = self._columns(self.observer.form.measured)
         claimed = self.covariance[:, measured][:, :, measured]
         left = self._noise_variance * np.eye(len(measured)) - claimed
@@ -178,14 +182,14 @@ class Run:
         return variance
 
     def nees(self, *names: str) -> Array:
-        """Normalised estimation error squared (NEES): that over its claimed variance, shape (K,).
+        """Normalised estimation error squared (NEES): the squared error over its claimed variance, shape (K,).
 
         Its mean is the number of coordinates if the claims are right; its median is 0.45 for one.
 
         Parameters
         ----------
         *names : str
-            Coordinates that it is taken of; all hidden ones when left out.
+            Coordinates; all hidden ones when left out.
 
         Raises
         ------
@@ -219,7 +223,7 @@ class Run:
 
     @cached_property
     def relative_error(self) -> Array:
-        """What the verdict judges, shape (K,): the relative error of the distance, or of all that the view seeks.
+        """Relative error of the distance, or of all that the view seeks, shape (K,); the verdict judges it.
 
         Infinite where the estimate is infinitely far away or behind the camera, NaN where there is none.
         """
@@ -227,24 +231,29 @@ class Run:
 
     @cached_property
     def information(self) -> Information:
-        """What the samples tell at the end, whatever the observer makes of them; it needs no truth."""
-        return gathered(self._least_squares, self.elapsed, self.estimate[-1])
+        """Information in the samples at the end, independent of observer and truth."""
+        return information_at_end(self._least_squares, self.elapsed, self.estimate[-1])
 
     @property
     def _least_squares(self) -> Fit:
         return one_point(self.observer.form, self.recording)
 
     def trust(self, tolerance: float = TOLERANCE) -> Trust:
-        """Whether the last estimate can be trusted, by what can be known without a truth.
+        """Judge the last estimate without a truth.
 
-        It can where the samples by themselves tell what is sought to within the tolerance, with two standard
-        deviations, and the estimate is no farther than both together from what they tell.  A wrong scale of the known
-        motion leaves no trace in them.
+        It is trusted where the samples by themselves tell what is sought to within the tolerance, with two standard
+        deviations, and the estimate is no farther than both together from their least-squares estimate.  A wrong scale
+        of the known motion leaves no trace in the samples.
 
         Parameters
         ----------
         tolerance : float
             Relative, as for `outcome`.
+
+        Raises
+        ------
+        ValueError
+            If the tolerance is not positive.
 
         Examples
         --------
@@ -277,30 +286,30 @@ class Run:
 
     @property
     def remedy(self) -> str:
-        """What to do about it if it diverged."""
+        """Advice if it diverged."""
         return REMEDY
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:
-        """First and last time in seconds of every stretch where the hidden coordinates have no estimate.
+        """First and last time in seconds of every interval in which the hidden coordinates have no estimate.
 
         Their estimates are NaN there, although the observer runs on; `reasons` says why.
         """
-        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in self._stretches]
+        return [(float(self.time[k]), float(self.time[end - 1])) for k, end in self._gaps]
 
     @property
     def reasons(self) -> list[str]:
-        """Why there is no estimate in each of the `unobservable_intervals`."""
-        return [self.observer.unobservable[self.unobservable[k] - 1].reason for k, _ in self._stretches]
+        """Reason for each of the `unobservable_intervals`."""
+        return [self.observer.unobservable[self.unobservable[k] - 1].reason for k, _ in self._gaps]
 
     @cached_property
-    def _stretches(self) -> list[tuple[int, int]]:
-        """First sample of every such stretch, and the first one after it."""
+    def _gaps(self) -> list[tuple[int, int]]:
+        """First sample of every unobservable interval, and the first one after it."""
         edges = np.flatnonzero(np.diff(self.unobservable, prepend=0, append=0))
         return [(int(k), int(end)) for k, end in pairwise(edges) if self.unobservable[k]]
 
     def outcome(self, tolerance: float = TOLERANCE, *names: str) -> Outcome:
-        """What became of the error.
+        """Outcome of the run: converged or not, and when.
 
         Parameters
         ----------
@@ -323,18 +332,18 @@ class Run:
         return found if self.diverged_at is None else replace(found, kind="diverged", settled=math.inf)
 
     def settling_time(self, tolerance: float = TOLERANCE, *names: str) -> float:
-        """When the error entered the tolerance for good: seconds since the first sample, or infinite; see `outcome`."""
+        """Time at which the error entered the tolerance for good, in seconds since the first sample; see `outcome`."""
         return self.outcome(tolerance, *names).settled
 
     def rms(self, begin: float = -math.inf, end: float = math.inf, *names: str) -> float:
         """Root mean square of the error between two times of its clock, over the hidden coordinates or those named."""
-        part = (self.time >= begin) & (self.time <= end) & self._known
-        if not part.any():
+        inside = (self.time >= begin) & (self.time <= end) & self._known
+        if not inside.any():
             raise ValueError(f"no sample with a truth lies between {begin} and {end} s")
-        return float(np.sqrt(np.mean(self.error[part][:, self._columns(names)] ** 2)))
+        return float(np.sqrt(np.mean(self.error[inside][:, self._columns(names)] ** 2)))
 
     def verdict(self, tolerance: float = TOLERANCE, *names: str) -> str:
-        """What happened, in words; times count from the first sample.
+        """Verdict in words; times count from the first sample.
 
         An estimate has converged if its error stayed within the tolerance for at least the last tenth of the run.
 
@@ -351,29 +360,30 @@ class Run:
             said += "" if names else str(self.trust(tolerance))
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
-        return said + self._besides()
+        return said + self._resets_and_gaps()
 
-    def _besides(self) -> str:
-        """Resets, and when there was no estimate."""
+    def _resets_and_gaps(self) -> str:
+        """Text of resets and of intervals without an estimate."""
         said, begun = "", self.time[0]
         if len(self.resets):
             which = "reset once" if len(self.resets) == 1 else "reset often"
             said = VERDICTS[which].format(count=len(self.resets), time=number(self.resets[0] - begun))
         for reason in dict.fromkeys(self.reasons):
-            alike = [part for part, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
-            begin, end = (number(time - begun) for time in alike[0])
+            gaps = [gap for gap, why in zip(self.unobservable_intervals, self.reasons, strict=True) if why == reason]
+            begin, end = (number(time - begun) for time in gaps[0])
             which = "short gap" if begin == end else "gap"
             said += VERDICTS[which].format(begin=begin, end=end, reason=reason)
-            if len(alike) > 1:
-                said += VERDICTS["one more gap" if len(alike) == 2 else "more gaps"].format(count=len(alike) - 1)
+            if len(gaps) > 1:
+                said += VERDICTS["one more gap" if len(gaps) == 2 else "more gaps"].format(count=len(gaps) - 1)
         return said
 
     @property
-    def _known(self) -> NDArray[np.bool_]:
+    def _known(self) -> Flags:
         """Samples at which the truth is known."""
         return np.asarray(np.isfinite(self.truth).all(axis=1))
 
     def _columns(self, names: Sequence[str]) -> list[int]:
+        """Positions of named coordinates, of all hidden ones without names."""
         known = [symbol.name for symbol in self.observer.form.coordinates]
         unknown = [name for name in names if name not in known]
         if unknown:

@@ -1,4 +1,4 @@
-"""What is said of a run: one rule for when an estimate has converged, and the words for it."""
+"""Verdict on a run: one rule for when an estimate has converged, and its sentences."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from percept_obs.compile import Array
 from percept_obs.tracking.information import Information
 
 REMEDY = "choose smaller gains or shorter steps"
-"""What to do about a run that diverged."""
+"""Advice for a run that diverged."""
 
 TOLERANCE = 0.1
 """Relative error within which an estimate counts as right, unless another is asked for.
 
-Samples that are off by a hundredth of the focal length make good observers scatter by 2 to 4 %; a tenth is what they
-then hardly ever leave, and what an observer that is off by a fifth never enters.
+Noise of a hundredth of the focal length makes good observers scatter by 2 to 4 %: they hardly ever leave a tenth, and
+an observer that is off by a fifth never enters it.
 """
 
 SETTLED_PART = 0.1
-"""Part of a run, at its end, over which an estimate must have stayed within the tolerance to be called converged."""
+"""Share of a run, at its end, over which a converged estimate must have stayed within the tolerance."""
 
 FAR_OFF = 10.0
-"""Relative error beyond which no number is told."""
+"""Relative error beyond which no number is given."""
 
 VERDICTS = MappingProxyType(
     {
@@ -62,24 +62,24 @@ VERDICTS = MappingProxyType(
         "more gaps": ", and in {count} more gaps",
     }
 )
-"""What a verdict says, by what happened; live labs use the same words.  Times count from the first sample."""
+"""Sentences of verdicts by outcome, also of live labs.  Times count from the first sample."""
 
 
 CONTRADICTED = (
     "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so "
     "that the motion is not as it is known"
 )
-"""The same where samples contradict the motion; live labs, which know the truth, do not say it."""
+"""Sentence where samples contradict the motion; live labs, which know the truth, do not need it."""
 
 
 def for_the_page() -> dict[str, Any]:
-    """The same words and numbers for live labs."""
+    """Sentences and constants for live labs."""
     return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of an error.
+    """Outcome of a run, from its error over time.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ class Outcome:
 
     @property
     def converged(self) -> bool:
-        """Whether it stayed inside for at least the last tenth of the run."""
+        """True if the error stayed inside for at least the last tenth of the run."""
         return self.kind == "converged"
 
 
 @dataclass(frozen=True, eq=False)
 class Trust:
-    """What can be said of the last estimate without a truth; its text begins where a sentence is to go on.
+    """Trust in the last estimate without a truth; its text continues a sentence.
 
     Parameters
     ----------
@@ -113,13 +113,13 @@ class Trust:
         the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
         estimate is infinitely far away or behind the camera) or "no estimate".
     judged : str
-        What the estimate is of.
+        Name of the estimated quantity.
     length : float
-        Seconds that the run lasts.
+        Length of the run in seconds.
     information : Information, optional
-        What the samples tell.
+        Information in the samples.
     difference : float
-        How far the estimate is from that, relatively; NaN where they tell too little or contradict each other.
+        Relative distance of the estimate to it; NaN where samples tell too little or contradict each other.
     disagreement : float
         See `Information.disagreement`.
     claimed : float, optional
@@ -136,16 +136,15 @@ class Trust:
 
     @property
     def trusted(self) -> bool:
-        """Whether the estimate agrees with what the samples tell well enough."""
+        """True if the estimate agrees with the samples well enough."""
         return self.kind == "agrees"
 
     @property
     def sentence(self) -> str:
-        """What is known, in a sentence."""
+        """The text as a sentence of its own."""
         return f"{str(self).removeprefix('; ')}."
 
     def __str__(self) -> str:
-        """What is known, in words."""
         words = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
             return VERDICTS[self.kind]
@@ -160,7 +159,7 @@ class Trust:
 
 
 def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:
-    """What became of an error over time.
+    """Outcome of a run, from its error over time.
 
     Parameters
     ----------
@@ -171,7 +170,7 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
     tolerance : float
         Positive.
     length : float
-        Seconds that the run lasts.
+        Length of the run in seconds.
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance is {tolerance}; it must be positive")
@@ -185,19 +184,16 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
 
 
 def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str] = ()) -> str:
-    """The sentence that says it: of the relative error, or with names of coordinates of their absolute error."""
-    kind = "absolute" if names else "relative"
-    error, within = (
-        (number(found.final, 2), f"{tolerance:g}") if names else (percent(found.final), percent(tolerance, 6))
-    )
-    return VERDICTS[found.kind].format(
-        **{"error_of": VERDICTS[kind], "judged": judged, "error": error},
-        **{"tolerance": within, "time": number(found.settled)},
-    )
+    """Sentence of an outcome, of the relative error or, with names of coordinates, of their absolute error."""
+    kind, error, within = "relative", percent(found.final), percent(tolerance, 6)
+    if names:
+        kind, error, within = "absolute", number(found.final, 2), f"{tolerance:g}"
+    words = {"error_of": VERDICTS[kind], "judged": judged, "error": error, "tolerance": within}
+    return VERDICTS[found.kind].format(**words, time=number(found.settled))
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number for people: plain up to a million, and no zero with a sign.
+    """Format a number for people: plain up to a million, and no zero with a sign.
 
     Examples
     --------
@@ -212,5 +208,5 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def percent(share: float, digits: int = 3) -> str:
-    """A share in per cent, with an end to how far off one is told to be."""
+    """Format a share in per cent; beyond `FAR_OFF` no number is given."""
     return f"{number(100 * share, digits)} %" if share <= FAR_OFF else f"more than {100 * FAR_OFF:g} %"
