@@ -9,7 +9,7 @@ from test_checking_reading import CANARY, HOSTILE
 
 from percept_obs import PerspectiveSystem, affine, plane, rigid
 from percept_obs.checking.explaining import plain
-from percept_obs.checking.tokens import tokens
+from percept_obs.checking.reading import words_of
 from percept_obs.labs import derivation_desk
 from percept_obs.labs.desk.settings import LONGEST_LINE, SCHEMA
 from percept_obs.labs.desk.sheets import PARTS, sheet_of
@@ -152,7 +152,7 @@ def test_nothing_that_is_typed_is_run_or_becomes_a_part_of_the_page(text, tmp_pa
 
 
 def test_signs_of_the_page_s_own_language_are_written_as_text():
-    assert typed_markup(tokens("x < y1")) == "<mrow><mi>x</mi><mo>&lt;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
+    assert typed_markup(words_of("x < y1")) == "<mrow><mi>x</mi><mo>&lt;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
 
 
 @pytest.mark.parametrize(

@@ -1,21 +1,21 @@
-"""Whether two formulas say the same, decided in bounded time and without simplifying anything."""
+"""Decide in bounded time, without simplifying anything, whether two formulas are the same."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from fractions import Fraction
+from contextlib import suppress
 from functools import lru_cache
 from itertools import islice
+from math import prod
 from typing import Any
 
 import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
-from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
+from sympy.polys.fields import sfield
 
-from percept_obs.checking.points import PRIME, ModularPoint, NoValue, RealPoint
+from percept_obs.checking.points import KINKED, NoValue, Point, key
 
-POINTS, TRIALS = 3, 60
+POINTS, TRIALS, LARGEST = 12, 60, 2000
 MATRICES = (sp.MatrixBase, sp.MatrixExpr)
-KINKED = (sp.Abs, sp.sign, sp.Piecewise, sp.Max, sp.Min, sp.floor, sp.ceiling)
 
 
 def explicit(formula: sp.Basic) -> sp.Basic:
@@ -57,32 +57,29 @@ def _power(symbol: sp.Symbol) -> sp.Expr:
 
 
 def rational(formula: sp.Basic) -> bool:
-    """Whether a formula holds nothing but letters, fractions, sums, products and whole powers."""
+    """Return True for letters, fractions, sums, products and whole powers."""
     return all(
         node.is_Symbol or node.is_Rational or node.is_Add or node.is_Mul or (node.is_Pow and node.exp.is_Integer)
         for node in sp.preorder_traversal(formula)
     )
 
 
-def points(*formulas: sp.Basic) -> Iterator[ModularPoint]:
-    """Points modulo the prime at which all formulas have values; at most `TRIALS` are tried."""
+def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> Iterator[Point]:
+    """Yield random points at which all formulas have a value; `TRIALS` are tried."""
     for seed in range(TRIALS):
-        point = ModularPoint(seed)
-        try:
+        point = Point(seed, exact, opaque)
+        with suppress(NoValue):
             for formula in formulas:
                 point(formula)
-        except NoValue:
-            continue
-        yield point
+            yield point
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Whether two expressions are the same function of their letters; letters are matched by name.
+    """Return True if two expressions are the same function of their letters, which are matched by name.
 
-    Rational functions are compared at three points modulo a prime of 128 bits.  A "no" is certain.  A "yes" is wrong
-    with a probability below (d / 2^60)^3, with d the degree of the difference's numerator: below 2^-150 for d = 1000;
-    and a value of sixty digits must bear it out, so that no multiple of the prime passes for zero.  Roots, exponentials
-    and circular functions follow their rules modulo the prime as well; there several values bear each answer out.
+    Rational functions of moderate size are compared exactly, as quotients of polynomials.  Others are compared at
+    random points with sixty digits: a "no" is certain, and a "yes" means that all of `POINTS` values agree to forty.
+    Functions with kinks are only the same if their arguments are.
 
     Returns
     -------
@@ -91,73 +88,51 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
 
     Examples
     --------
-    >>> x = sp.Symbol("x")
-    >>> same((x + 1) ** 2, x**2 + 2 * x + 1), same(sp.sin(2 * x), 2 * sp.sin(x)), same(sp.sqrt(x**2), abs(x))
+    >>> x = sp.Symbol("x", real=True)
+    >>> same((x + 1) ** 2, x**2 + 2 * x + 1), same(sp.sin(2 * x), 2 * sp.sin(x)), same(x * sp.sign(x), abs(x))
     (True, False, True)
     """
     if one == other:
         return True
-    plain = rational(one) and rational(other)
-    count = POINTS if plain else 2 * POINTS
-    seen = [point(one) == point(other) for point in islice(points(one, other), count)]
-    if plain and not all(seen):
-        return False
-    nearby = _nearly_same(one, other, 1 if plain else 4 * POINTS)
-    if nearby is False:
-        return False
-    if seen and all(seen):
+    if rational(one) and rational(other) and small(one, other):
+        first = next(points(one, other, exact=True), None)
+        if first and abs(first(one) - first(other)) > 1e-25 * max(1, abs(first(one))):
+            return False  # in most cases, and sooner than by polynomials
+        own = {s: sp.Symbol(key(s.name)) for s in one.free_symbols | other.free_symbols}
+        _, (left, right) = sfield([one.xreplace(own), other.xreplace(own)])
+        return bool(left == right)
+    if _agree(one, other, opaque=True):
         return True
-    return True if nearby and not any(e.has(*KINKED) for e in (one, other)) else None
+    agree = _agree(one, other)
+    return None if agree and any(e.has(*KINKED) for e in (one, other)) else agree
 
 
-def _nearly_same(one: sp.Expr, other: sp.Expr, count: int) -> bool | None:
-    """Whether so many values of sixty digits agree to forty; None if there are too few."""
+def _agree(one: sp.Expr, other: sp.Expr, opaque: bool = False) -> bool | None:
+    """Return True if values of sixty digits agree to forty; None if there are too few."""
     found = 0
-    first, second = _unevaluated(one), _unevaluated(other)
-    letters = first | second if set(first.values()) == set(second.values()) else {}
-    for seed in range(TRIALS):
-        point = RealPoint(seed, letters)
-        try:
-            a, b = point(one), point(other)
-        except NoValue:
-            continue
+    for point in points(one, other, exact=True, opaque=opaque):
+        a, b = point(one), point(other)
         scale, difference = max(abs(a), abs(b), 1), abs(a - b)
         if difference > 1e-25 * scale:
             return False
         found += difference < 1e-40 * scale
-        if found == count:
+        if found == POINTS:
             return True
     return None
 
 
-def _unevaluated(formula: sp.Expr) -> dict[sp.Basic, str]:
-    """Integrals and functions without a name of their own: by what they are, the same for the same ones."""
-    parts = formula.atoms(ExprWithLimits, AppliedUndef, sp.Derivative)
-    point = next(points(*parts), None)
-    return {part: f"value {point(part)}" for part in parts} if point else {}
-
-
 def proportional(one: sp.Expr, other: sp.Expr, positive: bool = False) -> bool | None:
-    """Whether one expression is a number, not zero, times the other."""
-    ratio: int | None = None
-    for point, _ in zip(points(one, other), range(POINTS), strict=False):
+    """Return True if one expression is a number, not zero, times the other."""
+    first = None
+    for point in islice(points(one, other, exact=True), POINTS):
         a, b = point(one), point(other)
-        if a == 0 or b == 0:
-            return a == b
-        now = a * pow(b, -1, PRIME) % PRIME
-        if ratio not in (None, now):
-            return False if rational(one) and rational(other) else None
-        ratio = now
-    number = None if ratio is None else fraction_of(ratio)
-    return None if number is None else (number > 0 or not positive)
-
-
-def fraction_of(value: int) -> Fraction | None:
-    """The short fraction that a number modulo the prime stands for, if there is one."""
-    (r0, s0), (r1, s1) = (PRIME, 0), (value % PRIME, 1)
-    while r1 > 10**6:
-        (r0, s0), (r1, s1) = (r1, s1), (r0 - r0 // r1 * r1, s0 - r0 // r1 * s1)
-    return Fraction(r1, s1) if 0 < abs(s1) <= 10**6 else None
+        if min(abs(a), abs(b)) < 1e-40:
+            return bool(max(abs(a), abs(b)) < 1e-40)
+        ratio = a / b
+        if first is not None and abs(ratio - first) > 1e-25 * abs(first):
+            return False
+        first = ratio
+    return None if first is None else not positive or first > 0
 
 
 def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) -> bool | None:
@@ -180,13 +155,13 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
 
 
 def _takes_both_signs(polynomial: sp.Expr) -> bool:
-    values = [RealPoint(seed)(polynomial) for seed in range(TRIALS)]
-    return min(values) < 0 < max(values)
+    found = [point(polynomial) for point in points(polynomial)]
+    return min(found) < 0 < max(found)
 
 
 def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | None:
     """The factors of a rational function's numerator that may be zero, each once."""
-    if not rational(expression) or size(expression) > 2000:
+    if not rational(expression) or not small(expression):
         return None
     _, factors = sp.factor_list(sp.numer(sp.together(expression)))
     return [f for f, _ in factors if f not in nonzero and not _positive(f)]
@@ -219,6 +194,12 @@ def size(e: sp.Basic) -> int:
             product *= size(factor)
         return product
     return size(e.base) ** abs(int(e.exp)) if e.is_Pow and e.exp.is_Integer else 1
+
+
+def small(*formulas: sp.Expr) -> bool:
+    """Return True if formulas have few terms once brackets are multiplied out and denominators cleared."""
+    below = {1 / power for e in formulas for power in e.atoms(sp.Pow) if power.exp.is_Integer and power.exp < 0}
+    return sum(map(size, formulas)) * prod(map(size, below)) <= LARGEST
 
 
 def letters_in_a_row(value: sp.Basic) -> int:

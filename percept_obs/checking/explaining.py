@@ -3,11 +3,12 @@
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
+import numpy as np
 import sympy as sp
 
-from percept_obs.checking.points import PRIME
-from percept_obs.checking.search import THROUGHOUT, Search, at, less
+from percept_obs.checking.search import THROUGHOUT, Search, at, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
 from percept_obs.checking.target import VALUE, ZEROS, Target
 from percept_obs.checking.terms import Comparison, compared
@@ -67,9 +68,11 @@ def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr
         return
     siblings = siblings_in(search.letters)
     moved = sp.Symbol("moved", real=True)
-    unit = search.values(moved) or ()
+    unit = search.values(moved)
+    if unit is None:
+        return
     wanted = [(row_of[row], search.lacking)]
-    wanted += [(row_of[other], (0,) * len(unit)) for other in right if other != row and other in row_of]
+    wanted += [(row_of[other], 0 * unit) for other in right if other != row and other in row_of]
     for number, step in target.steps:
         names, values = list(step.values), list(step.values.values())
         truth = step.onward(values)
@@ -77,26 +80,28 @@ def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr
             if search.over:
                 return
             shifted = step.onward([*values[:k], value + moved, *values[k + 1 :]])
-            effect = {r: less(search.values(shifted[r]) or (), search.values(truth[r]) or ()) for r, _ in wanted}
-            if not any(effect[row_of[row]]):
+            before, effects = search.values(value), []
+            for r, lacking in wanted:
+                after, true = search.values(shifted[r]), search.values(truth[r])
+                if after is None or true is None or before is None:
+                    break
+                effects.append(((after - true) / unit, lacking))
+            if len(effects) < len(wanted) or not np.any(np.abs(effects[0][0]) > 1e-9):
                 continue
-            at = search.values(value) or ()
+            slips = chain(factored(value, MISTAKES), slips_in(value, siblings, MISTAKES))
             slip = next(
                 (
                     slip
-                    for slip in (*factored(value, MISTAKES), *slips_in(value, siblings, MISTAKES))
+                    for slip in slips
                     if (now := search.values(slip.formula)) is not None
-                    and all(
-                        (e * (n - v) + u * lack) % PRIME == 0
-                        for r, lacking in wanted
-                        for e, n, v, u, lack in zip(effect[r], now, at, unit, lacking, strict=True)
-                    )
+                    and all(close(effect * (now - before), -lacking) for effect, lacking in effects)
                 ),
                 None,
             )
-            if slip and search.values(
-                step.onward([*values[:k], slip.formula, *values[k + 1 :]])[row_of[row]]
-            ) == search.values(search.mine):
+            if slip and close(
+                search.values(step.onward([*values[:k], slip.formula, *values[k + 1 :]])[row_of[row]]),
+                search.values(search.mine),
+            ):
                 yield f"{number} “{step.reason.rstrip(':')}”, {_said(names[k], slip)}"
                 break
 

@@ -1,40 +1,84 @@
-"""Reading a formula: text or LaTeX becomes sympy, built from listed letters and nothing else.
-
-lines    = line { newline | ";" | "," line }
-line     = [ label "=" ] sum { "=" sum } | sum ("<" | "<=" | ">" | ">=" | "!=") sum
-sum      = [ "+" | "-" ] product { ("+" | "-") product }
-product  = power { ["*" | "/"] power }                 without a sign: times
-power    = primary [ "^" number ]
-primary  = number | name | function "(" sum ")" | "(" sum ")" | matrix | LaTeX's fraction, root, brackets
-"""
+"""Reading a formula: text or LaTeX becomes sympy, built from listed letters and nothing else."""
 
 import difflib
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from math import prod
-from typing import Any
+from pathlib import Path
+from typing import Any, NoReturn
 
 import sympy as sp
+from lark import Lark, Token, Tree, UnexpectedCharacters, UnexpectedToken
 
 from percept_obs.checking.deciding import MATRICES, degree, letters_in_a_row
 from percept_obs.checking.points import key
-from percept_obs.checking.tokens import FUNCTIONS, CannotRead, Cursor, Functions, Token
 
+LONGEST, LONGEST_NUMBER, LONGEST_WORD = 9000, 15, 60
 DEEPEST, LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 40, 20, 60, 40, 8
-_RELATIONS = {"<": sp.StrictLessThan, "<=": sp.LessThan, ">": sp.StrictGreaterThan, ">=": sp.GreaterThan, "!=": sp.Ne}
-_BEGINS = {"name", "(", "{", "[", "command", "function", "|left", "begin matrix", "begin cases"}
+
+Functions = Mapping[str, Callable[..., Any]]
+_NAMED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.sech, sp.exp, sp.log)
+FUNCTIONS: Functions = {
+    **{f.__name__: f for f in (*_NAMED, sp.sqrt, sp.sign)},
+    **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
+}
+_RELATIONS = {
+    sp.StrictLessThan: ("<", r"\lt"),
+    sp.LessThan: ("<=", r"\le", r"\leq"),
+    sp.StrictGreaterThan: (">", r"\gt"),
+    sp.GreaterThan: (">=", r"\ge", r"\geq"),
+    sp.Ne: ("!=", r"\ne", r"\neq"),
+}
+
+_GREEK = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
+phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
+_ACCENTS = {"\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde"}
+_REPLACED = {
+    **dict(zip("αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΦΨΩ", _GREEK.split(), strict=True)),
+    **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True)),
+    **dict(zip("−–·⋅×′’⟨⟩≠≤≥", ("-", "-", "*", "*", "*", "'", "'", "(", ")", "!=", "<=", ">="), strict=True)),
+}
+_NAME = r"NAME:(\w+)"
+_LABEL = re.compile(
+    rf"(D_DT )?({_NAME}( _POWER (LBRACE )?NAME:T( RBRACE)?)?|NAME:J LPAR {_NAME} RPAR|"
+    rf"(LSQB )?_MATRIX {_NAME}( _ROW {_NAME})* _END_MATRIX( RSQB)?) EQUAL"
+)
+_OPENING, _CLOSING = (
+    {"LPAR": "(", "LBRACE": "{", "LSQB": "[", "_BAR_OPEN": "|", "_MATRIX": r"\begin", "_CASES": r"\begin"},
+    {"RPAR": "(", "RBRACE": "{", "RSQB": "[", "_BAR_CLOSE": "|", "_END_MATRIX": r"\begin", "_END_CASES": r"\begin"},
+)
+
+
+class CannotRead(ValueError):
+    """A formula that cannot be read.
+
+    Attributes
+    ----------
+    position : int
+        Where, counted in characters from 0.
+    """
+
+    def __init__(self, text: str, position: int, message: str) -> None:
+        self.position = position
+        start = text.rfind("\n", 0, position) + 1
+        end = text.find("\n", position) if "\n" in text[position:] else len(text)
+        start, end = max(start, position - 50), min(end, position + 30)
+        shown = "".join(c if c.isprintable() else " " for c in text[start:end])
+        super().__init__(f"{message}\n    {shown}\n    {' ' * (position - start)}^")
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A line that was read.
+    """One line that was read.
 
     Parameters
     ----------
     name : str
-        What stands on the left, in letters and digits: "y1dot"; empty if there is nothing.
+        Left side in letters and digits, such as "y1dot"; empty if there is none.
     formula : sympy expression, matrix or relation
     """
 
@@ -43,21 +87,25 @@ class Reading:
 
 
 def read(
-    text: str, letters: Mapping[str, Any], labels: Sequence[str] = (), functions: Functions | None = None
+    text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), functions: Functions | None = None
 ) -> list[Reading]:
-    """The lines of a text.
+    """Read the lines of a text.
 
     Parameters
     ----------
     text : str
-        As typed, "y1' = a13 + (a11 - a33) y1 + ...", or LaTeX as sympy prints it.  A line that gives a new letter a
-        meaning, "q = a31 y1 + a32 y2 + a33", is not returned; the letter means that from there on.
+        As typed, "y1' = a13 + (a11 - a33) y1 + ...", or LaTeX as sympy prints it.  A line that defines a new letter,
+        "q = a31 y1 + a32 y2 + a33", is not returned; the letter has this meaning from there on.
     letters : mapping of names without underscores to symbols
         Symbols of matrices as well; the inverse of one is ``P^-1``.
-    labels : sequence of str
-        What may stand on the left besides letters.
+    labels : iterable of str
+        Names that may stand on the left besides letters.
     functions : mapping of names to functions, optional
-        What may be taken besides the usual functions, of numbers or matrices: ``norm(e1)``, ``inner(e1, e2)``.
+        Functions besides the usual ones, of numbers or matrices: ``norm(e1)``, ``inner(e1, e2)``.
+
+    Returns
+    -------
+    list of Reading
 
     Raises
     ------
@@ -72,329 +120,343 @@ def read(
     >>> read("x + z", {"x": x})
     Traceback (most recent call last):
         ...
-    percept_obs.checking.tokens.CannotRead: "z" is no letter here; there are x
+    percept_obs.checking.reading.CannotRead: "z" is no letter here; there are x
         x + z
             ^
     """
-    return _Parser(text, letters, labels, functions or {}).lines()
+    return _Reader(text, letters, labels, functions or {}).lines()
 
 
-def words_of(text: str, letters: Mapping[str, sp.Expr], labels: Sequence[str] = ()) -> list[Token]:
-    """The words of a text as `read` understands them, letters side by side apart, as far as it can be read."""
-    parser = _Parser(text, letters, labels, {})
-    with suppress(CannotRead):
-        parser.lines()
-    return parser.tokens
+def words_of(text: str, letters: Mapping[str, Any] | None = None, labels: Iterable[str] = ()) -> list[Token]:
+    """Return the tokens of a text as `read` understands them, also where it is no formula; the last is "END".
+
+    Raises
+    ------
+    CannotRead
+        If a character has no meaning, or the text is too long.
+    """
+    return _Reader(text, letters or {}, labels, {}).words(strict=False)
 
 
-class _Parser(Cursor):
-    def __init__(self, text: str, letters: Mapping[str, Any], labels: Sequence[str], functions: Functions) -> None:
-        super().__init__(text)
-        self.letters, self.labels, self.functions, self.depth = dict(letters), set(labels), functions, 0
+@cache
+def _parser() -> Lark:
+    grammar = (Path(__file__).parent / "formula.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="basic", start=["lines", "words"], propagate_positions=True)
 
-    def lines(self) -> list[Reading]:
-        found: list[Reading] = []
-        while self.now.kind != "end":
-            if not self.takes("line", ","):
-                found += self.line()
-                if self.now.kind not in ("line", ",", "end"):
-                    raise self.refusal(self.stray())
-        if not found:
-            raise self.refusal('there is no formula; type one, such as "y1 + 2 y2"')
+
+class _Reader:
+    """Reads one text; a method named like a rule of the grammar returns the rule's value."""
+
+    def __init__(self, text: str, letters: Mapping[str, Any], labels: Iterable[str], functions: Functions) -> None:
+        self.text, self.letters, self.labels, self.functions = text, dict(letters), set(labels), functions
+        self.known = set(letters)
+        pieces = [
+            _REPLACED.get(c) or "".join(_REPLACED.get(d, d) for d in unicodedata.normalize("NFD", c)) for c in text
+        ]
+        self.plain = "".join(pieces)
+        self.origin = [k for k, piece in enumerate(pieces) for _ in piece]
+
+    def refuse(self, message: str, at: Any = None) -> NoReturn:
+        """Raise CannotRead at a token or a tree, or at the end of the text."""
+        start = at.start_pos if isinstance(at, Token) else at.meta.start_pos if isinstance(at, Tree) else at
+        position = self.origin[start] if start is not None and start < len(self.origin) else len(self.text)
+        raise CannotRead(self.text, position, message)
+
+    def words(self, strict: bool = True) -> list[Token]:
+        """Tokens with names told apart; what is refused stays as it is unless strict."""
+        if len(self.text) > LONGEST:
+            raise CannotRead(self.text, LONGEST, f"the formula has {len(self.text)} characters; at most {LONGEST}")
+        try:
+            raw = [*_parser().lex(self.plain), Token("END", "", len(self.plain))]
+        except UnexpectedCharacters as error:
+            position = self.origin[error.pos_in_stream or 0]
+            raise CannotRead(self.text, position, _about_character(self.text[position])) from None
+        raw = [token.update(value=_name(token)) if token.type == "NAME" else token for token in raw]
+        found: list[Token] = []
+        depth = matrices = at = 0
+        while at < len(raw):
+            token = raw[at]
+            starts_line = not depth and (not found or found[-1].type in ("_LINE", "COMMA"))
+            label = self.label(raw[at:]) if strict and starts_line else None
+            if label:
+                found.append(label)
+                at = next(k for k in range(at, len(raw)) if raw[k].type == "EQUAL")
+                continue
+            depth += (token.type in _OPENING) - (token.type in _CLOSING)
+            matrices += (token.type in ("_MATRIX", "_CASES")) - (token.type in ("_END_MATRIX", "_END_CASES"))
+            try:
+                if depth > DEEPEST:
+                    self.refuse(f"brackets are nested more than {DEEPEST} deep; write the formula flatter", token)
+                if matrices or token.type not in ("_ROW", "_CELL"):
+                    found += self.told_apart(
+                        token, raw[at - 1].type if at else "", raw[at + 1].type if at + 1 < len(raw) else ""
+                    )
+                elif token.type == "_ROW":  # between lines of LaTeX
+                    found.append(token.update(type="_LINE"))
+            except CannotRead:
+                if strict:
+                    raise
+                found.append(token)
+            at += 1
         return found
 
-    def stray(self) -> str:
-        if self.now.kind in (")", "]", "}", "|right"):
-            return "this bracket was never opened"
-        if self.now.kind == "number":
-            return "a number after a factor can mean two things; write * or ^ before it"
-        return "an operator or the end of the line is expected here"
-
-    def line(self) -> list[Reading]:
-        start = self.at
-        name, end = self.label()
-        if not name:
-            self.at = start
-            first, left = self.now, self.sum()
-            if self.now.kind in _RELATIONS:
-                return [Reading("", self.relation(left, first))]
-            if not self.takes("="):
-                return [Reading("", left)]
-            return [Reading("", sp.Eq(left, self.sum(), evaluate=False))]
-        values = [self.sum()]
-        while self.takes("="):
-            values.append(self.sum())
-        if not all(part in self.labels or part in self.letters for part in name.split(",")):
+    def label(self, tokens: Sequence[Token]) -> Token | None:
+        """Return the left side of a line as one token if the line begins with one."""
+        if tokens[0].type not in ("D_DT", "NAME", "LSQB", "_MATRIX"):
+            return None
+        end = next((k for k, token in enumerate(tokens) if token.type in ("EQUAL", "_LINE")), 0) + 1
+        kinds = [f"NAME:{token}" if token.type == "NAME" else token.type for token in tokens[:end]]
+        kinds = [kind for kind in kinds if kind != "_CELL"]
+        match = _LABEL.fullmatch(" ".join(kinds))
+        if not match:
+            return None
+        names = ["J"] if "LPAR" in kinds else re.findall(_NAME, match[0])
+        if "_POWER" in kinds:
+            names = ["".join(names)]
+        name = ",".join(key(f"{name}dot") if kinds[0] == "D_DT" else name for name in names)
+        if not all(part in self.labels or part in self.known for part in name.split(",")):
             if any(accent in name for accent in ("dot", "hat", ",")) or name in FUNCTIONS:
-                raise self.refusal(f'there is no line "{name}"; there are {", ".join(sorted(self.labels))}', end)
-            self.letters[name] = values[-1]
-            return []
-        return [Reading(name, value) for value in values]
+                there = ", ".join(sorted(self.labels))
+                self.refuse(f'there is no line "{name}"; there are {there}', tokens[0])
+            self.known.add(name)
+        return tokens[0].update(type="LABEL", value=name)
 
-    def label(self) -> tuple[str, Token]:
-        """What stands on the left of a line, if it is a name; of a column of rates all entries."""
-        first, rate = self.now, self.takes("d/dt") is not None
-        names: list[str] = []
-        bracket = self.takes("[")
-        column = self.takes("begin matrix")
-        while token := self.takes("name"):
-            names.append(key(token.text))
-            if not column or not self.takes("row"):
-                break
-        if column and not (self.takes("end matrix") and (not bracket or self.takes("]"))):
-            return "", first
-        if names and self.takes("^") and (self.takes("{") or True):
-            power = self.takes("name")
-            names[-1] += power.text if power and power.text == "T" else " "
-            self.takes("}")
-        if names == ["J"] and self.takes("("):
-            self.takes("name")
-            self.takes(")")
-        joined = ",".join(key(f"{name}dot") if rate else name for name in names)
-        return (joined, first) if names and " " not in joined and self.takes("=") else ("", first)
-
-    def sum(self) -> Any:
-        terms: list[Any] = []
-        sign = self.takes("+", "-")
-        while True:
-            start = self.now
-            term = self.product()
-            terms.append(-term if sign and sign.kind == "-" else term)
-            if len({getattr(t, "shape", ()) for t in terms}) > 1:
-                raise self.refusal("matrices of different shapes, or a matrix and a number, have no sum", start)
-            sign = self.takes("+", "-")
-            if sign is None:
-                return sum(terms[1:], terms[0]) if isinstance(terms[0], MATRICES) else sp.Add(*terms)
-
-    def product(self) -> Any:
-        factors, divided = [self.power()], False
-        while True:
-            operator = self.takes("*", "/")
-            if operator is None:
-                if self.now.kind not in _BEGINS:
-                    break
-                if divided:
-                    raise self.refusal("after a / it is not clear what is below it; write brackets or *")
-            start, negative = self.now, operator is not None and self.takes("-") is not None
-            factor = -self.power() if negative else self.power()
-            divided = operator is not None and operator.kind == "/"
-            factors.append(1 / self.divisor(factor, start) if divided else factor)
-            self.refuse_sizes(factors, start)
-        if any(isinstance(factor, MATRICES) for factor in factors):
-            return prod(factors[1:], start=factors[0])
-        return sp.Mul(*factors)
-
-    def divisor(self, value: Any, start: Token) -> sp.Expr:
-        if isinstance(value, MATRICES) or value == 0:
-            raise self.refusal("a matrix or zero cannot stand below a fraction", start)
-        return value
-
-    def scalar(self, value: Any, start: Token) -> sp.Expr:
-        if isinstance(value, MATRICES):
-            raise self.refusal("a matrix cannot stand here", start)
-        return value
-
-    def refuse_sizes(self, factors: Sequence[Any], start: Token) -> None:
-        shapes = [factor.shape for factor in factors if isinstance(factor, MATRICES)]
-        if any(left[1] != right[0] for left, right in pairwise(shapes)):
-            raise self.refusal("the sizes of these matrices do not fit", start)
-        if sum(map(letters_in_a_row, factors)) > LONGEST_PRODUCT:
-            raise self.refusal(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", start)
-
-    def power(self) -> sp.Expr:
-        start = self.now
-        base = self.primary()
-        if raised := self.takes("raised"):
-            return self.raised(base, sp.Integer(int(raised.text[:4])), start)
-        if not self.takes("^"):
-            return base
-        if start.kind == "name" and start.text == "e" and "e" not in self.letters:
-            return sp.exp(self.exponent())
-        if self.now.kind in ("name", "{") and isinstance(base, MATRICES):
-            braces, letter = self.takes("{"), self.takes("name")
-            if letter and letter.text == "T" and (not braces or self.takes("}")):
-                return base.T
-        exponent = self.exponent()
-        if self.now.kind in ("^", "raised"):
-            raise self.refusal("a power of a power needs brackets: (x^2)^3")
-        return self.raised(base, exponent, start)
-
-    def exponent(self) -> sp.Expr:
-        start, negative = self.now, self.takes("-") is not None
-        value = self.scalar(self.primary(), start)
-        return -value if negative else value
-
-    def raised(self, base: sp.Expr, exponent: sp.Expr, start: Token) -> sp.Expr:
-        if isinstance(base, sp.MatrixExpr) and exponent == -1 and not base.has(sp.MatAdd):
-            return base.inv()
-        if isinstance(base, MATRICES):
-            raise self.refusal("of a matrix only the transpose is read, ^T", start)
-        if not exponent.is_Rational or exponent.q not in (1, 2) or abs(exponent) > LARGEST_POWER:
-            raise self.refusal(f"exponents are whole or half numbers up to {LARGEST_POWER}", start)
-        if base == 0 and exponent <= 0:
-            raise self.refusal("zero has no such power", start)
-        if degree(base) * abs(exponent) > LARGEST_DEGREE or (
-            base.is_Rational and max(map(len, map(str, base.as_numer_denom()))) * abs(exponent) > LONGEST_INTEGER
-        ):
-            raise self.refusal("this power is too large to be compared; there must be a smaller way to write it", start)
-        return base**exponent
-
-    def primary(self) -> Any:
-        self.depth += 1
-        if self.depth > DEEPEST:
-            raise self.refusal(f"brackets are nested more than {DEEPEST} deep; write the formula flatter")
-        result = self.atom()
-        self.depth -= 1
-        return result
-
-    def atom(self) -> Any:
-        token = self.now
-        self.at += token.kind != "end"
-        if token.kind == "number":
-            return sp.Rational(token.text)
-        if token.kind == "name":
-            return self.letter(token)
-        if token.kind in ("(", "{"):
-            inner = self.sum()
-            self.needs({"(": ")", "{": "}"}[token.kind], f"the bracket {token.kind} is not closed")
-            return inner
-        if token.kind == "|left":
-            inner = self.scalar(self.sum(), token)
-            self.needs("|right", "the bar | is not closed")
-            return sp.Abs(inner)
-        if token.kind == "[":
-            matrix = self.printed_matrix() if self.takes("begin matrix") else self.rows()
-            self.needs("]", "the bracket [ is not closed")
-            return matrix
-        if token.kind == "begin matrix":
-            return self.printed_matrix()
-        if token.kind == "begin cases":
-            return self.cases()
-        if token.kind in ("command", "function"):
-            return self.command(token)
-        if token.kind == "end":
-            raise self.refusal("the formula ends too early: a number, a letter or a bracket is expected", token)
-        raise self.refusal("a number, a letter or a bracket is expected here", token)
-
-    def command(self, token: Token) -> Any:
-        if token.text in ("frac", "dfrac", "tfrac"):
-            above, below_at = self.group(), self.now
-            below = self.group()
-            return above / self.divisor(below, below_at)
-        if token.text == "sqrt":
-            return sp.sqrt(self.scalar(self.group(), token))
-        if token.text in FUNCTIONS:
-            return self.function(token)
-        raise self.refusal(f"\\{token.text} is not read; there are \\frac, \\sqrt, Greek letters, matrices", token)
-
-    def group(self) -> Any:
-        self.needs("{", "a brace { is expected here")
-        inner = self.sum()
-        self.needs("}", "the brace { is not closed")
-        return inner
-
-    def own_function(self, token: Token) -> Any:
-        self.needs("(", f"what {token.text} is taken of stands in brackets: {token.text}(...)")
-        parts = [self.sum()]
-        while not self.takes(")"):
-            self.needs(",", "the bracket ( is not closed")
-            parts.append(self.sum())
-        return self.functions[token.text](*parts)
-
-    def function(self, token: Token) -> sp.Expr:
-        exponent = self.exponent() if self.takes("^") else sp.S.One
-        if self.now.kind not in ("(", "{"):
-            raise self.refusal(f"what {token.text} is taken of stands in brackets: {token.text}(...)")
-        value = FUNCTIONS[token.text](self.scalar(self.atom(), token))
-        if value.has(sp.zoo, sp.nan, sp.oo):
-            raise self.refusal(f"{token.text} has no value there", token)
-        return value if exponent == 1 else self.raised(value, exponent, token)
-
-    def letter(self, token: Token) -> Any:
-        name = token.text
-        if key(name) in self.letters:
-            return self.letters[key(name)]
-        if name in self.functions:
-            return self.own_function(token)
-        if name in FUNCTIONS and self.now.kind in ("(", "{", "^"):
-            return self.function(token)
-        if name == "pi" or (name == "e" and self.now.kind == "^"):
-            return sp.pi if name == "pi" else sp.E
+    def told_apart(self, token: Token, before: str, after: str) -> list[Token]:
+        """Replace a name by a letter, a function or several letters side by side, and refuse what has no meaning."""
+        name = str(token)
+        if token.type == "NUMBER" and len(name) > LONGEST_NUMBER:
+            self.refuse(f"numbers have at most {LONGEST_NUMBER} digits", token)
+        if token.type == "COMMAND":
+            name = re.sub(r"\\operatorname|\W", "", name)
+            if name not in FUNCTIONS:
+                self.refuse(_about_command(name), token)
+            return [token.update(type="FUNCTION", value=name)]
+        transpose = name == "T" and before in ("_POWER", "LBRACE")
+        if token.type != "NAME" or name in self.known or transpose:
+            return [token]
+        kinds = {"pi": "PI"} | dict.fromkeys(FUNCTIONS, "FUNCTION") | dict.fromkeys(self.functions, "USER_FUNCTION")
+        kinds |= {"e": "EULER"} if after == "_POWER" else {}
+        if name in kinds:
+            return [token.update(type=kinds[name])]
+        if len(name) > LONGEST_WORD:
+            self.refuse(f"a word has more than {LONGEST_WORD} letters; write * between letters", token)
         ways = self.split(name)
-        if len(ways) == 1:
-            # the letters become words of their own, so that a power belongs to the last of them
-            self.tokens[self.at - 1 : self.at] = [Token("name", part, token.position) for part in ways[0]]
-            return self.letters[key(ways[0][0])]
+        if len(ways) == 1:  # words of their own, so that a power belongs to the last of them
+            return [token.update(value=key(part)) for part in ways[0]]
         if ways:
-            raise self.refusal(f'"{name}" can be read as {" or ".join(map(" ".join, ways))}; write * between', token)
+            self.refuse(f'"{name}" can be read as {" or ".join(map(" ".join, ways))}; write * between', token)
         near = difflib.get_close_matches(name, self.letters, 1, 0.5)
         known = ", ".join(sorted(str(letter) for letter in self.letters.values() if letter.is_Symbol)[:40])
         guess = f', did you mean "{self.letters[near[0]]}"? There are' if near else "; there are"
-        raise self.refusal(f'"{name[:40]}" is no letter here{guess} {known}', token)
+        start = token.start_pos or 0
+        typed = self.text[self.origin[start] : self.origin[(token.end_pos or start + 1) - 1] + 1]
+        self.refuse(f'"{typed[:40]}" is no letter here{guess} {known}', token)
 
     def split(self, name: str) -> list[list[str]]:
-        """Ways to read a word as letters side by side; two are enough to know that there are several."""
+        """Return ways to read a word as letters side by side, at most two."""
         ways: list[list[list[str]]] = [[[]], *([] for _ in name)]
         for end in range(1, len(name) + 1):
             for start in range(end):
-                if key(name[start:end]) in self.letters:
+                if key(name[start:end]) in self.known:
                     ways[end] += [[*way, name[start:end]] for way in ways[start]]
             ways[end] = ways[end][:2]
         return ways[-1]
 
-    def rows(self) -> sp.ImmutableMatrix:
-        """[a, b] is a column, [[a, b], [c, d]] has rows."""
-        opened, rows = self.now, []
-        while True:
-            nested = self.takes("[")
-            rows.append([self.sum()])
-            while nested and self.takes(","):
-                rows[-1].append(self.sum())
-            if nested:
-                self.needs("]", "the bracket [ is not closed")
-            if not self.takes(",", "line"):
-                return self.matrix(rows, opened)
+    def lines(self) -> list[Reading]:
+        state = _parser().parse_interactive(start="lines")
+        *words, end = self.words()
+        try:
+            for token in words:
+                state.feed_token(token)
+            tree = state.feed_eof(end)
+        except UnexpectedToken as error:
+            self.refuse(_about_token(error.token, state.accepts()), error.token)
+        found = [reading for line in tree.children for reading in self.value(line)]
+        if not tree.children:
+            self.refuse('there is no formula; type one, such as "y1 + 2 y2"')
+        return found
 
-    def printed_matrix(self) -> sp.ImmutableMatrix:
-        opened, rows = self.now, [[self.sum()]]
-        while separator := self.takes("cell", "row"):
-            if separator.kind == "row":
-                rows.append([])
-            rows[-1].append(self.sum())
-        self.needs("end matrix", "the matrix is not closed")
-        return self.matrix(rows, opened)
+    def value(self, node: Any) -> Any:
+        if isinstance(node, Tree):
+            return getattr(self, node.data)(node, *node.children)
+        if node.type in ("NUMBER", "PI"):
+            return sp.Rational(str(node)) if node.type == "NUMBER" else sp.pi
+        if node not in self.letters:
+            self.refuse("only a matrix has a transpose, A^T", node)
+        return self.letters[node]
 
-    def matrix(self, rows: list[list[sp.Expr]], opened: Token) -> sp.ImmutableMatrix:
-        if len({len(row) for row in rows}) != 1 or any(isinstance(e, MATRICES) for row in rows for e in row):
-            raise self.refusal("the rows of a matrix have the same number of entries, all of them numbers", opened)
-        return sp.ImmutableMatrix(rows)
+    def scalar(self, node: Any) -> sp.Expr:
+        value = self.value(node)
+        if isinstance(value, MATRICES):
+            self.refuse("a matrix cannot stand here", node)
+        return value
 
-    def cases(self) -> sp.Expr:
-        branches = []
-        while True:
-            value = self.sum()
-            self.needs("cell", "a branch is a value & its condition")
-            words = self.needs("command", "the condition begins with \\text{for} or is \\text{otherwise}")
-            branches.append((value, self.condition(words)))
-            if not self.takes("row"):
-                self.needs("end cases", "the cases are not closed")
-                return sp.Piecewise(*branches)
+    def divisor(self, node: Any) -> sp.Expr:
+        value = self.value(node)
+        if isinstance(value, MATRICES) or value == 0:
+            self.refuse("a matrix or zero cannot stand below a fraction", node)
+        return value
 
-    def condition(self, words: Token) -> sp.Basic:
-        self.needs("{", "\\text{for} or \\text{otherwise} is expected")
-        said = self.needs("name", "\\text{for} or \\text{otherwise} is expected").text
-        self.needs("}", "the brace { is not closed")
-        if said == "otherwise":
-            return sp.true
-        first, left = self.now, self.sum()
-        if words.text != "text" or said != "for" or self.now.kind not in _RELATIONS:
-            raise self.refusal("a condition is two sides with <, <=, >, >= or != between them")
-        return self.relation(left, first)
+    def named(self, tree: Tree, label: Token, *sides: Any) -> list[Reading]:
+        values = [self.value(side) for side in sides]
+        if all(part in self.labels or part in self.letters for part in label.split(",")):
+            return [Reading(str(label), value) for value in values]
+        self.letters[str(label)] = values[-1]
+        return []
 
-    def relation(self, left: Any, first: Token) -> sp.Basic:
-        sign = self.needs(self.now.kind, "a relation is expected here")
-        start, right = self.now, self.sum()
-        sides = self.scalar(left, first), self.scalar(right, start)
+    def unnamed(self, tree: Tree, side: Any) -> list[Reading]:
+        return [Reading("", self.value(side))]
+
+    def equation(self, tree: Tree, left: Any, right: Any) -> list[Reading]:
+        return [Reading("", sp.Eq(self.value(left), self.value(right), evaluate=False))]
+
+    def relation(self, tree: Tree, *parts: Any) -> list[Reading]:
+        return [Reading("", self.compared(*parts))]
+
+    def compared(self, left: Any, sign: Token, right: Any) -> sp.Basic:
+        sides = self.scalar(left), self.scalar(right)
         if any(side.has(sp.I) for side in sides):
-            raise self.refusal("a root of a negative number cannot be compared", first)
-        return _RELATIONS[sign.kind](*sides, evaluate=False)
+            self.refuse("a root of a negative number cannot be compared", left)
+        return next(relation for relation, signs in _RELATIONS.items() if sign in signs)(*sides, evaluate=False)
+
+    def sum(self, tree: Tree, *parts: Any) -> Any:
+        terms: list[Any] = []
+        for sign, part in pairwise((None, *parts)):
+            if isinstance(part, Token) and part.type in ("PLUS", "MINUS"):
+                continue
+            term = self.value(part)
+            terms.append(-term if isinstance(sign, Token) and sign.type == "MINUS" else term)
+            if getattr(term, "shape", ()) != getattr(terms[0], "shape", ()):
+                self.refuse("matrices of different shapes, or a matrix and a number, have no sum", part)
+        return sum(terms[1:], terms[0]) if isinstance(terms[0], MATRICES) else sp.Add(*terms)
+
+    def product(self, tree: Tree, *parts: Any) -> Any:
+        factors: list[Any] = []
+        for before, part in pairwise((None, *parts)):
+            rule = part.data if isinstance(part, Tree) else ""
+            if isinstance(before, Tree) and before.data == "over" and rule not in ("times", "over"):
+                self.refuse("after a / it is not clear what is below it; write brackets or *", part)
+            factors.append(self.value(part))
+            shapes = [factor.shape for factor in factors if isinstance(factor, MATRICES)]
+            if any(left[1] != right[0] for left, right in pairwise(shapes[-2:])):
+                self.refuse("the sizes of these matrices do not fit", part)
+            if isinstance(factors[-1], MATRICES) and sum(map(letters_in_a_row, factors)) > LONGEST_PRODUCT:
+                self.refuse(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", part)
+        return prod(factors[1:], start=factors[0]) if shapes else sp.Mul(*factors)
+
+    def times(self, tree: Tree, factor: Any) -> Any:
+        return self.value(factor)
+
+    def over(self, tree: Tree, factor: Any) -> sp.Expr:
+        return 1 / self.divisor(factor)
+
+    def negative(self, tree: Tree, sign: Token, factor: Any) -> Any:
+        return -self.value(factor)
+
+    def raised(self, tree: Tree, base: Any, exponent: Any) -> sp.Expr:
+        value = self.value(base)
+        if exponent == "T" and isinstance(value, MATRICES):
+            return value.T
+        if isinstance(exponent, Token) and exponent.type == "RAISED":
+            exponent = Token("NUMBER", unicodedata.normalize("NFKC", exponent[:4]), exponent.start_pos)
+        return self.power(tree, value, self.scalar(exponent))
+
+    def power(self, tree: Tree, base: Any, exponent: sp.Expr) -> sp.Expr:
+        if isinstance(base, sp.MatrixExpr) and exponent == -1 and not base.has(sp.MatAdd):
+            return base.inv()
+        if isinstance(base, MATRICES):
+            self.refuse("of a matrix only the transpose is read, ^T", tree)
+        if not exponent.is_Rational or exponent.q not in (1, 2) or abs(exponent) > LARGEST_POWER:
+            self.refuse(f"exponents are whole or half numbers up to {LARGEST_POWER}", tree)
+        if base == 0 and exponent <= 0:
+            self.refuse("zero has no such power", tree)
+        digits = max(map(len, map(str, base.as_numer_denom()))) if base.is_Rational else 0
+        if degree(base) * abs(exponent) > LARGEST_DEGREE or digits * abs(exponent) > LONGEST_INTEGER:
+            self.refuse("this power is too large to be compared; there must be a smaller way to write it", tree)
+        return base**exponent
+
+    def exponential(self, tree: Tree, base: Token, exponent: Any) -> sp.Expr:
+        return sp.exp(self.scalar(exponent))
+
+    def absolute(self, tree: Tree, inner: Any) -> sp.Expr:
+        return sp.Abs(self.scalar(inner))
+
+    def fraction(self, tree: Tree, above: Any, below: Any) -> Any:
+        return self.value(above) / self.divisor(below)
+
+    def root(self, tree: Tree, inner: Any) -> sp.Expr:
+        return sp.sqrt(self.scalar(inner))
+
+    def function(self, tree: Tree, name: Token, *parts: Any) -> sp.Expr:
+        value = FUNCTIONS[name](self.scalar(parts[-1]))
+        if value.has(sp.zoo, sp.nan, sp.oo):
+            self.refuse(f"{name} has no value there", tree)
+        return self.power(tree, value, self.scalar(parts[0])) if len(parts) > 1 else value
+
+    def user_function(self, tree: Tree, name: Token, *arguments: Any) -> Any:
+        return self.functions[name](*map(self.value, arguments))
+
+    def matrix(self, tree: Tree, *entries: Any) -> sp.ImmutableMatrix:
+        inner = [entry.data if isinstance(entry, Tree) else "" for entry in entries]
+        if inner == ["printed_matrix"]:
+            return self.value(entries[0])
+        return self.entries(tree, [e.children if d == "matrix" else [e] for e, d in zip(entries, inner, strict=True)])
+
+    def printed_matrix(self, tree: Tree, *rows: Any) -> sp.ImmutableMatrix:
+        return self.entries(tree, [row.children for row in rows])
+
+    def entries(self, tree: Tree, rows: Iterable[Sequence[Any]]) -> sp.ImmutableMatrix:
+        values = [[self.value(entry) for entry in row] for row in rows]
+        if len({len(row) for row in values}) != 1 or any(isinstance(e, MATRICES) for row in values for e in row):
+            self.refuse("the rows of a matrix have the same number of entries, all of them numbers", tree)
+        return sp.ImmutableMatrix(values)
+
+    def cases(self, tree: Tree, *branches: Any) -> sp.Expr:
+        return sp.Piecewise(*(self.branch(*branch.children) for branch in branches))
+
+    def branch(self, value: Any, *condition: Any) -> tuple[sp.Expr, sp.Basic]:
+        return self.value(value), self.compared(*condition) if len(condition) > 1 else sp.true
+
+
+def _name(token: Token) -> str:
+    """Return the key of a name, accents at its end."""
+    marks = "".join(_ACCENTS)
+    accents = [*re.findall(r"\\(hat|bar|dot|tilde)", token), *(_ACCENTS[c] for c in token if c in _ACCENTS)]
+    plain = re.sub(rf"\\(hat|bar|dot|tilde)\b|[{marks}',]", "", token)
+    return key(plain + "".join(accents) + "dot" * token.count("'"))
+
+
+def _about_character(c: str) -> str:
+    name = unicodedata.name(c, "a control character")
+    if c == "_":
+        return "an index is letters and digits, as in y_1 or v_{c1}"
+    if c.isalpha():
+        return f"{c!r} is {name}; letters are Latin or Greek, so type the letter that it looks like"
+    return f"{c!r} ({name.lower()}) has no meaning in a formula; there are letters, numbers and + - * / ^ ( ) ="
+
+
+def _about_command(name: str) -> str:
+    if name in _ACCENTS.values():
+        return rf"\{name} stands over a letter, as in \{name}{{y}}_{{1}}"
+    if name in ("begin", "end"):
+        return "of LaTeX's environments matrix, cases and aligned are read"
+    return rf"\{name} is not read; there are \frac, \sqrt, Greek letters, matrices"
+
+
+def _about_token(token: Token, accepted: set[str]) -> str:
+    """Say why a token cannot stand where it does, from the kinds that can."""
+    open_brackets = [_CLOSING[kind] for kind in accepted if kind in _CLOSING]
+    if accepted <= {"LPAR", "LBRACE", "_POWER", "RAISED"}:
+        return "a function takes its argument in brackets, as in sin(...), and a command in braces"
+    if ("NAME" in accepted and "PLUS" not in accepted) or "_TIMES" not in accepted:
+        end = token.type == "$END"
+        return f"{'the formula ends too early: ' if end else ''}a number, a letter or a bracket is expected here"
+    if token.type == "_POWER" or token.type == "RAISED":
+        return "a power of a power needs brackets: (x^2)^3"
+    if token.type == "NUMBER":
+        return "a number after a factor can mean two things; write * or ^ before it"
+    if open_brackets:
+        return f"the bracket {open_brackets[0]} is not closed"
+    if token.type in _CLOSING:
+        return "this bracket was never opened"
+    return "an operator or the end of the line is expected here"

@@ -3,19 +3,20 @@
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from itertools import chain, islice, takewhile
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
-from percept_obs.checking.deciding import fraction_of, points, same_zeros, size
-from percept_obs.checking.points import PRIME, ModularPoint, NoValue
+from percept_obs.checking.deciding import points, same_zeros, small
+from percept_obs.checking.points import NoValue, Point
 from percept_obs.checking.slips import MENDS, Slip, factored, family, siblings_in, slips_in, symbols_in
 from percept_obs.checking.target import VALUE, ZEROS, Line
-from percept_obs.checking.terms import LARGEST
 
-Values = tuple[int, ...]
+Values = np.ndarray[Any, Any]
 ORDER = (
     *("sign", "left out", "letter", "exponent", "missing", "factor", "superfluous", "other letter", "left-out factor"),
     "replaced",
@@ -48,14 +49,14 @@ class Search:
         return time.thread_time() > self.until
 
     @cached_property
-    def places(self) -> list[ModularPoint]:
+    def places(self) -> list[Point]:
         """Points at which values are compared."""
-        return list(islice(points(self.mine, self.line.formula), 2 if self.line.kind == VALUE else 3))
+        return list(islice(points(self.mine, self.line.formula, opaque=True), 3))
 
     def values(self, e: sp.Expr) -> Values | None:
         """Values of an expression at all points; None where there are none."""
         try:
-            return tuple(point(e) for point in self.places)
+            return np.array([point(e) for point in self.places])
         except NoValue:
             return None
 
@@ -67,7 +68,7 @@ class Search:
     @cached_property
     def lacking(self) -> Values:
         """What my formula lacks: the true one less mine."""
-        return tuple((point(self.line.formula) - point(self.mine)) % PRIME for point in self.places)
+        return np.array([point(self.line.formula) - point(self.mine) for point in self.places])
 
     @cached_property
     def changes(self) -> list[tuple[Values, Slip]]:
@@ -83,26 +84,26 @@ class Search:
                 after = self.values(slip.formula)
                 if before is not None and after is not None:
                     named = replace(slip, path=(*start, *slip.path), term=slip.term if slip.path else term)
-                    found.append((less(after, before), named))
-        return found + [(value, _missing(term)) for term in self.true_terms if (value := self.values(term))]
+                    found.append((after - before, named))
+        return found + [(v, _missing(term)) for term in self.true_terms if (v := self.values(term)) is not None]
 
     @cached_property
     def true_terms(self) -> tuple[sp.Expr, ...]:
         """The true terms, also multiplied out."""
         whole = self.line.formula
-        expanded = sp.expand(whole) if size(whole) <= LARGEST else whole
+        expanded = sp.expand(whole) if small(whole) else whole
         return tuple(dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))))
 
     def mends(self, added: Values, slip: Slip) -> bool:
         """Whether a change, which adds this, makes the line right."""
         if self.line.kind == VALUE:
-            return added == self.lacking
+            return close(added, self.lacking)
         if self.line.kind == ZEROS:
             old = self.terms[slip.path[0] if self.mine.is_Add else 0] if slip.kind != "missing" else sp.S.Zero
             return bool(same_zeros(self.mine - old + slip.formula, self.line.formula))
-        sums = [(point(self.mine) + a, point(self.line.formula)) for point, a in zip(self.places, added, strict=True)]
-        first = sums[0]
-        return sums[0][0] % PRIME != 0 and all((s * first[1] - t * first[0]) % PRIME == 0 for s, t in sums[1:])
+        true = np.array([point(self.line.formula) for point in self.places])
+        changed = true - self.lacking + added
+        return bool(np.all(changed != 0)) and close(changed * true[0], true * changed[0])
 
     def single(self) -> Slip | None:
         """The plainest single change that mends the formula."""
@@ -123,22 +124,18 @@ class Search:
         for path, node in takewhile(lambda _: not self.over, _term_places(self.mine)):
             moved = self.values(put(self.mine, path, node + u))
             now = self.values(node)
-            if moved is None or now is None or one is None or 0 in now:
+            if moved is None or now is None or one is None:
                 continue
-            share = [
-                (m - point(self.mine)) * pow(v, -1, PRIME) % PRIME
-                for m, v, point in zip(moved, one, self.places, strict=True)
-            ]
-            if 0 in share:
+            with np.errstate(all="ignore"):
+                ratio = self.lacking * one / (moved - self.values(self.mine)) / now + 1
+            if not np.all(np.isfinite(ratio)):
                 continue
-            needed = tuple(d * pow(c, -1, PRIME) % PRIME for d, c in zip(self.lacking, share, strict=True))
-            ratio = tuple((d * pow(v, -1, PRIME) + 1) % PRIME for d, v in zip(needed, now, strict=True))
-            number = fraction_of(ratio[0]) if len(set(ratio)) == 1 else None
-            if number is not None and number != 1:
+            number = Fraction(float(ratio[0].real)).limit_denominator(1000)
+            if close(ratio, float(number) + 0 * ratio) and number != 1:
                 (slip,) = factored(node, replace(MENDS, factors=(sp.Rational(number.numerator, number.denominator),)))
                 yield _named(replace(slip, path=path))
-            elif ratio in self.ratios:
-                right, wrong = self.ratios[ratio]
+            elif _rounded(ratio) in self.ratios:
+                right, wrong = self.ratios[_rounded(ratio)]
                 kind = (
                     "left-out factor"
                     if 1 in (abs(right), wrong)
@@ -150,7 +147,7 @@ class Search:
         """The one part that differs where the two formulas have the same build: inside a root, below a fraction."""
         path, mine, true = _aligned(self.mine, self.line.formula)
         changed = put(self.mine, path, true)
-        if not path or self.values(changed) != self.values(self.line.formula):
+        if not path or not close(self.values(changed), self.values(self.line.formula)):
             return
         kind = "replaced"
         if (true.is_Add and mine in true.args) or (true.is_Add and mine.is_Add and set(mine.args) < set(true.args)):
@@ -160,17 +157,16 @@ class Search:
         yield Slip(kind, mine, true, path, at(self.mine, path), changed)
 
     @cached_property
-    def ratios(self) -> dict[Values, tuple[sp.Expr, sp.Expr]]:
+    def ratios(self) -> dict[tuple[float, ...], tuple[sp.Expr, sp.Expr]]:
         """Quotients of two letters, or of a letter and 1, by their values."""
         letters = [sp.S.One, *sorted(self.letters, key=str)]
-        values = [self.values(s) or () for s in letters]
-        inverse = [tuple(pow(x, -1, PRIME) for x in value) for value in values]
+        values = [np.array([point(s) for point in self.places]) for s in letters]
         return {
-            tuple(c * x * y % PRIME for x, y in zip(values[i], inverse[j], strict=True)): (c * a, b)
-            for i, a in enumerate(letters)
-            for j, b in enumerate(letters)
+            _rounded(c * x / y): (c * a, b)
+            for a, x in zip(letters, values, strict=True)
+            for b, y in zip(letters, values, strict=True)
             for c in (1, -1)
-            if i != j
+            if a != b
         }
 
     def throughout(self) -> Slip | None:
@@ -196,8 +192,7 @@ class Search:
                     if b in mine.free_symbols and str(a) < str(b):
                         candidates.append(("swapped", a, b, mine.xreplace({a: b, b: a})))
         for kind, before, after, changed in takewhile(lambda _: not self.over, candidates):
-            now = self.values(changed)
-            if now is not None and now == true:
+            if close(self.values(changed), true):
                 return Slip(kind, before, after, (), mine, changed)
         return None
 
@@ -205,12 +200,12 @@ class Search:
         """Two changes that mend the formula together: in different terms, or in one."""
         if self.line.kind != VALUE:
             return ()
-        by_value: dict[Values, list[Slip]] = {}
+        by_value: dict[tuple[float, ...], list[Slip]] = {}
         for added, slip in self.changes:
-            by_value.setdefault(added, []).append(slip)
+            by_value.setdefault(_rounded(added), []).append(slip)
         ways = []
         for added, slip in self.changes:
-            for other in by_value.get(less(self.lacking, added), ()):
+            for other in by_value.get(_rounded(self.lacking - added), ()):
                 if other is not slip and (not slip.path or not other.path or slip.path[0] != other.path[0]):
                     ways.append((_named(slip), _named(other)))
         plain_ways = [two for two in ways if {slip.kind for slip in two} != {"superfluous", "missing"}]
@@ -225,7 +220,6 @@ class Search:
 
     def _twice_in_a_term(self) -> Iterator[tuple[Slip, ...]]:
         siblings = siblings_in(self.letters | symbols_in(self.mine))
-        wanted = self.lacking
         for k, term in enumerate(self.terms):
             start = (k,) if self.mine.is_Add else ()
             before = self.values(term)
@@ -236,7 +230,7 @@ class Search:
                     return
                 for second in chain(factored(first.formula, MENDS), slips_in(first.formula, siblings, MENDS)):
                     after = self.values(second.formula)
-                    if after is not None and less(after, before) == wanted:
+                    if after is not None and close(after - before, self.lacking):
                         # the second one's place is that of a term which the first one has changed, or moved
                         paths = first.path, _place_of(second.term, term) if second.path else ()
                         yield tuple(
@@ -298,9 +292,15 @@ def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:
                         yield (Slip("letter", b, a, merged.path, wrong, lost.after),)
 
 
-def less(a: Values, b: Values) -> Values:
-    """Differences modulo the prime."""
-    return tuple((x - y) % PRIME for x, y in zip(a, b, strict=True))
+def close(a: Values | None, b: Values | None) -> bool:
+    """Return True if values agree to nine digits."""
+    if a is None or b is None:
+        return False
+    return bool(np.all(np.abs(a - b) <= 1e-9 * np.maximum(1, np.abs(b))))
+
+
+def _rounded(values: Values) -> tuple[float, ...]:
+    return tuple(np.round(values, 7) + 0.0)
 
 
 def _missing(term: sp.Expr) -> Slip:

@@ -10,13 +10,13 @@ from itertools import count, product
 from typing import Any
 
 import sympy as sp
+from lark import Token
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.checking.deciding import explicit, written_out
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Reading, read, words_of
-from percept_obs.checking.tokens import FUNCTIONS, Token, tokens
 from percept_obs.compile import intermediates
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
@@ -216,7 +216,7 @@ def target_of(thing: Any) -> Target:
         If it is nothing that a formula can be compared with.
     """
     if isinstance(thing, str):
-        words = {t.text for t in tokens(thing) if t.kind == "name" and t.text not in FUNCTIONS}
+        words = {str(t) for t in words_of(thing) if t.type == "NAME"}
         named = {key(word): sp.Symbol(word, real=True) for word in words}
         return _joined(Target(tuple(_line(r.name, r.formula))) for r in read(thing, named))
     if isinstance(thing, Mapping):

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.polys.fields import sfield
 
-from percept_obs.checking.deciding import points, rational, size
-
-LARGEST = 400
+from percept_obs.checking.deciding import points, rational, small
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ class Comparison:
 
 def compared(mine: sp.Expr, true: sp.Expr) -> Comparison:
     """The products whose coefficients differ; none are looked for in formulas that are too large to multiply out."""
-    if size(mine) + size(true) > LARGEST:
+    if not small(mine, true):
         return Comparison()
     parts = [*sp.Add.make_args(mine), true]
     letters = _letters_for_functions(parts)
@@ -68,7 +66,7 @@ def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]
     """A letter for every root and function; those with the same value get the same letter."""
     if all(map(rational, parts)):
         return {}
-    point = next(points(*parts), None)
+    point = next(points(*parts, opaque=True), None)
     outermost: dict[sp.Expr, sp.Symbol] = {}
 
     def visit(node: sp.Basic) -> None:
@@ -78,7 +76,7 @@ def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]
             for part in node.args:
                 visit(part)
         else:
-            outermost[node] = sp.Symbol(f"f{point(node) if point else node}")
+            outermost[node] = sp.Symbol(f"f{complex(point(node)):.10e}" if point else f"f{node}")
 
     for part in parts:
         visit(part)

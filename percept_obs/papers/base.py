@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from itertools import islice
 from typing import Any, ClassVar
 from xml.dom.minidom import Element
 
@@ -14,10 +13,10 @@ from sympy.core.function import UndefinedFunction
 from sympy.core.relational import Relational
 from sympy.matrices.exceptions import ShapeError
 
-from percept_obs.checking.deciding import POINTS, points, rational
+from percept_obs.checking.deciding import rational, same
 from percept_obs.checking.points import key
+from percept_obs.checking.reading import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.checking.reading import read
-from percept_obs.checking.tokens import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
 
 
@@ -206,15 +205,13 @@ def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
 def vanishes(*expressions: sp.Expr) -> bool:
     """Return True if expressions are identically zero.
 
-    Rational ones are decided at points modulo a prime, see `percept_obs.checking`: a "no" is certain, a "yes" wrong
-    with a probability below 2^-150.  For others, one point where it is not zero refutes an identity, and the algebra,
-    which takes longer, proves it.
+    Rational ones are decided as `percept_obs.checking` does it.  For others, one point where it is not zero refutes an
+    identity, and the algebra, which takes longer, proves it.
     """
     quick = [e for e in expressions if rational(e) and _told_apart(e)]
-    at = list(islice(points(*quick), POINTS))
-    if any(point(e) for e in quick for point in at):
+    if not all(same(e, sp.S.Zero) for e in quick):
         return False
-    rest = [e for e in expressions if len(at) < POINTS or e not in quick]
+    rest = [e for e in expressions if e not in quick]
     return not any(map(_is_refuted, rest)) and all(map(_is_proven, rest))
 
 
