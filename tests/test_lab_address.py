@@ -76,84 +76,28 @@ def test_random_settings_go_into_an_address_and_back_unchanged(node, each):
         assert len(told["text"]) < 10_000
 
 
-PLACES = ["__proto__", "constructor", "constructor.prototype", "toString", "__proto__.polluted", "hasOwnProperty"]
-PLACES += ["gains.__proto__.polluted", "gains.constructor.prototype.polluted", "noise.__proto__.size", "kept.__proto__"]
-PLACES += [
-    "",
-    ".",
-    "..",
-    "b.",
-    ".b",
-    "b.0",
-    "b.__proto__",
-    "noise",
-    "gains",
-    "noise.size.x",
-    "nothing",
-    "B",
-    "b ",
-    "%62",
+words = str.split
+PLACES = [
+    *words("__proto__ constructor constructor.prototype toString __proto__.polluted hasOwnProperty kept.__proto__"),
+    *words(
+        "gains.__proto__.polluted gains.constructor.prototype.polluted noise.__proto__.size kept.kept kept.kept.seed"
+    ),
+    *words(". .. b. .b b.0 b.__proto__ noise gains noise.size.x nothing B %62 seed.seed"),
+    *("", "b ", "a" * 5000, "kept." * 4000 + "seed", "gains." * 3000 + "x"),
 ]
-PLACES += ["a" * 5000, "kept." * 4000 + "seed", "gains." * 3000 + "x", "kept.kept.seed", "kept.kept", "seed.seed"]
-NUMBERS = ["", "-", "--1", "NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", LONG, "1e", "e5", "0x10", "0b1"]
-NUMBERS += [
-    "1_000",
-    "1,000",
-    " 1",
-    "1 ",
-    "+1",
-    "1n",
-    "١",
-    "1e+5",
-    "null",
-    "undefined",
-    "true",
-    "[1]",
-    "{}",
-    "1;",
-    "1/2",
+NUMBERS = [
+    *words("- --1 NaN nan Infinity -Infinity 1e999 -1e999 1e e5 0x10 0b1 1_000 1,000 +1 1n ١ 1e+5 null true [1] {} 1;"),
+    *words("1/2 -1 4294967296 0.5 1e10 %31% % %zz %ff %c0%af alert(1) `1` Math.PI undefined"),
+    *("", " 1", "1 ", LONG),
 ]
-NUMBERS += ["-1", "4294967296", "0.5", "1e10", "%31%", "%", "%zz", "%ff", "%c0%af", "alert(1)", "`1`", "Math.PI"]
-ROWS = [
-    "",
-    "1",
-    "1,2",
-    "1,2,3,4",
-    "1,2,x",
-    "1,,3",
-    "1,2,NaN",
-    "1,2,1e999",
-    "1001,0,0",
-    "1/2/3",
-    "[1,2,3]",
-    "1;2;3",
-    "-",
+ROWS = ["", *words("1 1,2 1,2,3,4 1,2,x 1,,3 1,2,NaN 1,2,1e999 1001,0,0 1/2/3 [1,2,3] 1;2;3 -")]
+SCRIPTS = [
+    *words(
+        "<script>alert(1)</script> %3Cscript%3Ealert(1)%3C/script%3E javascript:alert(1) ');alert(1);// ${alert(1)}"
+    ),
+    *words("\"onload=alert(1) __import__('os').mkdir('x') ../../etc/passwd \u202e \x00 \ud83d"),
 ]
-SCRIPTS = ["<script>alert(1)</script>", "%3Cscript%3Ealert(1)%3C/script%3E", "javascript:alert(1)", "');alert(1);//"]
-SCRIPTS += [
-    "${alert(1)}",
-    '"onload=alert(1)',
-    "__import__('os').mkdir('x')",
-    "../../etc/passwd",
-    "\u202e",
-    "\x00",
-    "\ud83d",
-]
-NAMES = [
-    "",
-    "pinhole",
-    "y9",
-    "y1,y1",
-    "y1,y9",
-    "y1,",
-    ",",
-    "y2,y1",
-    "y1%2Cy9",
-    "%ff",
-    "constructor",
-    "__proto__",
-    "length",
-]
+NAMES = ["", *words("pinhole y9 y1,y1 y1,y9 y1, , y2,y1 y1%2Cy9 %ff constructor __proto__ length")]
 VERSIONS = ["", "0", "2", "01", "1.0", "one", "__proto__", "1 ", LONG]
 OF_OBSERVER = [
     *(f"{place}=1" for place in PLACES),
@@ -163,18 +107,8 @@ OF_OBSERVER = [
     *(f"outputs={value}" for value in [*NAMES, *SCRIPTS]),
     *(f"surface={value}" for value in [*SCRIPTS, "toString", "Pinhole", "pinhole,plane", "-"]),
     *(f"motion={value}" for value in [*SCRIPTS, "b1%20=%20t", "b1%20%3D%20sin%28t%29", "b" * 401, "(" * 19_000]),
-    *(
-        "",
-        ";",
-        "seed",
-        "=3",
-        f"{B};{B}",
-        "noise=uniform,0.1",
-        "noise.kind=pink",
-        "normal=0,1,0",
-        "period=0",
-        "pictures=",
-    ),
+    *("", ";", "seed", "=3", f"{B};{B}", "noise=uniform,0.1", "noise.kind=pink", "normal=0,1,0", "period=0"),
+    "pictures=",
     *("believed.b=1,2,3", "believed=1", "believed=-;believed.b=1,2,3", "kept=1", "kept.seed=x", "kept.outputs="),
     *("gains.extended_kalman.noise_variance=-1", "gains.identifier_based.reset_ratio=0.5", "gains.identifier_based=1"),
     *("gains.nobody.gain=1", "gains.identifier_based.gain=x", "switches.sliding_mode=soft", "scenario=my_recording"),

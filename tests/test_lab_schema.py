@@ -15,17 +15,7 @@ from percept_obs.labs.shared.schema import Kind, Number, Row
 LABS = {make.__name__: make for make in (observer_lab, structure_lab, points_lab)}
 HOSTILE = [
     *(None, True, 5, -1, 1e9, float("nan"), float("inf"), 1 + 2j, "1", "", "x' = 1", b"1"),
-    *(
-        [],
-        [None],
-        [[]],
-        [[1, 2], [3]],
-        ["y1", "y1"],
-        [1, 2, float("nan")],
-        [True] * 3,
-        ["1", "2", "3"],
-        [[[0.0] * 3] * 3],
-    ),
+    *([], [None], [[]], [[1, 2], [3]], ["y1", "y1"], [1, 2, float("nan")], [True] * 3, ["1"] * 3, [[[0.0] * 3] * 3]),
     *({}, {"kind": "pink"}, {"kind": None, "size": {}}, {1: 2}, {"mode": "own", "values": "abc"}, {"A": 1, "b": 2}),
     *(np.zeros((2, 2)), np.full(3, np.nan), np.array(["a"]), np.array(3.0), sp.Symbol("x"), object(), {1, 2}, range(3)),
     *({"identifier_based": 5}, {"identifier_based": {"gain": None}}, {"ideal": {"feedback": "1"}}, {"seed": "../.."}),

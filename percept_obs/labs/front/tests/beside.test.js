@@ -5,7 +5,7 @@ import { distanceError, settlingTime } from "../src/common/model/errors.js";
 import { Latest } from "../src/common/model/latest.js";
 import { moduleText } from "../src/common/model/modules.js";
 import { constantPath } from "../src/common/model/path.js";
-import { Runner } from "../src/common/model/runner.js";
+import { Memory } from "../src/common/model/memory.js";
 import { serve } from "../src/common/model/serving.js";
 import { packed } from "../src/common/model/packing.js";
 import { partIn } from "../src/common/model/space.js";
@@ -182,19 +182,30 @@ test("a worker answers each message, runs what is kept once, completes what it h
   assert.deepEqual(runs, [5, 1, "completed", 2]);
 });
 
-test("another observer's gain, a window or a picture run no observer again; its own gain, switch or seed do", () => {
-  const runner = new Runner({ observers: {} });
+test("a value is made anew when a setting that it or what it is made of has read changes, and only then", () => {
+  const memory = new Memory();
   let runs = 0;
-  const opening = { gains: { one: { gain: 1 }, two: { gain: 1 } }, switches: { one: "sign" }, observers: ["one"], pictures: [], window: 1, threshold: 1, kept: null, seed: 0 };
-  const after = (changes) => {
-    runner.unlessKept("one", { ...opening, ...changes }, () => ++runs);
+  const opening = { gains: { one: { gain: 1 }, two: { gain: 1 } }, believed: null, X0: [1, 2], window: 1, seed: 0 };
+  const inner = (settings) => memory.once("inner", settings, ({ X0, seed }) => [...X0, seed]);
+  const make = (settings) => {
+    runs += 1;
+    return [settings.gains.one.gain, settings.believed ? 1 : 0, ...inner(settings)];
+  };
+  const after = (changes, input = 0) => {
+    memory.once("outer", { ...opening, ...changes }, make, input);
     return runs;
   };
   assert.equal(after({}), 1);
-  for (const changes of [{ gains: { ...opening.gains, two: { gain: 9 } } }, { window: 2 }, { pictures: ["error"] }, { kept: opening }]) assert.equal(after(changes), 1);
-  assert.equal(after({ gains: { ...opening.gains, one: { gain: 2 } } }), 2);
-  assert.equal(after({ switches: { one: "fraction" } }), 3);
-  assert.equal(after({ seed: 1 }), 4);
+  for (const changes of [{ gains: { ...opening.gains, two: { gain: 9 } } }, { window: 2 }, { X0: [1, 2] }]) {
+    assert.equal(after(changes), 1);
+  }
+  const others = [{ gains: { one: { gain: 2 } } }, { seed: 1 }, { believed: { b: 1 } }, { X0: [1, 3] }];
+  for (const [k, changes] of others.entries()) assert.equal(after(changes), k + 2);
+  inner(opening); // what is kept already counts as read as well
+  assert.equal(after({}), 6);
+  assert.equal(after({ seed: 2 }), 7);
+  assert.equal(after({ seed: 2 }, 1), 8);
+  assert.throws(() => memory.once("all", opening, (settings) => ({ ...settings })), /read settings by their names/);
 });
 
 /** A layout of a body: a vector that all points share, and one for each other point; A turns each of them. */

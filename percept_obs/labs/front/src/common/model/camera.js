@@ -7,17 +7,21 @@ import { column, plantGrid, sampleTimes } from "./tables.js";
 
 const NOTHING = new Float64Array(0);
 
+/** The kinks of a motion that has none. */
+export const NO_BREAKS = /** @type {number[]} */ ([]);
+
 /** What is recorded where there is a problem. */
 function nothing(problem) {
   return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
 }
 
-/** The times of samples, and the steps of what moves before them. */
-export function clockOf(memory, period, duration, name = "", breaks = /** @type {number[]} */ ([])) {
-  return memory.once("clock", [period, duration, name], () => {
+/** The times of samples, and the steps of what moves before them, which end at the breaks as well. */
+export function clockOf(memory, settings, breaks) {
+  const make = ({ period, duration }) => {
     const time = sampleTimes(period, duration);
     return { time, plant: plantGrid(time, breaks) };
-  });
+  };
+  return memory.once("clock", settings, make, breaks);
 }
 
 /** The error that a draw stands for, in noise of a kind and a size. */
@@ -28,7 +32,6 @@ export function errorOf(kind, size, draw) {
 /**
  * Records settings; keeps in `memory` the parts that the next settings do not change.  A camera of its own says in
  * methods of its own:
- *   placeOf(settings)                the settings that the true path depends on
  *   path(settings, functions, lines) positions at the ends of steps, with the shape of the surface
  *   sampled(seen, settings, drawn)   the samples, with noise
  */
@@ -44,27 +47,24 @@ export class PointCamera {
   /** Times, samples and true coordinates; or the problem that there is. */
   record(settings, functions) {
     const { memory } = this;
-    const { noise, dropout, bias, drift, seed } = settings;
-    const own = /** @type {any} */ (this);
-    const place = own.placeOf(settings);
-    const seen = memory.once("seen", place, () => this.see(settings, functions));
+    const seen = memory.once("seen", settings, (read) => this.see(read, functions), functions.project);
     if (seen.problem) return seen;
-    return memory.once("samples", [place, noise, dropout, bias, drift, seed], () => {
-      const drawn = memory.once("draws", [noise.kind, seed, seen.time.length], () =>
-        draws(noise.kind, seed, seen.time.length, this.drawsOf),
-      );
-      return { ...seen, outputs: own.sampled(seen, settings, drawn) };
-    });
+    const count = seen.time.length;
+    const make = (read) => {
+      const drawing = ({ noise, seed }) => draws(noise.kind, seed, count, this.drawsOf);
+      const drawn = memory.once("draws", read, drawing, count);
+      return { ...seen, outputs: /** @type {any} */ (this).sampled(seen, read, drawn) };
+    };
+    return memory.once("samples", settings, make, seen);
   }
 
-  /** When the motion has kinks, and under which name. */
+  /** Times at which the motion has kinks. */
   kinks(_settings) {
-    return { name: "", breaks: /** @type {number[]} */ ([]) };
+    return NO_BREAKS;
   }
 
   see(settings, functions) {
-    const { name, breaks } = this.kinks(settings);
-    const { time, plant } = clockOf(this.memory, settings.period, settings.duration, name, breaks);
+    const { time, plant } = clockOf(this.memory, settings, this.kinks(settings));
     const count = time.length;
     if (count < 2) return nothing(`a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`);
     const truth = new Float64Array(3 * count);
@@ -78,7 +78,7 @@ export class PointCamera {
   /** The exact coordinates at some times, a column each. */
   exact(settings, functions, times) {
     const found = new Float64Array(3 * times.length);
-    this.look(settings, functions, plantGrid(times, this.kinks(settings).breaks), found);
+    this.look(settings, functions, plantGrid(times, this.kinks(settings)), found);
     return [0, 1, 2].map((c) => column(found, 3, c));
   }
 

@@ -25,7 +25,7 @@ export class Runner {
   }
 
   /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
-  layOut({ time, outputs, measured, sampled }, lines, known, hold, exact, own) {
+  layOut({ time, outputs, measured, sampled, tolerance }, lines, known, hold, exact, own) {
     const { grid, index } = lines;
     const columns = measured.map((c) => columnOf(outputs, sampled, c));
     const room = (part) => (length) => this.room(part, length);
@@ -33,6 +33,7 @@ export class Runner {
     if (own) samples.fill(NaN, 0, columns.length); // a sample that is the start corrects nothing
     return {
       ...lines,
+      of: [outputs, measured, lines, known, hold, exact?.[0], own, tolerance],
       columns,
       last: columns.map((values, m) => lastSamples(values, room(`last ${m}`))),
       held: held(columns, time, grid, index, hold, exact, room("held")),
@@ -42,10 +43,17 @@ export class Runner {
     };
   }
 
-  /** The run of an observer, made anew if settings have changed that it depends on; those of other observers have not. */
-  unlessKept(name, settings, make) {
-    const { gains, switches, observers: _observers, pictures: _pictures, window: _window, threshold: _threshold, kept: _kept, bound: _bound, map: _map, over: _over, ...seen } = settings;
-    return this.memory.once(`run of ${name}`, [seen, gains[name], switches?.[name]], make);
+  /** The runs of all observers; a run is made anew where its inputs or its own gains have changed. */
+  followAll(settings, result, inputs, kernelOf, functions, asked) {
+    return settings.observers.map((name) => {
+      const kernel = kernelOf(name);
+      const follow = ({ gains }) => this.follow(name, gains[name], result, inputs, kernel, functions.observers[name], asked);
+      return this.kept(name, settings, follow, ...inputs.of, kernel, ...asked);
+    });
+  }
+
+  kept(name, settings, make, ...inputs) {
+    return this.memory.once(`run of ${name}`, settings, make, ...inputs);
   }
 
   /**

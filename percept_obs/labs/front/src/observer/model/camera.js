@@ -1,7 +1,7 @@
 // What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
 
-import { errorOf, PointCamera } from "../../common/model/camera.js";
-import { serialOf } from "../../common/model/memory.js";
+import { errorOf, NO_BREAKS, PointCamera } from "../../common/model/camera.js";
+import { derived } from "../../common/model/derived.js";
 import { known, withColumns } from "../../common/model/tables.js";
 import { isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
@@ -14,14 +14,7 @@ export class Camera extends PointCamera {
 
   record(settings, functions) {
     const recorded = this.model.recordings[settings.scenario];
-    if (recorded) return this.memory.once("track", [settings.scenario], () => readTrack(recorded));
-    return super.record(settings, functions);
-  }
-
-  placeOf(settings) {
-    const { surface, A, b, motion, X0, period, duration, scenario } = settings;
-    const sampled = this.sampledMotion(scenario) ? scenario : "";
-    return [surface, shapeOf(settings), A, b, motion, X0, period, duration, sampled];
+    return recorded ? derived(recorded, "track", () => readTrack(recorded)) : super.record(settings, functions);
   }
 
   /** The motion of a scenario that was sampled, if it was. */
@@ -30,17 +23,15 @@ export class Camera extends PointCamera {
   }
 
   kinks({ scenario }) {
-    const sampled = this.sampledMotion(scenario);
-    return { name: sampled ? scenario : "", breaks: sampled?.times ?? [] };
+    return this.sampledMotion(scenario)?.times ?? NO_BREAKS;
   }
 
   path(settings, functions, lines) {
     const { motion, shape } = this.motion(settings, functions);
     const start = settings.X0;
     if (motion.times?.length === 1) return { start, known: { rows: motion.rows[0], varying: false }, shape };
-    const { A, b, motion: text, scenario } = settings;
-    const place = [A, b, text, scenario, serialOf(lines.grid)];
-    return { start, known: this.memory.once("path", place, () => known(motion, [], lines.grid)), shape };
+    const make = (read) => known(this.motion(read, functions).motion, [], lines.grid);
+    return { start, known: this.memory.once("path", settings, make, lines.grid), shape };
   }
 
   /** A motion that was typed: numbers at any times, and along the steps of a grid. */
@@ -53,12 +44,12 @@ export class Camera extends PointCamera {
     };
   }
 
-  sampled({ truth }, { noise, dropout }, { shape, loss }) {
+  sampled({ truth }, { noise: { kind, size }, dropout }, { shape, loss }) {
     const outputs = new Float64Array(shape.length);
     for (let k = 0; k < loss.length; k++) {
       const lost = k > 0 && loss[k] < dropout;
       for (let c = 0; c < 2; c++) {
-        const error = errorOf(noise.kind, noise.size, shape[2 * k + c]);
+        const error = errorOf(kind, size, shape[2 * k + c]);
         outputs[2 * k + c] = lost ? NaN : truth[3 * k + c] + error;
       }
     }
@@ -70,7 +61,7 @@ export class Camera extends PointCamera {
     const recorded = this.model.recordings[settings.scenario];
     const table = recorded?.motion ?? this.sampledMotion(settings.scenario);
     const shape = recorded ? [] : shapeOf(settings);
-    if (table) return { motion: this.memory.once("table", [settings.scenario], () => withColumns(table)), shape };
+    if (table) return { motion: derived(table, "columns", () => withColumns(table)), shape };
     return { motion: isTyped(settings) ? this.typedMotion(settings, functions) : constantMotion(settings), shape };
   }
 }

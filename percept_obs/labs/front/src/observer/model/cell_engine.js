@@ -14,8 +14,9 @@ export class CellEngine extends Engine {
     return NOWHERE;
   }
 
-  unlessKept(_name, _settings, make) {
-    return make();
+  /** No run is kept: two cells seldom have the same. */
+  kept(_name, settings, make) {
+    return make(settings);
   }
 
   /** Most cells share their recording, and all that is known besides. */

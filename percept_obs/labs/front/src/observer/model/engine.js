@@ -50,11 +50,8 @@ export class Engine extends Runner {
     if (truth && circle) result.inside = spansInside(time, truth, 3, circle);
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
-    result.runs = settings.observers.map((name) => {
-      const kernel = form.observers[name][switchOf(settings, name)];
-      const follow = () => this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
-      return this.unlessKept(name, settings, follow);
-    });
+    const kernelOf = (name) => form.observers[name][switchOf(settings, name)];
+    result.runs = this.followAll(settings, result, inputs, kernelOf, functions, asked);
     result.bound = this.bound(settings, result, inputs, functions);
     if (divides(settings, this.model)) {
       this.other ??= new Engine(this.model);
@@ -72,27 +69,27 @@ export class Engine extends Runner {
     const { memory } = this;
     const { time, measured } = result;
     const recorded = settings.scenario in this.model.recordings;
-    const clock = recorded ? settings.scenario : [settings.period, time.length];
-    const lines = memory.once("grid", clock, () => withSteps(stepGrid(time, LONGEST_STEP)));
+    const clock = recorded ? [time] : [settings.period, time.length];
+    const lines = memory.once("grid", settings, () => withSteps(stepGrid(time, LONGEST_STEP)), ...clock);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
-    const { motion, shape } = this.camera.motion(settings, functions);
-    const believed = settings.believed ? constantMotion(settings.believed) : motion;
-    const { A, b, motion: text, scenario } = settings;
-    const of = settings.believed ?? (recorded ? "" : [A, b, text, scenario]);
-    const table = memory.once("known", [clock, of, shape], () => known(believed, shape, lines.grid));
+    const believe = (read) => {
+      const { motion, shape } = this.camera.motion(read, functions);
+      return known(read.believed ? constantMotion(read.believed) : motion, shape, lines.grid);
+    };
+    const table = memory.once("known", settings, believe, lines);
     return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]), settings.start.mode === "own");
   }
 
   /** The least relative error that the noise leaves, where it is drawn and there is one. */
   bound(settings, result, { grid, index, steps, known: table }, functions) {
-    const { bound, pictures, noise, dropout, seed, outputs, believed } = settings;
+    const { bound, pictures } = settings;
     if (!bound.includes("error") || !pictures.includes("error") || noBound(settings, this.model)) return null;
-    const { motion, shape } = this.camera.motion(settings, functions);
-    const told = [this.camera.placeOf(settings), outputs, noise, dropout, seed];
-    return this.memory.once("bound", told, () => {
-      const truly = believed ? known(motion, shape, grid) : table;
-      return boundOf(result, { steps, index }, truly, functions.flow, variancesOf(settings, this.model));
-    });
+    const make = (read) => {
+      const { motion, shape } = this.camera.motion(read, functions);
+      const truly = read.believed ? known(motion, shape, grid) : table;
+      return boundOf(result, { steps, index }, truly, functions.flow, variancesOf(read, this.model));
+    };
+    return this.memory.once("bound", settings, make, result.outputs, result.measured, table);
   }
 
   /** Of the distance, whose inverse is the last coordinate. */
@@ -102,8 +99,7 @@ export class Engine extends Runner {
   }
 
   exact(settings, grid, functions) {
-    const place = [this.camera.placeOf(settings), grid.length];
-    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, instants(grid)));
+    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
   }
 
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {

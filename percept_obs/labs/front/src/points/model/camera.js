@@ -1,6 +1,6 @@
 // Points in motion and the camera that sees them: the same numbers as record() in Python.
 
-import { clockOf, errorOf } from "../../common/model/camera.js";
+import { clockOf, errorOf, NO_BREAKS } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
 import { draws } from "../../common/model/random.js";
 import { instants } from "../../common/model/tables.js";
@@ -18,14 +18,12 @@ export class Camera {
   record(scene) {
     const { memory } = this;
     const { settings, points } = scene;
-    const { period, duration, noise, seed, dropout, view, hidden } = settings;
-    const { state, breaks } = this.kinks(settings);
-    const { time, plant } = clockOf(memory, period, duration, state, breaks);
-    const truth = this.move(scene, "samples", [], plant);
+    const { noise, dropout, view, hidden } = settings;
+    const { time, plant } = clockOf(memory, settings, this.kinks(settings));
+    const truth = this.move(scene, "samples", plant);
     const { images, depths } = this.project(scene, truth);
-    const drawn = memory.once("draws", [noise.kind, seed, time.length, points], () =>
-      draws(noise.kind, seed, time.length * points, 2),
-    );
+    const drawing = (read) => draws(read.noise.kind, read.seed, time.length * points, 2);
+    const drawn = memory.once("draws", settings, drawing, time.length, points);
     const outputs = new Float64Array(images.length);
     const seenImages = new Float64Array(images.length);
     for (let k = 0; k < time.length; k++) {
@@ -69,10 +67,10 @@ export class Camera {
   }
 
   /** True states at the times of a grid that begins at time 0. */
-  move(scene, part, clock, plant) {
+  move(scene, purpose, plant) {
     const { n } = scene;
     const wanted = plant.index.subarray(1);
-    const { kindOf, flows } = this.flows(scene, part, clock, plant, wanted);
+    const { kindOf, flows } = this.flows(scene, purpose, plant, wanted);
     const states = new Float64Array(wanted.length * n);
     const x = this.begin(scene);
     for (let v = 0; v < n; v += 3) {
@@ -88,32 +86,32 @@ export class Camera {
   }
 
   /** How each kind of vector moves, at some of the ends of steps; made anew only when motion or clock changes. */
-  flows(scene, part, clock, { grid, steps }, wanted) {
+  flows(scene, purpose, { grid, steps }, wanted) {
     const { settings, layout, n, width } = scene;
     const kinds = kindsOf(layout, n);
-    const motion = [kinds.kinds.length, ...placeOf(settings), clock];
-    const flows = this.memory.once(`flows ${part}`, motion, () => {
-      const known = this.known(scene, part, clock, instants(grid));
+    const make = (read) => {
+      const known = this.known({ ...scene, settings: read }, purpose, grid);
       return { of: kinds.kinds.map((kind) => flowOf(kind, steps, known, width, wanted)) };
-    });
+    };
+    const flows = this.memory.once(`flows ${purpose}`, settings, make, kinds.kinds.length, grid);
     return { ...kinds, flows: flows.of, made: flows };
   }
 
-  /** Numbers of the coefficients at some times, a row each. */
-  known({ settings, functions }, part, clock, places) {
-    return this.memory.once(`known ${part}`, [...placeOf(settings), clock], () =>
-      coefficientsAt(this.model, settings, functions, places),
-    );
+  /** Numbers of the coefficients at the instants of a grid's steps, a row each. */
+  known({ settings, functions }, purpose, grid) {
+    const make = (read) => coefficientsAt(this.model, read, functions, instants(grid));
+    return this.memory.once(`known ${purpose}`, settings, make, grid, functions.coefficients);
   }
 
-  /** When the motion of a state has kinks: at the samples that somebody brought. */
+  /** Times at which the motion of a state has kinks: those of a user's samples. */
   kinks({ state }) {
-    return { state, breaks: this.model.states[state].samples?.times ?? [] };
+    return this.model.states[state].samples?.times ?? NO_BREAKS;
   }
 
   /** The state whose points are at the given places; of several the smallest. */
   begin({ settings, layout, points, n }) {
-    const inverse = this.memory.once("begin", [settings.state, points], () => pseudoInverse(rowsOf(layout, n), 3 * points, n));
+    const make = () => pseudoInverse(rowsOf(layout, n), 3 * points, n);
+    const inverse = this.memory.once("begin", settings, make, layout);
     return product(inverse, settings.points.flat(), n);
   }
 }
@@ -130,11 +128,6 @@ export function coefficientsAt({ states }, { state, turning, spin, input, veloci
     rows.set(coefficients(given ? given.rows.subarray(k * given.width, (k + 1) * given.width) : x, out), k * width);
   }
   return rows;
-}
-
-/** The settings that motion and samples' times depend on; what else a clock depends on is added where it is made. */
-function placeOf({ state, turning, spin, input, velocity, motion, period, duration }) {
-  return [state, turning, spin, input, velocity, motion, period, duration];
 }
 
 /** C of all points, three rows each. */

@@ -53,12 +53,9 @@ export class PointsEngine {
   gramian(result, functions, whole) {
     const { settings, time, seenImages: images } = result;
     const scene = this.scene(settings, functions);
-    const clock = this.memory.once("samples' steps", [settings.period, settings.duration], () => ({
-      grid: time,
-      steps: differences(time),
-      wanted: Int32Array.from(time, (_, k) => k),
-    }));
-    const { kindOf, flows, made } = this.camera.flows(scene, "gramian", [], clock, clock.wanted);
+    const divide = () => ({ grid: time, steps: differences(time), wanted: Int32Array.from(time, (_, k) => k) });
+    const clock = this.memory.once("samples' steps", settings, divide, time);
+    const { kindOf, flows, made } = this.camera.flows(scene, "gramian", clock, clock.wanted);
     made.back ??= flows.map(inversesOf);
     const window = Math.min(settings.window, time.at(-1));
     const { model, memory } = this;

@@ -19,15 +19,15 @@ export class Observer {
     const { memory, model } = this.camera;
     const { settings, layout, n } = scene;
     const { time, truth } = recording;
-    const { period, duration, step } = settings;
-    const steps = memory.once("steps", [period, duration, step], () => {
+    const divide = ({ step }) => {
       const made = withSteps(stepGrid(time, step));
       return { ...made, places: instants(made.grid) };
-    });
+    };
+    const steps = memory.once("steps", settings, divide, time);
     const inputs = {
       ...steps,
       held: this.held(scene, recording, steps),
-      coefficients: this.camera.known(scene, "observer", [step], steps.places),
+      coefficients: this.camera.known(scene, "observer", steps.grid),
       inverses: this.inverses(scene, steps.places),
     };
     const start = new Float64Array(n);
@@ -50,9 +50,8 @@ export class Observer {
   /** The inverse of a P that is given, made anew when what it depends on changes. */
   inverses({ settings, functions }, places) {
     const { memory, model } = this.camera;
-    const { weight, size, final, P, period, duration, step } = settings;
-    const key = [weight, size, final, weight === "typed" && P, period, duration, step];
-    return memory.once("inverse of P", key, () => inversesOf(model, settings, places, functions));
+    const make = (read) => inversesOf(model, read, places, functions);
+    return memory.once("inverse of P", settings, make, places, functions.typed);
   }
 
   /** What the observer takes for the images between samples: a row for each instant of each step. */
@@ -60,14 +59,14 @@ export class Observer {
     const { camera } = this;
     const { memory } = camera;
     const { settings, points } = scene;
-    const { hold, period, duration, step } = settings;
+    const { hold } = settings;
     const wide = 2 * points;
     const table = memory.room("held", (EACH + 1) * wide * steps.length);
     let exact = null;
     if (hold === "exact") {
-      const { state, breaks } = camera.kinks(settings);
-      const plant = memory.once("exact plant", [state, period, duration, step], () => plantGrid(places, breaks));
-      exact = camera.project(scene, camera.move(scene, "signal", [step], plant)).images;
+      const breaks = camera.kinks(settings);
+      const plant = memory.once("exact plant", settings, () => plantGrid(places, breaks), places, breaks);
+      exact = camera.project(scene, camera.move(scene, "signal", plant)).images;
     }
     for (let k = 0; k + 1 < time.length; k++) {
       for (let j = index[k]; j < index[k + 1]; j++) {
@@ -148,8 +147,8 @@ export class Observer {
       for (let i = 0; i < own; i++) if (!free.includes(i)) goal[r] -= all[row * own + i] * x[i];
     });
     const part = Float64Array.from(rows.flatMap((row) => free.map((i) => all[row * own + i])));
-    const key = [settings.state, own, rows, free];
-    const inverse = this.camera.memory.once(`rays ${first}`, key, () => pseudoInverse(part, rows.length, free.length));
+    const make = () => pseudoInverse(part, rows.length, free.length);
+    const inverse = this.camera.memory.once(`rays ${first}`, settings, make, layout, rows.join(), free.join());
     product(inverse, goal, free.length).forEach((value, k) => (x[free[k]] = value));
     if (!P) return;
     for (const i of free) {

@@ -2,16 +2,9 @@
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
-import { serialOf } from "../../common/model/memory.js";
 import { instants } from "../../common/model/tables.js";
 import { isTyped } from "../../common/model/typed.js";
 
-const NAMES = ["v_c", "v_p"];
-
-/** The parts of settings that the true path depends on. */
-export function motionOf({ velocities, v_c, v_p, v_c_swing, v_p_swing, rate, w, motion }) {
-  return { velocities, v_c, v_p, v_c_swing, v_p_swing, rate, w, motion };
-}
 
 /** Whether the velocities are the samples that somebody brought. */
 export function isSampled({ velocities }) {
@@ -32,18 +25,16 @@ export class StructureCamera extends PointCamera {
     super(model, memory, 3, "make its start ȳ3 positive");
   }
 
-  placeOf(settings) {
-    const { ybar, scale, period, duration } = settings;
-    return [motionOf(settings), ybar, scale, period, duration];
-  }
-
   kinks(settings) {
-    return isSampled(settings) ? { name: "samples", breaks: this.model.samples.times } : super.kinks(settings);
+    return isSampled(settings) ? this.model.samples.times : super.kinks(settings);
   }
 
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
   velocities(settings, { swinging, typed }, times) {
     if (isSampled(settings)) return sampledAt(this.model.samples, times);
+    const { w, v_c, v_p, v_c_swing, v_p_swing, rate } = settings;
+    const { phases } = this.model;
+    const [constant, swing, phase] = [[...v_c, ...v_p], [...v_c_swing, ...v_p_swing], [...phases.v_c, ...phases.v_p]];
     const varying = varies(settings);
     const count = varying ? times.length : 1;
     const rows = new Float64Array(9 * count);
@@ -52,13 +43,12 @@ export class StructureCamera extends PointCamera {
     const given = new Float64Array(10);
     const moved = new Float64Array(9);
     for (let k = 0; k < count; k++) {
-      rows.set(settings.w, 9 * k);
+      rows.set(w, 9 * k);
       for (let i = 0; i < 6; i++) {
-        const name = NAMES[Math.floor(i / 3)];
-        x[0] = settings[name][i % 3];
-        x[1] = settings[`${name}_swing`][i % 3];
-        x[2] = settings.rate;
-        x[3] = this.model.phases[name][i % 3];
+        x[0] = constant[i];
+        x[1] = swing[i];
+        x[2] = rate;
+        x[3] = phase[i];
         x[4] = varying ? times[k] : 0;
         rows[9 * k + 3 + i] = swinging(x, out)[0];
       }
@@ -74,25 +64,27 @@ export class StructureCamera extends PointCamera {
   path(settings, functions, lines) {
     const { ybar, scale } = settings;
     const depth = 1 / (scale * ybar[2]);
-    const place = [motionOf(settings), serialOf(lines.grid)];
-    const known = this.memory.once("velocities", place, () => this.velocities(settings, functions, instants(lines.grid)));
+    const make = (read) => this.velocities(read, functions, instants(lines.grid));
+    const known = this.memory.once("velocities", settings, make, lines.grid);
     return { start: [ybar[0] * depth, ybar[1] * depth, depth], known, shape: [] };
   }
 
   /** As of any point, but with an inverse depth that is scaled. */
   look(settings, functions, lines, found) {
     const inFront = super.look(settings, functions, lines, found);
-    for (let k = 2; k < found.length; k += 3) found[k] /= settings.scale;
+    const { scale } = settings;
+    for (let k = 2; k < found.length; k += 3) found[k] /= scale;
     return inFront;
   }
 
-  sampled({ time, truth }, { noise, bias, drift }, { shape }) {
+  sampled({ time, truth }, { noise: { kind, size, depth }, bias, drift }, { shape }) {
     const count = time.length;
     const outputs = new Float64Array(3 * count);
     for (let k = 0; k < count; k++) {
-      outputs[3 * k] = truth[3 * k] + errorOf(noise.kind, noise.size, shape[2 * k]);
-      outputs[3 * k + 1] = truth[3 * k + 1] + errorOf(noise.kind, noise.size, shape[2 * k + 1]);
-      outputs[3 * k + 2] = truth[3 * k + 2] + bias + drift * time[k] + errorOf(noise.kind, noise.depth, shape[2 * count + k]);
+      outputs[3 * k] = truth[3 * k] + errorOf(kind, size, shape[2 * k]);
+      outputs[3 * k + 1] = truth[3 * k + 1] + errorOf(kind, size, shape[2 * k + 1]);
+      const error = errorOf(kind, depth, shape[2 * count + k]);
+      outputs[3 * k + 2] = truth[3 * k + 2] + bias + drift * time[k] + error;
     }
     return outputs;
   }

@@ -4,7 +4,7 @@ import { columnOf, derived } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { EACH, instants, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
-import { motionOf, StructureCamera } from "./camera.js";
+import { StructureCamera } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { quantityOf } from "./quantities.js";
 
@@ -35,8 +35,8 @@ export class StructureEngine extends Runner {
     const truth = this.truth(seen, hidden.length, functions);
     const names = [...OUTPUTS, ...hiddenNames];
     const judged = unknown.map((name) => (name === "d_s" ? this.model.judged : name)).join(", ");
-    const place = [motionOf(settings), settings.period, seen.time.length];
-    const speed = this.memory.once("speed", place, () => this.greatestSpeed(seen, functions));
+    const fastest = (read) => this.greatestSpeed(read, seen.time, functions);
+    const speed = this.memory.once("speed", settings, fastest, settings.period, seen.time.length);
     const result = { ...seen, judged, speed, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
     const lines = this.lines(result);
     const known = this.known(result, lines, functions);
@@ -44,11 +44,8 @@ export class StructureEngine extends Runner {
     const inputs = this.layOut(result, lines, known, settings.hold, exact, settings.start === "own");
     const asked = OUTPUTS.map((_, c) => (settings.start === "own" ? inputs.columns[c][0] : 0));
     asked.push(...hidden.map(() => 0));
-    result.runs = settings.observers.map((name) => {
-      const kernel = this.model.forms[hidden.length].observers[name];
-      const follow = () => this.follow(name, settings.gains[name], result, inputs, kernel, functions.observers[name], asked);
-      return this.unlessKept(name, settings, follow);
-    });
+    const { observers } = this.model.forms[hidden.length];
+    result.runs = this.followAll(settings, result, inputs, (name) => observers[name], functions, asked);
     if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
     return { ...result, guard: null, limits: [], whole: false };
   }
@@ -76,7 +73,7 @@ export class StructureEngine extends Runner {
   }
 
   /** Of the point against the camera, in m/s. */
-  greatestSpeed({ settings, time }, functions) {
+  greatestSpeed(settings, time, functions) {
     const { rows } = this.camera.velocities(settings, functions, time);
     let most = 0;
     for (let k = 0; k < rows.length; k += 9) {
@@ -111,8 +108,9 @@ export class StructureEngine extends Runner {
   /** True ybar and theta at the samples. */
   truth({ settings, time, image }, count, functions) {
     const width = 3 + count;
-    const place = [keyOf(settings), motionOf(settings), settings.scale, settings.period, time.length];
-    const { found, size, varying } = this.memory.once("theta", place, () => this.signals(settings, count, functions, time));
+    const make = (read) => this.signals(read, count, functions, time);
+    const inputs = [functions.signals, settings.period, time.length];
+    const { found, size, varying } = this.memory.once("theta", settings, make, ...inputs);
     const truth = new Float64Array(width * time.length);
     for (let k = 0; k < time.length; k++) {
       const from = (varying ? k : 0) * size + 3 * count + 3;
@@ -122,22 +120,20 @@ export class StructureEngine extends Runner {
     return truth;
   }
 
-  lines({ settings: { period, step }, time }) {
-    return this.memory.once("grid", [period, step, time.length], () => withSteps(stepGrid(time, step)));
+  lines({ settings, time }) {
+    const make = ({ step }) => withSteps(stepGrid(time, step));
+    return this.memory.once("grid", settings, make, settings.period, time.length);
   }
 
   exact(settings, grid, functions) {
-    const place = [this.camera.placeOf(settings), settings.step];
-    return this.memory.once("exact", place, () => this.camera.exact(settings, functions, instants(grid)));
+    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
   }
 
   /** What the observers know of the motion: rows of w, M, m. */
-  known({ settings, hidden, time }, { grid }, functions) {
-    const { period, step, scale } = settings;
+  known({ settings, hidden }, { grid }, functions) {
     const count = hidden.length;
-    const place = [period, step, time.length, keyOf(settings), motionOf(settings), scale];
-    return this.memory.once("known", place, () => {
-      const { found, size, varying, velocities } = this.signals(settings, count, functions, instants(grid));
+    const make = (read) => {
+      const { found, size, varying, velocities } = this.signals(read, count, functions, instants(grid));
       const width = 3 * count + 6;
       const rows = new Float64Array((found.length / size) * width);
       for (let k = 0; k * size < found.length; k++) {
@@ -145,7 +141,8 @@ export class StructureEngine extends Runner {
         rows.set(found.subarray(k * size, k * size + 3 * count + 3), k * width + 3);
       }
       return { rows, width, varying };
-    });
+    };
+    return this.memory.once("known", settings, make, grid, functions.signals);
   }
 
   /** How much recovering theta amplifies errors along the run, and the determinant that it divides by. */
