@@ -10,7 +10,7 @@ from percept_obs.compile.integrator import LARGEST_STEP_RATE, LONGEST_STEP, PLAN
 from percept_obs.labs.observer.settings import SCHEMA as OF_A_POINT
 from percept_obs.labs.points.settings import SCHEMA as OF_POINTS
 from percept_obs.labs.points.texts import MOST_POINTS
-from percept_obs.labs.shared.offered import MOST_NUMBERS
+from percept_obs.labs.shared.surfaces import MOST_NUMBERS
 from percept_obs.labs.structure.settings import SCHEMA as OF_STRUCTURE
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.recording.path import RELATIVE_ERROR

@@ -5,8 +5,8 @@ from typing import Any
 from percept_obs.checking.review import HINTS
 from percept_obs.labs.desk.sheets import PARTS
 from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS
-from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
+from percept_obs.labs.shared.surfaces import SURFACES
 
 MOST_LINES, LONGEST_LINE = 200, 2000
 _PLACE: dict[str, Any] = {"low": -1, "high": 1, "usual": (-1, 1), "step": 0.01}

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.labs.shared.offered import SURFACES
+from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.observers import Observer, de_luca, identifier_based, spica
 from percept_obs.system.motion import Motion, affine, rigid
 from percept_obs.system.perspective import PerspectiveSystem

@@ -2,8 +2,8 @@
 
 from percept_obs.labs.desk.sheets import PARTS
 from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, system_of
-from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts
+from percept_obs.labs.shared.surfaces import SURFACES
 
 
 def texts_for_the_page() -> Parts:

@@ -13,7 +13,8 @@ import numpy as np
 import traitlets
 
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.labs.observer.offer import offer_of, refuse_other_motion, surface_of, with_numbers
+from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
+from percept_obs.labs.observer.registry import offer_of, refuse_other_motion, surface_of, with_numbers
 from percept_obs.labs.observer.settings import (
     HOLDS,
     PICTURES,
@@ -33,22 +34,13 @@ from percept_obs.labs.observer.tracks import (
     typed_text,
     with_affine_motion,
 )
-from percept_obs.labs.observer.words import excitation_in_words, has_words, run_in_words
-from percept_obs.labs.shared.brought import brought
-from percept_obs.labs.shared.lab import NOISES, Lab
-from percept_obs.labs.shared.offered import SHAPES, numbers_of, shaped_surface
+from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen
 from percept_obs.labs.shared.samples import table_for_the_page
-from percept_obs.labs.shared.sampling import (
-    as_far_as_seen,
-    exact_path,
-    looks,
-    swinging_at,
-    too_fast,
-    too_short,
-    within_reach,
-)
 from percept_obs.labs.shared.schema import Choice, Settings
-from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
+from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
+from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.user_observers import brought
+from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
@@ -60,9 +52,6 @@ from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import TooMuchWork
-
-LOOK_WORK = 16
-"""What a look at a motion that varies costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
 class ObserverLab(Lab):
@@ -251,19 +240,12 @@ class ObserverLab(Lab):
         """Why Python does not follow runs of these settings; empty if it does."""
         if settings["scenario"] in self._recordings:
             return ""
-        return too_short(settings["duration"], settings["period"]) or too_fast(self._work(settings))
+        return too_much(self._work(settings), settings["duration"], settings["period"])
 
     def _work(self, settings: Settings) -> float:
-        """What it takes to move the point, as `MOST_WORK` counts."""
         if settings["scenario"] in self._recordings:
             return 0.0
-        duration, rows, looked = settings["duration"], np.array([_numbers(settings)]), 0.0
-        if self._varies(settings):
-            known, times = self._motion_of(settings).known, np.linspace(0, duration, INSTANTS)
-            rows, looked = known(times), swinging_at(known, times)
-        fastest = float(np.abs(rows[:, :9].reshape(-1, 3, 3)).sum(axis=2).max())
-        moved = exact_path(duration, settings["period"], fastest)
-        return moved + (LOOK_WORK * looks(duration, fastest, looked) if self._varies(settings) else 0.0)
+        return motion_work(self._motion_of(settings), settings["duration"], settings["period"])
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs that settings stand for, by the observers' names."""
@@ -346,7 +328,7 @@ def _motion(text: str) -> Motion:
 @lru_cache(maxsize=4)
 def _simulated(text: str, motion: Motion, seen_on: ImagingSurface) -> Recording:
     settings = json.loads(text)
-    return as_far_as_seen(*_scene(settings, motion, seen_on), settings["seed"])
+    return record_while_seen(*_scene(settings, motion, seen_on), settings["seed"])
 
 
 def _scene(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> tuple[Scenario, Camera]:

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.labs.observer.offer import Offer
+from percept_obs.labs.observer.registry import Offer
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over
-from percept_obs.labs.shared.offered import SURFACES, numbers_of
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
+from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.recording import Scenario, scenarios
 

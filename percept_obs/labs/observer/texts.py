@@ -10,10 +10,10 @@ from types import MappingProxyType
 import sympy as sp
 
 from percept_obs.compile import definitions, function_source, source
-from percept_obs.labs.shared.brought import Maker, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.markup import dotted, formula, markup
-from percept_obs.labs.shared.offered import SURFACES
 from percept_obs.labs.shared.printed import Parts, Texts
+from percept_obs.labs.shared.surfaces import SURFACES
+from percept_obs.labs.shared.user_observers import Maker, observers_for_the_page, of_an_observer
 from percept_obs.observability.maps import map_kernel
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer

@@ -8,7 +8,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.labs.observer.offer import Offer
+from percept_obs.labs.observer.registry import Offer
 from percept_obs.labs.observer.texts import BLOCKS
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Settings

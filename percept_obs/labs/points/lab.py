@@ -11,6 +11,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import vectorised
+from percept_obs.labs.points.analysis import in_words
 from percept_obs.labs.points.settings import LONGEST, PICTURES, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
@@ -22,14 +23,13 @@ from percept_obs.labs.points.texts import (
     typed_velocities,
 )
 from percept_obs.labs.points.typed_weight import as_text, gives_P, read_weight, refuse_P, weight_for_the_page, weight_of
-from percept_obs.labs.points.words import in_words
 from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
-from percept_obs.labs.shared.samples import is_sampled, looks_at, refuse_longer, times_of
-from percept_obs.labs.shared.sampling import looks, swinging_at, too_fast, within_reach
+from percept_obs.labs.shared.samples import is_sampled, refuse_longer, times_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import (
     FirstSight,
@@ -50,8 +50,8 @@ from percept_obs.tracking.verdict import VERDICTS, for_the_page
 STEP_WORK, STEP_WORK_WITH_P = 10, 20
 """Times that a state of many points takes Python longer than one of a single point: alone, and with a P to compute."""
 
-LOOK_WORK = 26
-"""What a look at a motion that varies costs Python, as `MOST_WORK` counts."""
+CALL_WORK = 26
+"""Work of one call of a motion that varies by a solver, for one path."""
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""
@@ -161,17 +161,14 @@ class PointsLab(Lab):
         settings = self.settings
         steps = settings["duration"] / min(settings["period"], settings["step"])
         form = form_of_settings(settings, self._form)
-        times = np.linspace(0, settings["duration"], 50)
-        A, _ = form.coefficients(times)
+        A, _ = form.coefficients(np.linspace(0, settings["duration"], 50))
         paths = 2 if settings["hold"] == "exact" else 1
-        swings = swinging_at(form.numbers, times) if settings["motion"].strip() else 0.0
-        looked = looks(settings["duration"], float(np.abs(A).sum(axis=-1).max()), swings)
-        if is_sampled(form.motion):
-            looked = max(looked, looks_at(form.motion, settings["duration"]))
-        moved = LOOK_WORK * paths * looked
+        fastest = float(np.abs(A).sum(axis=-1).max())
+        known = form.numbers if settings["motion"].strip() else None
+        moved = CALL_WORK * paths * solver_calls(known, settings["duration"], fastest, form.motion)
         each = STEP_WORK_WITH_P if settings["weight"] in ("lyapunov", "riccati") else STEP_WORK
         _, beyond = within_reach(steps, {"these points": each * 3 * len(settings["points"])}, moved)
-        beyond = [refusal] if (refusal := too_fast(moved)) else beyond
+        beyond = [refusal] if (refusal := too_much(moved)) else beyond
         return {"sentences": beyond, "bound": None} if beyond else in_words(self.run(), settings["window"])
 
 

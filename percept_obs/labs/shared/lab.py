@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import anywidget
+import numpy as np
 import traitlets
 from IPython.display import display
 from IPython.utils.capture import capture_output
@@ -23,7 +24,8 @@ from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed
-from percept_obs.recording import Gaussian, Uniform
+from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
+from percept_obs.system.surfaces import BehindCamera
 from percept_obs.validation import write_whole
 
 BUNDLE = FRONT / "lab.js"
@@ -47,6 +49,24 @@ MOST_WRITTEN = 50
 """How many typed motions are kept ready for the page."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
+
+
+def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
+    """What a camera records until the point leaves the half-space in front of it.
+
+    Raises
+    ------
+    BehindCamera
+        If it leaves at once.
+    """
+    try:
+        return record(scenario, camera=camera, seed=seed)
+    except BehindCamera:  # not asked for beforehand, for that takes as long as recording
+        times = camera.times(scenario.duration)
+    count = int(np.argmin(scenario.in_front(times)))
+    if count < 2:
+        raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
+    return record(scenario, times[count - 1], camera, seed)
 
 
 class BadSettings(traitlets.TraitError, ValueError):

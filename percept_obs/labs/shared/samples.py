@@ -11,9 +11,6 @@ from percept_obs.validation import limit
 MOST_SAMPLES = 10_000
 """100 s at 100 Hz: a kink for each, at which page and Python end a step."""
 
-LOOKS_A_SAMPLE = 15
-"""How often Python's solver looks at a motion between two of its samples, at least."""
-
 
 def is_sampled(motion: Motion) -> bool:
     """Whether numbers of a motion are known at some times."""
@@ -43,11 +40,6 @@ def refuse_longer(motion: Motion, duration: float) -> None:
             f"the run lasts {duration:g} s, but the motion is sampled up to {times_of(motion)[-1]:.6g} s only; shorten "
             "the duration or bring more samples"
         )
-
-
-def looks_at(motion: Motion, duration: float) -> int:
-    """How often Python's solver looks at samples up to a time, at least."""
-    return LOOKS_A_SAMPLE * int((times_of(motion) < duration).sum())
 
 
 def table_for_the_page(motion: Motion, begun: float = 0.0) -> Settings:

@@ -14,27 +14,19 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.brought import OwnObserver, brought, observers_for_the_page, of_an_observer
 from percept_obs.labs.shared.common_settings import gains, offering, over
-from percept_obs.labs.shared.lab import NOISES, Lab
+from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen
 from percept_obs.labs.shared.printed import Texts, part, with_texts
-from percept_obs.labs.shared.samples import looks_at, samples_for_the_page
-from percept_obs.labs.shared.sampling import (
-    as_far_as_seen,
-    exact_path,
-    looks,
-    swinging_at,
-    too_fast,
-    too_short,
-    within_reach,
-)
+from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import INSTANTS, Typed, read_motion, typed_in
-from percept_obs.labs.structure.given import Given, opening_of
+from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.user_observers import OwnObserver, brought, observers_for_the_page, of_an_observer
+from percept_obs.labs.shared.work import motion_work, too_much, within_reach
+from percept_obs.labs.structure.analysis import late_errors
 from percept_obs.labs.structure.samples import refuse_samples, zero_in
 from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
-from percept_obs.labs.structure.words import late_errors
+from percept_obs.labs.structure.user_defined import Given, opening_of
 from percept_obs.observers import Observer
 from percept_obs.recording import Recording
 from percept_obs.structure import (
@@ -57,10 +49,6 @@ from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
 """How many steps an observer takes at most, so that the page does not stand still."""
-
-
-LOOK_WORK = 16
-"""What a look at a motion that swings costs Python, as `MOST_WORK` counts; there are two paths."""
 
 
 class StructureLab(Lab):
@@ -194,29 +182,14 @@ class StructureLab(Lab):
 
     def too_much(self, settings: Settings) -> str:
         """Why Python does not follow runs of these settings; empty if it does."""
-        return too_short(settings["duration"], settings["period"]) or too_fast(self._work(settings))
+        return too_much(self._work(settings), settings["duration"], settings["period"])
 
     def _work(self, settings: Settings) -> float:
-        return _work(settings, _used(settings, self._samples))
+        motion = motion_of(settings, _used(settings, self._samples))
+        return motion_work(motion, settings["duration"], settings["period"])
 
 
 structure_lab = StructureLab
-
-
-def _work(settings: Settings, samples: Motion | None) -> float:
-    """What it takes to move the point, as `MOST_WORK` counts."""
-    duration = settings["duration"]
-    turning, swings = np.abs([settings["w"]]), settings["rate"]
-    if settings["motion"].strip() or samples:
-        times = np.linspace(0, duration, INSTANTS)
-        known = motion_of(settings, samples).known
-        turning, swings = np.abs(known(times)[:, :3]), swinging_at(known, times)
-    fastest = float((turning.sum(axis=1) - turning.min(axis=1)).max())
-    moved = exact_path(duration, settings["period"], fastest)
-    if not (_swings(settings) or samples):
-        return moved
-    least = looks_at(samples, duration) if samples else 0
-    return moved + LOOK_WORK * max(looks(duration, fastest, swings), least)
 
 
 def _title(name: str, run: Run) -> str:
@@ -349,4 +322,4 @@ def _recorded_once(text: str, unknowns: StructureAndMotion, samples: Motion | No
     make = NOISES[settings["noise"]["kind"]]
     source = GivenDepth(make(settings["noise"]["depth"]), settings["bias"], settings["drift"])
     camera = ScaledDepthCamera(settings["period"], make(settings["noise"]["size"]), depth=source)
-    return as_far_as_seen(scenario, camera, settings["seed"])
+    return record_while_seen(scenario, camera, settings["seed"])

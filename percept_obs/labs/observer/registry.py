@@ -20,7 +20,10 @@ from percept_obs.labs.observer.texts import (
     observer_on,
     surface_for_the_page,
 )
-from percept_obs.labs.shared.brought import (
+from percept_obs.labs.shared.observer_texts import with_all_gains
+from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
+from percept_obs.labs.shared.surfaces import SURFACES
+from percept_obs.labs.shared.user_observers import (
     Maker,
     OwnObserver,
     free,
@@ -28,9 +31,6 @@ from percept_obs.labs.shared.brought import (
     of_an_observer,
     origin,
 )
-from percept_obs.labs.shared.observer_texts import with_all_gains
-from percept_obs.labs.shared.offered import SURFACES
-from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
 from percept_obs.observers import Observer
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.surfaces import ImagingSurface

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from percept_obs.labs.shared.brought import same_system
 from percept_obs.labs.shared.samples import times_of
 from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.user_observers import same_system
 from percept_obs.labs.structure.samples import sampled
 from percept_obs.labs.structure.settings import LONGEST, STANDARD
 from percept_obs.labs.structure.texts import PHASES
