@@ -23,8 +23,8 @@ from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed, function_source
 from percept_obs.compile.integrator import EACH
 from percept_obs.compile.kernels import Table, solve
-from percept_obs.labs.observer.texts import observer_of
 from percept_obs.labs.observer.analysis import run_in_words
+from percept_obs.labs.observer.texts import observer_of
 from percept_obs.observability.directions import mainly
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.observers import extended_kalman, linear_approximation

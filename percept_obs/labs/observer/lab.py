@@ -322,7 +322,9 @@ def _motion(text: str) -> Motion:
     if settings["motion"].strip():
         typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
         return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers))))
-    return affine(settings["A"], settings["b"])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # the controls say their units
+        return affine(settings["A"], settings["b"])
 
 
 @lru_cache(maxsize=4)

@@ -131,7 +131,7 @@ class PointsLab(Lab):
         Points are seen where `hidden` is missing, and P is typed where `weight` is missing.
         """
         if isinstance(settings, Mapping):
-            typed = {name: as_text(settings[name]) for name in ("P", "P0") if name in settings}
+            typed: Settings = {name: as_text(settings[name]) for name in ("P", "P0") if name in settings}
             settings = {**({"weight": "typed"} if "P" in typed else {}), **settings, **typed}
         points = settings.get("points") if isinstance(settings, Mapping) else None
         if isinstance(points, list | tuple) and points and "hidden" not in settings:

@@ -291,7 +291,9 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     if _swings(settings):
         return replace(rigid(), signal=Signal(OverTime(known)))
     (still,) = known(np.zeros(1))
-    return rigid(still[:3], still[3:6], still[6:])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # the controls say their units
+        return rigid(still[:3], still[3:6], still[6:])
 
 
 def _velocities(settings: Settings, times: Array) -> Array:
