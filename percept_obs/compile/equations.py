@@ -19,7 +19,7 @@ Expressions = tuple[sp.Expr, ...]
 
 @dataclass(frozen=True)
 class Equations:
-    """What happens to a state between samples, at samples, and when it is reset.
+    """Equations of a state between samples, at samples, and at resets.
 
     Parameters
     ----------
@@ -28,9 +28,9 @@ class Equations:
     flow : expressions, one a state
         Time derivative of the state.
     measured, parameters, gains : symbols
-        What the expressions use besides the state: measured outputs, the known motion and surface, constants.
+        Symbols of measured outputs, of the known motion and surface, and of constants in the expressions.
     update : one tuple of expressions a measured output
-        The state after the sample of that output; the outputs take their turns.
+        The state after the sample of that output; the outputs take turns.
     reset_condition : sympy condition
         When the state is replaced by `reset`; looked at between steps.
     reset : expressions, one a state
@@ -76,21 +76,21 @@ class Equations:
 
     @cached_property
     def _hash(self) -> int:
-        """Looked up for every run, and made of many expressions."""
+        """Hash, which every run looks up and which takes long."""
         return hash(tuple(self.__getstate__().values()))
 
     def __getstate__(self) -> dict[str, Any]:
-        """What another process is told: texts, and so expressions, have another hash there."""
+        """Fields without the hash, which is another one in another process."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def switches(self) -> bool:
-        """Whether the flow or an update jumps, so that rounding decides on which side a state near the jump is."""
+        """True if the flow or an update jumps, so that rounding decides on which side of a jump a state is."""
         expressions = (*self.flow, *(entry for block in self.update for entry in block))
         return any(written_out(each).has(sp.sign, sp.Piecewise, sp.Heaviside) for each in expressions)
 
     def xreplace(self, rule: Mapping[sp.Basic, sp.Basic]) -> Equations:
-        """The same equations with symbols replaced in flow, updates, reset condition and reset."""
+        """Replace symbols in flow, updates, reset condition and reset."""
         return replace(
             self,
             flow=tuple(entry.xreplace(rule) for entry in self.flow),
@@ -120,5 +120,5 @@ class Equations:
 
 
 def _stacked(expressions: Expressions) -> sp.Basic:
-    """Several expressions as a column, one as it is."""
+    """Column of several expressions, or the only one itself."""
     return expressions[0] if len(expressions) == 1 else sp.ImmutableMatrix(expressions)

@@ -1,4 +1,4 @@
-"""Expressions as functions: of arrays with numpy, of a state for scipy's solvers, of an array in every language."""
+"""Functions made of expressions: of numpy arrays, of a state for scipy's solvers, of an array in each language."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def vectorised(
     expressions: Sequence[sp.Expr],
     values: Mapping[sp.Symbol, float] | None = None,
 ) -> Callable[..., list[Array]]:
-    """A numpy function of arrays for several expressions; constants take the arrays' shape."""
+    """Make a numpy function of arrays of several expressions; constants take the arrays' shape."""
     extra = tuple(values or ())
     function = _numpy_function((*symbols, *extra), tuple(expressions))
     constants = tuple((values or {}).values())
@@ -38,7 +38,7 @@ def vectorised(
 
 
 def at_once(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, ...], values: Sequence[float]) -> Array:
-    """Several expressions at one place, where `vectorised` would take longer to lay out its arrays than to compute."""
+    """Evaluate several expressions at one point, faster than by `vectorised`."""
     return np.array(_numpy_function(symbols, expressions)(*map(np.float64, values)), dtype=float)
 
 
@@ -48,7 +48,7 @@ def _numpy_function(symbols: tuple[sp.Symbol, ...], expressions: tuple[sp.Expr, 
 
 
 def _shared(expressions: Any, **_: Any) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Any]:
-    """What `sympy.lambdify` asks for: common subexpressions, and what is left of one expression or of several."""
+    """`common_subexpressions` of one expression or several, as `sympy.lambdify` calls it."""
     if isinstance(expressions, sp.Basic):
         shared, (left,) = common_subexpressions([expressions])
         return shared, left
@@ -56,7 +56,7 @@ def _shared(expressions: Any, **_: Any) -> tuple[list[tuple[sp.Symbol, sp.Expr]]
 
 
 def right_hand_side(equations: Equations, values: Mapping[sp.Symbol, float]) -> Callable[..., list[float]]:
-    """The flow as a function of (state, measured, parameters) with the given numbers put in.
+    """Make the flow a function of (state, measured, parameters) with numbers for some symbols.
 
     Parameters without a number stay arguments, in their order.
     """
@@ -103,7 +103,7 @@ def function_source(
 
 
 def python_text(expression: sp.Expr) -> str:
-    """An expression in Python, with its functions as those of `math`.
+    """Text of an expression in Python, with functions of `math`.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def python_text(expression: sp.Expr) -> str:
 
 
 def executed(text: str, **names: Any) -> Callable[..., Any]:
-    """The Python function that a text defines last; it may use `math`, and whatever is named."""
+    """Python function that a text defines last; it may use `math` and the names that are passed."""
     namespace: dict[str, Any] = {"math": math} | names
     exec(compile(text, "<printed>", "exec"), namespace)
     *_, function = (value for value in namespace.values() if isinstance(value, FunctionType))

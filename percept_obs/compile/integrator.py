@@ -1,4 +1,4 @@
-"""The integrator: one Runge-Kutta method, with the constants of every loop that steps by it, here and in the page."""
+"""The integrator: one Runge-Kutta method and its constants, for the loops here and in the page."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ INSTANTS: Shares = tuple(sorted({Fraction(0), *NODES, Fraction(1)}))
 """The shares of a step at which known signals are laid out: its start, the stages' nodes between, its end."""
 
 PLACES = tuple(map(INSTANTS.index, NODES))
-"""For each stage, which of the instants it lies at."""
+"""Index of the instant of each stage."""
 
 EACH = len(INSTANTS) - 1
 """Rows that a step adds to a table of known signals; its end is the next one's start."""
@@ -60,7 +60,7 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     grid : array
         Times of all steps' ends, from ``times[0]`` to ``times[-1]``.
     index : array of shape (len(times),)
-        Where the times stand in the grid.
+        Index of each time in the grid.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
 
 
 def instants(grid: Array) -> Array:
-    """The times at which steps look at known signals, shape (N EACH + 1,), for a grid of shape (N + 1,)."""
+    """Times of known signals, shape (N EACH + 1,), for a grid of steps of shape (N + 1,)."""
     times = np.empty(EACH * (len(grid) - 1) + 1)
     times[-1:] = grid[-1:]
     for k, share in enumerate(map(float, INSTANTS[:-1])):
@@ -91,17 +91,17 @@ def instants(grid: Array) -> Array:
 
 
 def by_step(rows: Array) -> Array:
-    """Values at the instants, shape (N EACH + 1, ...), with those of each step together, shape (N, EACH + 1, ...)."""
+    """Group values at the instants, shape (N EACH + 1, ...), by their steps, shape (N, EACH + 1, ...)."""
     last = len(rows) - 1
     return np.stack([rows[k : last + k : EACH] for k in range(EACH + 1)], axis=1)
 
 
 def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> Array:
-    """Where states get in a step of the given lengths; rate(instant, states) is their rate at one of its instants."""
+    """States after a step of the given lengths; rate(instant, states) is their rate at one of its instants."""
     rates: list[Array] = []
 
     def moved(shares: Shares) -> Array:
-        return state + lengths * sum(float(share) * found for share, found in zip(shares, rates, strict=True))
+        return state + lengths * sum(float(share) * rate for share, rate in zip(shares, rates, strict=True))
 
     for place, shares in zip(PLACES, COUPLING, strict=True):
         rates.append(rate(place, moved(shares)))
@@ -109,13 +109,13 @@ def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> A
 
 
 def numbers() -> tuple[Array, Array, Indices]:
-    """The method for loops over numbers: a_ij of shape (stages, stages), 0 above the diagonal, b_i, and the places."""
+    """Coefficients a_ij, shape (stages, stages), b_i and the index of each stage's instant, as arrays."""
     square = [[*row, *[0] * (len(WEIGHTS) - len(row))] for row in COUPLING]
     return np.array(square, dtype=float), np.array(WEIGHTS, dtype=float), np.array(PLACES)
 
 
 def for_the_page() -> str:
-    """The method and its constants as the page's module ``common/model/integrator.js``."""
+    """Text of the page's module ``common/model/integrator.js``: the method and its constants."""
     square, weights, _ = numbers()
     constants: dict[str, Any] = {
         "COUPLING": square.tolist(),

@@ -1,4 +1,4 @@
-"""Intermediate results with a name, such as a root: equations carry the name, and kernels compute it once."""
+"""Named intermediate results, such as a root: equations carry the name, and kernels compute it once."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import sympy as sp
 
 
 class Intermediate(sp.Function):
-    """A function of letters that is carried by its name, for written out it would make every formula long.
+    """A function that formulas carry by its name, such as a root, for written out it would make each of them long.
 
-    A subclass says what it is, `value`, and an `equation` that it solves, from which its derivatives follow in terms of
-    itself; so they have no other root.
+    A subclass defines its `value`, and an `equation` that it solves, from which its derivatives follow in terms of
+    itself, without another root.
 
     Examples
     --------
@@ -32,33 +32,33 @@ class Intermediate(sp.Function):
 
     @staticmethod
     def value(*letters: sp.Expr) -> sp.Expr:
-        """What it is."""
+        """Return its value as an expression."""
         raise NotImplementedError
 
     @staticmethod
     def equation(*letters: sp.Expr) -> sp.Expr:
-        """What is 0, given itself and the letters that it depends on."""
+        """Return an expression that is 0, given itself and its arguments."""
         raise NotImplementedError
 
     @classmethod
     def eval(cls, *letters: sp.Expr) -> sp.Expr | None:
-        """Its number, if all letters are numbers."""
+        """Return its number, if all arguments are numbers."""
         return cls.value(*letters) if all(letter.is_number for letter in letters) else None
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Its derivative by a letter, counted from 1."""
+        """Derivative by an argument, counted from 1."""
         kind: Any = type(self)
         own, letters, derivatives = _derivatives(kind, len(self.args))
         return derivatives[argindex - 1].xreplace({own: self, **dict(zip(letters, self.args, strict=True))})
 
     @property
     def written_out(self) -> sp.Expr:
-        """What it is, without its name."""
+        """Value, as an expression of the arguments."""
         return self.value(*self.args)
 
     @property
     def letter(self) -> sp.Symbol:
-        """The letter that is written for it, with a hat where it is taken at an estimate."""
+        """Letter in formulas, with a hat where the arguments are estimates."""
         name, free = type(self).__name__, [argument for argument in self.args if not argument.is_number]
         if any("hat" in symbol.name for symbol in self.free_symbols):
             name += "hat"
@@ -79,14 +79,14 @@ class Intermediate(sp.Function):
 
 @lru_cache
 def _derivatives(kind: Any, count: int) -> tuple[sp.Symbol, tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
-    """A letter for itself, letters for what it depends on, and its derivatives by those, from its equation."""
+    """Symbols of itself and of its arguments, and its derivatives by these, from its equation."""
     own, *letters = (sp.Dummy(real=True) for _ in range(count + 1))
     equation = kind.equation(own, *letters)
     return own, tuple(letters), tuple(-sp.cancel(equation.diff(x) / equation.diff(own)) for x in letters)
 
 
 def intermediates(expressions: Iterable[sp.Basic]) -> list[Intermediate]:
-    """The intermediate results in expressions, each behind those that it depends on."""
+    """Intermediate results in expressions, each after those that it depends on."""
     return list(dict.fromkeys(_inside(expressions)))
 
 
@@ -98,32 +98,33 @@ def _inside(expressions: Iterable[sp.Basic]) -> Iterator[Intermediate]:
 
 
 def written_out(expression: sp.Basic) -> sp.Basic:
-    """An expression without names of intermediate results."""
+    """Expression with the values of intermediate results."""
     while found := expression.atoms(Intermediate):
         expression = expression.xreplace({each: each.written_out for each in found})
     return expression
 
 
 def in_letters(expression: sp.Basic) -> sp.Basic:
-    """An expression with a letter for each intermediate result, to be read and not to be computed with."""
+    """Expression with a letter for each intermediate result, to be read, not computed."""
     return expression.xreplace({each: each.letter for each in expression.atoms(Intermediate)})
 
 
 def definitions(expressions: Iterable[sp.Basic]) -> dict[sp.Symbol, sp.Expr]:
-    """What the intermediate results in expressions are, by their letters."""
+    """Values of the intermediate results in expressions, by their letters."""
     return {each.letter: in_letters(each.written_out) for each in intermediates(expressions)}
 
 
 def common_subexpressions(
     expressions: Iterable[sp.Expr], names: Iterator[sp.Symbol] | None = None
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    """What is to be computed first, intermediate results and common subexpressions, and what is left then.
+    """Take intermediate results and common subexpressions out of expressions.
 
     Returns
     -------
     list of (symbol, expression)
-        In the order in which they can be computed.
+        Values to compute first, in this order.
     list of expressions
+        The expressions in terms of these symbols.
     """
     expressions = list(expressions)
     names = names or sp.numbered_symbols("shared")

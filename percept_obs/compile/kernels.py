@@ -1,4 +1,4 @@
-"""Running the loop, in Python at once and in numba where compiling pays."""
+"""Running the loop: in Python, or in numba where compiling pays."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from percept_obs.compile.machine_code import machine_code
 Language = Literal["python", "numba"]
 
 WORTH_COMPILING = 200_000
-"""Steps that take Python about as long as numba takes to compile them and run them."""
+"""Number of steps that takes Python about as long as numba takes to compile and run them."""
 
 
 def choose(language: Language | None, steps: float) -> Language:
-    """The language to run a loop in: numba, if it is installed, for so many steps that they pay for its compiling.
+    """Choose the language of a loop: numba, if it is installed, for so many steps that they pay for its compiling.
 
-    It depends on nothing but the call, so that a run never changes with what ran before it.  Who is to run the same
-    observer often adds up the steps of all runs, or asks for numba.
+    It depends on nothing but the call, so that a run never changes with what ran before it.  To run the same observer
+    often, pass the steps of all runs together, or ask for numba.
 
     Parameters
     ----------
     language : "python" or "numba", optional
-        What is asked for.
+        Returned if it is not None.
     steps : float
-        What is to be run, in steps of a point's observer.
+        Number of steps of one point's observer, or as much work.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def choose(language: Language | None, steps: float) -> Language:
 
 @dataclass(frozen=True)
 class Table:
-    """What is known at the instants of every step: its start, its end, and what the method looks at between.
+    """Known signals at the instants of every step: its start, its end, and the method's nodes between.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Trace:
-    """What a run of the loop leaves.
+    """Result of a run of the loop.
 
     Parameters
     ----------
@@ -146,8 +146,8 @@ def _python(equations: Equations) -> Callable[..., int]:
 def _compiled(equations: Equations) -> Callable[..., int]:
     from numba import types
 
-    given = types.Array(types.float64, 1, "C", readonly=True)  # which takes arrays that may be written to as well
-    signature = (*[given] * 6, types.boolean, types.float64[::1], types.boolean[::1])
+    array = types.Array(types.float64, 1, "C", readonly=True)  # also takes arrays that may be written to
+    signature = (*[array] * 6, types.boolean, types.float64[::1], types.boolean[::1])
     text = f"import math\n\n\n{source(equations, 'python')}"
-    # a reset needs a state within rounding of its bound at a step's end to move; a jump is crossed all the time
+    # rounding moves a reset only if a state is that close to its bound at a step's end; a jump is crossed all the time
     return machine_code(text, signature, "exact" if equations.switches else "contracted")

@@ -12,23 +12,20 @@ from types import FunctionType, ModuleType
 from typing import Any, Literal
 from uuid import uuid4
 
-Rounding = Literal["exact", "contracted", "lanes"]
+Rounding = Literal["exact", "contracted", "batch"]
 
-_EXACT: dict[str, Any] = {"error_model": "numpy"}
-_CONTRACTED = _EXACT | {"fastmath": {"contract"}}
 OPTIONS: dict[Rounding, dict[str, Any]] = {
-    "exact": _EXACT,
-    "contracted": _CONTRACTED,
-    "lanes": _CONTRACTED | {"nogil": True},
+    "exact": {"error_model": "numpy"},
+    "contracted": {"error_model": "numpy", "fastmath": {"contract"}},
+    "batch": {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True},
 }
-"""For numba: as Python rounds; a product and a sum rounded once, in no other order; and this in threads beside each
-other, for runs side by side."""
+"""Options of numba: rounding as in Python; a product and a sum rounded once, in no other order; and this in threads."""
 
 
-# Not in a thread beside: numba sets Python's warning filters while it compiles, and every thread has the same.
+# Not in another thread: numba sets Python's warning filters while it compiles, and all threads share them.
 @lru_cache(maxsize=512)
 def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Callable[..., Any]:
-    """The last function of a text in machine code; it may call those before it.
+    """Compile the last function of a text; it may call those before it.
 
     numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
     another one.  So the text becomes a file, named by its hash; it must hold all that the code depends on.  It goes to
@@ -42,23 +39,18 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
     content = text.encode()
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
     file = folder / f"loop_{hashlib.sha256(content).hexdigest()[:32]}.py"
-    kept = _can_be_written(folder)
+    nearest = next(place for place in (folder, *folder.parents) if os.path.exists(place))
+    kept = nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
     if kept and not file.exists():
         folder.mkdir(parents=True, exist_ok=True)
         new = file.with_suffix(f".{uuid4().hex}")
         new.write_bytes(content)
-        new.replace(file)  # at once, for other processes may want it too
+        new.replace(file)  # whole, for other processes may read it
     module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks when it takes the code from the file
     exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
     *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-    inside = rounding == "lanes"  # of the loop, for a call stops vector instructions
+    inside = rounding == "batch"  # of the loop, for a call stops vector instructions
     for name in others:
         setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
     compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
     return compiled
-
-
-def _can_be_written(folder: Path) -> bool:
-    """Whether a folder can be written, or made where it is not there yet."""
-    there = next(place for place in (folder, *folder.parents) if os.path.exists(place))
-    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)

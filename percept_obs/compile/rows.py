@@ -1,4 +1,4 @@
-"""Expressions of every row of a table, in numpy or in one pass of machine code."""
+"""Functions of every row of tables, in numpy or in one pass of machine code."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import sympy as sp
 
 from percept_obs.compile import vector_functions
 from percept_obs.compile.arrays import Array
+from percept_obs.compile.batch_loop import BATCH
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.functions import vectorised
 from percept_obs.compile.kernels import Language
-from percept_obs.compile.lanes import LANES
 from percept_obs.compile.loop import take_out
 from percept_obs.compile.machine_code import machine_code
 from percept_obs.compile.text import Text
@@ -26,12 +26,12 @@ Rows = Callable[[Sequence[Array], Array], Array]
 def by_row(
     tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language
 ) -> Rows:
-    """A function of tables and constants for several expressions.
+    """Make a function of tables and constants of several expressions.
 
     Parameters
     ----------
     tables : tuples of symbols
-        What the columns of each table are.
+        Columns of each table.
     constants : symbols
     expressions : tuple of expressions or conditions
     language : "python" or "numba"
@@ -40,7 +40,7 @@ def by_row(
     Returns
     -------
     function of (arrays of shape (K, symbols), array of shape (constants,))
-        It gives an array of shape (K, expressions), with 1 where a condition holds.
+        Returns an array of shape (K, expressions), with 1 where a condition holds.
 
     Examples
     --------
@@ -62,15 +62,15 @@ def by_row(
         return in_numpy
     from numba import types
 
-    given, flat = (types.Array(types.float64, *kind, readonly=True) for kind in ((2, "A"), (1, "C")))
-    signature = (*[given] * len(tables), flat, types.float64[:, ::1])
-    machine = machine_code(_source(tables, constants, expressions), signature, "lanes")
+    table, flat = (types.Array(types.float64, *kind, readonly=True) for kind in ((2, "A"), (1, "C")))
+    signature = (*[table] * len(tables), flat, types.float64[:, ::1])
+    machine = machine_code(_source(tables, constants, expressions), signature, "batch")
 
     def in_machine_code(arrays: Sequence[Array], numbers: Array) -> Array:
         count = len(arrays[0])
-        if count < LANES:
-            last_again = np.minimum(np.arange(LANES), count - 1)
-            arrays = [array[last_again] for array in arrays]
+        if count < BATCH:  # the last row fills up the batch
+            rows = np.minimum(np.arange(BATCH), count - 1)
+            arrays = [array[rows] for array in arrays]
         values = np.empty((len(arrays[0]), len(expressions)))
         machine(*arrays, numbers, values)
         return values[:count]
@@ -79,33 +79,33 @@ def by_row(
 
 
 def _source(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...]) -> str:
-    """Text of the loop over the rows, `LANES` of them together; what depends on constants only stands before it."""
-    text, fixed, arguments = Text("lanes"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
+    """Text of the loop over the rows, `BATCH` of them together; terms of constants only stand before it."""
+    text, fixed, arguments = Text("batch"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
     places = {s: f"{name}_part[i, {k}]" for name, of in zip(arguments, tables, strict=True) for k, s in enumerate(of)}
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate((*places, *constants))}
     left = [take_out(e.xreplace(names), {names[symbol] for symbol in constants}, fixed) for e in expressions]
     used = [symbol for symbol in places if any(e.has(names[symbol]) for e in left)]
     work = [f"work[{k}, i]" for k in range(len(used) + len(left))]
     with text.function("run", [*arguments, "numbers", "values"]):
-        text.assign("work", f"np.empty(({len(work)}, {LANES}))")
+        text.assign("work", f"np.empty(({len(work)}, {BATCH}))")
         for k, symbol in enumerate(constants):
             text.assign(names[symbol].name, f"numbers[{k}]")
         for expression, name in fixed.items():
             text.assign(name.name, text.print(expression))
-        with text.over(f"range(0, len(values), {LANES})"):
-            text.assign("row", f"min(i, len(values) - {LANES})")
+        with text.over(f"range(0, len(values), {BATCH})"):
+            text.assign("row", f"min(i, len(values) - {BATCH})")
             for array in (*arguments, "values"):
-                text.assign(f"{array}_part", f"{array}[row:row + {LANES}]")
-            with text.over(f"range({LANES})"):
+                text.assign(f"{array}_part", f"{array}[row:row + {BATCH}]")
+            with text.over(f"range({BATCH})"):
                 for place, symbol in zip(work, used, strict=False):
                     text.store(place, places[symbol])
-            with text.over(f"range({LANES})"):
+            with text.over(f"range({BATCH})"):
                 for place, symbol in zip(work, used, strict=False):
                     text.assign(names[symbol].name, place)
                 text.formulas(left, "e")
                 for k, place in enumerate(work[len(used) :]):
                     text.store(place, f"e{k}")
-            with text.over(f"range({LANES})"):
+            with text.over(f"range({BATCH})"):
                 for k, place in enumerate(work[len(used) :]):
                     text.store(f"values_part[i, {k}]", place)
     return f"{inspect.getsource(vector_functions)}\n\n{text}"

@@ -15,7 +15,7 @@ from sympy.printing.pycode import PythonCodePrinter
 from percept_obs.compile.intermediate import Intermediate, common_subexpressions, intermediates
 
 Printed = Literal["python", "javascript"]
-Notation = Literal["python", "javascript", "lanes"]
+Notation = Literal["python", "javascript", "batch"]
 
 LARGEST_PRODUCT = 8
 """Powers of numbers or of roots up to this are printed as products, the same in every language."""
@@ -25,7 +25,7 @@ FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh, 
 
 BUILT = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, Intermediate)
 KNOWN = (*BUILT, *FUNCTIONS)
-"""What is printed alike, besides numbers and some powers."""
+"""Expressions that are printed alike, besides numbers and some powers."""
 
 
 class NotCompilable(ValueError):
@@ -33,7 +33,7 @@ class NotCompilable(ValueError):
 
 
 def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
-    """Refuse what a language would not know, or would evaluate in a branch that is not taken."""
+    """Refuse expressions that a language does not know, or would evaluate in a branch that is not taken."""
     named = [each.written_out for each in intermediates(expressions)]
     for expression in (*expressions, *named):
         for node in sp.preorder_traversal(expression):
@@ -52,7 +52,7 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
 
 
 class _Printer(PythonCodePrinter):
-    """Arithmetic in the notation that Python and JavaScript share; what differs is in the words."""
+    """Arithmetic as Python and JavaScript share it, with the words of one of them."""
 
     def __init__(self, words: Mapping[str, str]) -> None:
         super().__init__({"fully_qualified_modules": False})
@@ -122,14 +122,14 @@ for _function in FUNCTIONS:
 
 _WORDS = {
     "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
-    "lanes": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
+    "batch": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
     | {"exp": "exp", "tanh": "tanh"},
     "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
 }
 
 
 class Text:
-    """Lines of a program in one of two languages; Python's may be of lanes, where choices are no branches."""
+    """Lines of a program in Python, in Python for a batch, where choices are no branches, or in JavaScript."""
 
     def __init__(self, language: Notation) -> None:
         if language not in _WORDS:
@@ -152,17 +152,17 @@ class Text:
         self.lines.append(("    " if self.python else "  ") * self.depth + text)
 
     def assign(self, name: str, expression: str) -> None:
-        """Give a local variable a value."""
+        """Assign a local variable."""
         self.assigned[name] = None
         self.store(name, expression)
 
     def copy(self, targets: str, values: str, count: int) -> None:
-        """Give targets0, targets1, ... the values of other variables."""
+        """Assign values0, values1, ... to targets0, targets1, ..."""
         for k in range(count):
             self.assign(f"{targets}{k}", f"{values}{k}")
 
     def store(self, place: str, expression: str) -> None:
-        """Give a place in an array a value."""
+        """Assign an entry of an array."""
         self.line(f"{place} = {expression}" + ("" if self.python else ";"))
 
     def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
@@ -189,22 +189,22 @@ class Text:
             self.line("}")
 
     def function(self, name: str, arguments: Sequence[str]) -> Any:
-        """The function that the lines inside make up."""
+        """Open a function."""
         head = f"{name}({', '.join(arguments)})"
         return self._indented(f"def {head}", f"function {head}")
 
     def loop(self, index: str, over: str) -> Any:
-        """The loop over an array's indices."""
+        """Open a loop over an array's indices."""
         return self._indented(
             f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
         )
 
-    def over(self, lanes: str) -> Any:
-        """The loop over lanes, which only Python has."""
-        return self._indented(f"for i in {lanes}", "")
+    def over(self, runs: str) -> Any:
+        """Open a loop over runs, which only Python has."""
+        return self._indented(f"for i in {runs}", "")
 
     def block(self, word: Literal["if", "unless"], condition: str) -> Any:
-        """What is done only under a condition."""
+        """Open a block under a condition."""
         if word == "unless":
             return self._indented(f"if not {condition}", f"if (!({condition}))")
         return self._indented(f"if {condition}", f"if ({condition})")

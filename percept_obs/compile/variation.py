@@ -1,4 +1,4 @@
-"""The variational equations: how a state changes along with the parameters of its equations."""
+"""Variational equations: the change of a state with the parameters of its equations."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from percept_obs.compile.equations import Equations, Expressions, Symbols
 
 
 def slopes(symbols: Sequence[sp.Symbol]) -> Symbols:
-    """Symbols of the changes of some symbols: d_y1 for y1."""
+    """Symbols of the changes of symbols: d_y1 for y1."""
     return tuple(sp.Symbol(f"d_{symbol.name}", real=True) for symbol in symbols)
 
 
 def slope(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Expressions:
-    """How expressions change, to first order, when symbols change by their `slopes`.
+    """Change of expressions, to first order, when symbols change by their `slopes`.
 
     A sign counts as constant: it jumps at single instants only.
 
@@ -28,22 +28,13 @@ def slope(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Expre
     >>> slope([x**2], [x])
     (2*d_x*x,)
     """
-    changes = dict(zip(symbols, slopes(symbols), strict=True))
-    return tuple(
-        sum(
-            (
-                expression.diff(symbol).replace(sp.DiracDelta, lambda *_: sp.S.Zero) * changes[symbol]
-                for symbol in symbols
-                if expression.has(symbol)
-            ),
-            sp.S.Zero,
-        )
-        for expression in map(sp.sympify, expressions)
-    )
+    gradient = sp.Matrix(expressions).jacobian(symbols)
+    smooth = gradient.applyfunc(lambda entry: entry.replace(sp.DiracDelta, lambda *_: sp.S.Zero))
+    return tuple(smooth * sp.Matrix(slopes(symbols)))
 
 
 def variation(equations: Equations, moved: Sequence[sp.Symbol]) -> Equations:
-    """The equations together with the change of their state when some of their parameters change.
+    """Extend equations by the change of their state when some of their parameters change.
 
     With the state x, the parameters p and their changes dx and dp::
 
@@ -56,22 +47,22 @@ def variation(equations: Equations, moved: Sequence[sp.Symbol]) -> Equations:
     ----------
     equations : Equations
     moved : sequence of symbols
-        Those of its parameters that change; their `slopes` become parameters behind all others.
+        Parameters that change; their `slopes` become parameters after all others.
 
     Returns
     -------
     Equations
-        Of the state (x, dx).
+        With the state (x, dx).
 
     Raises
     ------
     ValueError
-        If one is no parameter of the equations.
+        If a symbol is no parameter of the equations.
     """
-    strange = [str(symbol) for symbol in moved if symbol not in equations.parameters]
-    if strange:
+    unknown = [str(symbol) for symbol in moved if symbol not in equations.parameters]
+    if unknown:
         known = ", ".join(map(str, equations.parameters)) or "none"
-        raise ValueError(f"the equations have no parameter {', '.join(strange)}; they have {known}")
+        raise ValueError(f"the equations have no parameter {', '.join(unknown)}; they have {known}")
     variables = (*equations.state, *moved)
 
     def both(expressions: Expressions) -> Expressions:

@@ -1,6 +1,6 @@
 """Functions without a branch or a table, so that a processor's vector instructions take many arguments together.
 
-This text stands before each loop over runs side by side, where numba compiles it; so it needs nothing but numpy.
+This text stands before each loop for a batch, where numba compiles it; so it needs nothing but numpy.
 Errors are below 5e-16 of the value.
 """
 
@@ -10,12 +10,12 @@ import numpy as np
 
 
 def where(condition: bool, this: float, that: float) -> float:
-    """One of two values."""
+    """Return one of two values."""
     return this if condition else that
 
 
 def some(condition: bool) -> bool:
-    """Whether it holds in one of the lanes."""
+    """Return True if a condition holds in one of the runs."""
     return condition
 
 

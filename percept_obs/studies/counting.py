@@ -9,8 +9,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array
-from percept_obs.compile.lanes import COUNTED, Moving
-from percept_obs.compile.watched import Watched
+from percept_obs.compile.batch_loop import COLUMNS, MovingPoint, Statistics
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -39,7 +38,7 @@ The bound needs a prior, the two after it a covariance, and the very last a meas
 """
 
 
-def watched(observer: Observer, coordinates: Sequence[str] = ()) -> Watched:
+def watched(observer: Observer, coordinates: Sequence[str] = ()) -> Statistics:
     """What is looked at of an observer of a point: its relative error of the distance, or coordinates' absolute one."""
     form, estimate = observer.form, dict(zip(observer.form.coordinates, observer.estimate, strict=True))
     truth = {symbol: sp.Symbol(f"true_{symbol.name}", real=True) for symbol in form.coordinates}
@@ -48,7 +47,7 @@ def watched(observer: Observer, coordinates: Sequence[str] = ()) -> Watched:
     judged = tuple(sp.Abs(truth[s] - estimate[s]) for s in named) or (sp.Abs(truth[inverse] / estimate[inverse] - 1),)
     behind = sp.false if named else sp.Le(estimate[inverse], 0)
     hidden = sp.Or(*(where.condition for where in observer.unobservable))
-    return Watched(
+    return Statistics(
         tuple(truth.values()),
         elapsed,
         tuple(first_innovation(form)) if observer.unobservable else (),
@@ -63,10 +62,10 @@ def watched(observer: Observer, coordinates: Sequence[str] = ()) -> Watched:
     )
 
 
-def moving(surface: ImagingSurface) -> Moving:
+def moving(surface: ImagingSurface) -> MovingPoint:
     """How a point is seen on a surface while it moves."""
     coordinates = (*surface.image, 1 / surface.distance)
-    return Moving(POINT, surface.parameters, coordinates, surface.distance)
+    return MovingPoint(POINT, surface.parameters, coordinates, surface.distance)
 
 
 def _samples(observer: Observer) -> tuple[sp.Symbol, ...]:
@@ -107,7 +106,7 @@ def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[
     Parameters
     ----------
     counts : array of shape (L, number of counts)
-        From `percept_obs.compile.side_by_side.count`.
+        From `percept_obs.compile.batch.run_batch`.
     elapsed : array of shape (K,)
         Seconds from the first sample to each.
     grid : array of shape (N + 1,)
@@ -123,7 +122,7 @@ def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[
     -------
     mapping of names of `STATISTICS` to arrays of shape (L,)
     """
-    column = dict(zip(COUNTED, counts.T, strict=False))
+    column = dict(zip(COLUMNS, counts.T, strict=False))
     last, length = len(elapsed) - 1, float(elapsed[-1])
     outside, judged, diverged = column["outside"].astype(int), column["judged"], column["diverged"].astype(int)
     inside = outside < last
@@ -145,7 +144,7 @@ def told(counts: Array, elapsed: Array, grid: Array, late: int, means: Sequence[
         "resets": column["resets"],
         "diverged_at": np.where(diverged > 0, grid[diverged], np.inf),
     }
-    sums = counts[:, len(COUNTED) :]
+    sums = counts[:, len(COLUMNS) :]
     with np.errstate(invalid="ignore"):
         found |= {name: sums[:, 2 * k] / sums[:, 2 * k + 1] for k, name in enumerate(means)}
     return found

@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from percept_obs.compile import Array, Indices, Language, vectorised
+from percept_obs.compile.batch import Batch, compiled, run_batch
+from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop
 from percept_obs.compile.integrator import by_step, instants, step_grid
-from percept_obs.compile.lanes import COUNTED, LANES, LanesLoop
-from percept_obs.compile.side_by_side import Lanes, count, function_of, seized
 from percept_obs.observers.base import Observer
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Camera, Scenario
@@ -73,19 +73,20 @@ class Plan:
 
     def prepare(self, varied: Collection[str]) -> None:
         """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
-        looked, varying = watched(self.observer, self.coordinates), not self.believed.values
-        move = moving(self.scenario.surface) if self._alone(varied) else None
-        truths_alike = move is None and self._truths_alike(varied)
-        made_for = (
+        compiled(self._loop(varied), self.language)
+
+    def _loop(self, varied: Collection[str]) -> BatchLoop:
+        """The loop for runs in which these quantities vary."""
+        alone = self._alone(varied)
+        return BatchLoop(
             self.observer.equations,
-            looked,
-            move,
+            watched(self.observer, self.coordinates),
+            moving(self.scenario.surface) if alone else None,
             self.hold != "zero",
-            varying,
+            not self.believed.values,
             self.noises_alike,
-            truths_alike,
+            not alone and self._truths_alike(varied),
         )
-        function_of(LanesLoop(*made_for), self.language)
 
     def compute(self, columns: Mapping[str, Array]) -> Array:
         """Run some runs.
@@ -108,7 +109,7 @@ class Plan:
             own = [name for name in ("seed", "noise", "dropout", *self._scenes) if name in columns]
             different = len(_distinct({name: columns[name][same] for name in {*own, "seed"}}, own)[0])
             each = len(camera.times(self.duration)) * len(self.observer.form.coordinates)
-            at_once = max(LANES, MOST_AT_ONCE * len(same) // (each * different))
+            at_once = max(BATCH, MOST_AT_ONCE * len(same) // (each * different))
             for begin in range(0, len(same), at_once):
                 part = same[begin : begin + at_once]
                 found[part] = self._piece({name: values[part] for name, values in columns.items()}, camera)
@@ -145,7 +146,7 @@ class Plan:
         gains = np.stack(_columns(columns, {gain.name: gain.value for gain in observer.gains}, len(scene)), axis=-1)
         places = [observer.form.coordinates.index(x) for x in observer.form.x1]
         start, corrects = self._start(columns, begins[:, places] + noise[film, 0], gains, known[motion, 0])
-        lanes = Lanes(
+        batch = Batch(
             start,
             np.broadcast_to(corrects, (len(scene), len(corrects))),
             gains,
@@ -159,12 +160,9 @@ class Plan:
             time - time[0],
             camera.reach,
             self._held(columns, scenes, noise, film, time, grid),
-            self.noises_alike,
-            self._truths_alike(columns),
         )
         late = int(np.argmax(from_the_start(time - time[0], self.after)))
-        looked, move = watched(observer, self.coordinates), moving(self.scenario.surface) if alone else None
-        counts = count(observer.equations, looked, move, seized(lanes), self.tolerance, late, self.language)
+        counts = run_batch(self._loop(columns), batch, self.tolerance, late, self.language)
         told_of = told(counts, time - time[0], grid - grid[0], late, self.means, self.settled_part)
         fine = self._in_front(columns, scenes, counts, turning, time) if alone else np.isfinite(truth[scene, 0, 0])
         status = np.where(fine, DONE, NOT_IN_FRONT).astype(float)
@@ -211,7 +209,7 @@ class Plan:
         self, columns: Mapping[str, Array], scenes: list[str], counts: Array, turning: Array, time: Array
     ) -> Array:
         """Whether points stay in front of the camera: looked at closely where they may dip between samples."""
-        nearest, drop = (counts[:, COUNTED.index(name)] for name in ("nearest", "drop"))
+        nearest, drop = (counts[:, COLUMNS.index(name)] for name in ("nearest", "drop"))
         fine = nearest > 0
         for k in np.flatnonzero(fine & ~((nearest > DIP * drop) & (turning <= LONGEST_LOOK_SHARE))):
             row = tuple(float(columns[name][k]) for name in scenes)
