@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import sympy as sp
+from camera_paths import write_stereo_mat
 
 import percept_obs as po
 from percept_obs import observers, points, structure
@@ -34,8 +35,8 @@ from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.ray import ray_turning
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.pose_files import write_euroc, write_tum
-from percept_obs.recording.stereo_mat import StereoTracks, read_stereo_mat, write_stereo_mat
+from percept_obs.recording.pose_files import write_tum
+from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
@@ -87,9 +88,9 @@ def calls():
     atexit.register(shutil.rmtree, folder)
     (folder / "tracks.csv").write_text("time,id,u,v,Z,laser\n0,a,320,240,2,2\n1,a,330,240,2,2\n2,a,340,250,2,2\n")
     write_tum(folder / "poses.txt", poses)
-    write_euroc(folder / "data.csv", poses)
+    (folder / "data.csv").write_text("0,0,0,0,1,0,0,0\n1000000000,0,0,1,1,0,0,0\n")
     mount = po.Poses(np.arange(2.0), np.zeros((2, 3)), np.stack([np.eye(3)] * 2))
-    write_stereo_mat(folder / "s.mat", StereoTracks(poses, mount, np.ones((9, 2, 4)), camera, 0.1))
+    write_stereo_mat(folder / "s.mat", poses, mount, np.ones((len(poses.time), 2, 4)), camera, 0.1)
     good = [
         (po.affine, {"A": np.eye(3), "b": np.ones(3), "times": None}),
         (po.rigid, {"angular_velocity": [0, 0, 1], "camera_velocity": [0, 0, 1], "point_velocity": [0, 0, 0]}),
@@ -190,7 +191,7 @@ def calls():
         ),
         (po.read_tum, {"path": folder / "poses.txt", "clock": po.Clock()}),
         (po.read_euroc, {"path": folder / "data.csv", "clock": po.Clock()}),
-        (read_stereo_mat, {"path": folder / "s.mat"}),
+        (read_stereo_mat, {"path": folder / "s.mat", "shortest": 0.5, "gap": 1.0}),
         (
             po.Recording.from_csv,
             {"path": folder / "tracks.csv", "motion": poses.motion(), "surface": po.pinhole(), "time": "time"}

@@ -1,6 +1,7 @@
 """A camera that a hand carries: its exact poses and velocities at any times, and tables of what it sees."""
 
 import numpy as np
+from scipy.io import savemat
 from scipy.spatial.transform import Rotation
 
 from percept_obs.recording.poses import Poses
@@ -35,3 +36,14 @@ def seen(time, pace=1.0, places=PLACES):
     """The places in the camera's frame, shape (n, K, 3), without any motion: from the poses alone."""
     position, rotation, *_ = carried(time, pace)
     return np.stack([rotation.inv().apply(place - position) for place in places])
+
+
+def write_stereo_mat(path, body, mount, images, camera, baseline, landmarks=None):
+    """Write a file that `read_stereo_mat` reads: poses of a body, the left camera's on it, and images, NaN if lost."""
+    values = {
+        **{"t": body.time[None], "r_i_vk_i": body.position.T, "theta_vk_i": body.rotation.as_rotvec().T},
+        **{"C_c_v": mount.rotation[0].inv().as_matrix(), "rho_v_c_v": mount.position[0][:, None]},
+        **{"y_k_j": np.moveaxis(np.nan_to_num(images, nan=-1.0), -1, 0), "b": baseline},
+        **dict(zip(("fu", "fv", "cu", "cv"), (*camera.focal, *camera.centre), strict=True)),
+    }
+    savemat(path, values if landmarks is None else values | {"rho_i_pj_i": landmarks.T})

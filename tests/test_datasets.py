@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from utias_folder import utias_folder
 
 from percept_obs.recording import Sighting
-from percept_obs.recording.stereo_mat import StereoTables
-from percept_obs.recording.utias import DatasetUnavailable, find_utias, utias_tables
+from percept_obs.recording.stereo_mat import StereoTracks
+from percept_obs.recording.utias import DatasetUnavailable, find_utias, utias_tracks
 
 Values = NDArray[np.float64]
 
@@ -57,8 +57,8 @@ def folder() -> Path:
 
 
 @pytest.fixture(scope="module")
-def tables(folder: Path) -> StereoTables:
-    return utias_tables(folder)
+def tables(folder: Path) -> StereoTracks:
+    return utias_tracks(folder)
 
 
 def assert_agree(name: str, columns: list[Values]) -> None:
@@ -75,7 +75,7 @@ def along(track: Sighting) -> Values:
     return np.array([samples, np.full_like(samples, track.point)])
 
 
-def test_camera_agrees_with_its_table(tables: StereoTables) -> None:
+def test_camera_agrees_with_its_table(tables: StereoTracks) -> None:
     path = tables.path
     assert len(tables.time) == 1900
     orientation = path.orientation * np.sign(path.orientation[:, :1])  # of q and -q the one with qx > 0
@@ -83,7 +83,7 @@ def test_camera_agrees_with_its_table(tables: StereoTables) -> None:
     assert_agree("camera", [column[::50] for column in (tables.time, *np.hstack(vectors).T)])
 
 
-def test_tracks_agree_with_their_table(tables: StereoTables) -> None:
+def test_tracks_agree_with_their_table(tables: StereoTracks) -> None:
     places = [along(track) for track in tables.tracks]
     assert (len(places), sum(len(samples) for samples, _ in places)) == (44, 2739)
 
@@ -94,7 +94,7 @@ def test_tracks_agree_with_their_table(tables: StereoTables) -> None:
     assert_agree("tracks", [column[::20] for column in columns])
 
 
-def test_nothing_is_left_outside_the_tracks(tables: StereoTables) -> None:
+def test_nothing_is_left_outside_the_tracks(tables: StereoTracks) -> None:
     samples, landmark = np.hstack([along(track) for track in tables.tracks])
     outside = np.ones(tables.stereo_depth.shape, dtype=bool)
     outside[samples, landmark] = False
@@ -102,7 +102,7 @@ def test_nothing_is_left_outside_the_tracks(tables: StereoTables) -> None:
     assert np.isnan(tables.stereo_depth[outside]).all()
 
 
-def test_intrinsics_are_the_recorded_ones(tables: StereoTables) -> None:
+def test_intrinsics_are_the_recorded_ones(tables: StereoTracks) -> None:
     expected = (484.49984741211, 484.4998474121, 321.68048095703, 247.4814453125, 0.23997700214386)
     assert (*tables.camera.focal, *tables.camera.centre, tables.baseline) == pytest.approx(expected, rel=1e-12)
 
@@ -121,7 +121,7 @@ def predicted_rate(y: Values, velocity: Values, angular_velocity: Values) -> Val
     )
 
 
-def rate_errors(tables: StereoTables, sign_of_v: int, sign_of_w: int) -> Values:
+def rate_errors(tables: StereoTracks, sign_of_v: int, sign_of_w: int) -> Values:
     """Relative root mean square error of each predicted rate against differences of the true projections."""
     errors, rates = [], []
     for track in tables.tracks:
@@ -138,16 +138,16 @@ def rate_errors(tables: StereoTables, sign_of_v: int, sign_of_w: int) -> Values:
     return relative
 
 
-def test_known_motion_moves_the_image_as_it_moves(tables: StereoTables) -> None:
+def test_known_motion_moves_the_image_as_it_moves(tables: StereoTracks) -> None:
     assert (rate_errors(tables, 1, 1) < RATE_TOLERANCE).all()
 
 
 @pytest.mark.parametrize(("sign_of_v", "sign_of_w"), [(-1, 1), (1, -1), (-1, -1)])
-def test_a_wrong_sign_of_the_motion_is_noticed(tables: StereoTables, sign_of_v: int, sign_of_w: int) -> None:
+def test_a_wrong_sign_of_the_motion_is_noticed(tables: StereoTracks, sign_of_v: int, sign_of_w: int) -> None:
     assert (rate_errors(tables, sign_of_v, sign_of_w) > 2 * RATE_TOLERANCE).all()
 
 
-def test_the_pixels_are_those_of_the_landmark(tables: StereoTables) -> None:
+def test_the_pixels_are_those_of_the_landmark(tables: StereoTracks) -> None:
     for track in tables.tracks:
         samples, landmark = along(track)
         camera_from_world = tables.path.rotation[samples].inv()
@@ -195,10 +195,10 @@ def test_a_corrupted_file_is_refused(folder: Path, tmp_path: Path, monkeypatch: 
     content[len(content) // 2] ^= 1
     file.write_bytes(content)
     with pytest.raises(ValueError, match=rf"damaged one: its SHA-256 is \w+, expected {SHA256}; download"):
-        utias_tables(file)
+        utias_tracks(file)
     monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path))
     with pytest.raises(ValueError, match=r"PERCEPT_OBS_UTIAS names .* another file or a damaged one"):
-        utias_tables()
+        utias_tracks()
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from percept_obs.points import riccati
 from percept_obs.points.gramian import gramian
 from percept_obs.points.ray import ray_error, ray_turning
 from percept_obs.points.utias import OUT_OF_SIGHT, load_utias_points
-from percept_obs.recording.utias import load_utias, utias_tables
+from percept_obs.recording.utias import load_utias, utias_tracks
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
 
 STARTS, FORGETTING = (0.001, 0.003, 0.01), (0.0, 0.3)
@@ -71,8 +71,8 @@ def test_the_landmarks_are_those_of_the_tracks():
 
 
 def test_some_landmarks_are_chosen_once_each_among_those_that_have_tracks(monkeypatch):
-    tables = utias_tables(utias_folder())
-    monkeypatch.setattr("percept_obs.points.utias.utias_tables", lambda path: tables)
+    tables = utias_tracks(utias_folder())
+    monkeypatch.setattr("percept_obs.points.utias.utias_tracks", lambda path: tables)
     recording = load_utias_points(utias_folder(), [17])
     assert recording.view.points == 1
     ends = recording.time[recording.seen.any(axis=1)][[0, -1]]

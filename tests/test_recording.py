@@ -134,7 +134,7 @@ def test_from_csv(tmp_path):
     [
         ("a,y1\n0,1\n", "it needs 'time'"),
         ("time,z\n0,1\n", "at least one of y1, y2"),
-        ("time,y1\n0,one\n1,2\n", "not a number"),
+        ("time,y1\n0,one\n1,2\n", "'one' in row 1"),
         ("time,y1\n", "no rows"),
         ("time,y1\n0,1\n", "at least two samples"),
         ("time,y1\n0,1\n0,2\n", "increase strictly"),

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from test_own_recording import CAMERA, MOTION, TIME, stereo
+from test_own_recording import CAMERA, MOTION, TIME, write_stereo
 
 from percept_obs import BehindCamera, Clock, PixelCamera, Recording, read_euroc, read_tum
-from percept_obs.recording.stereo_mat import read_stereo_mat, write_stereo_mat
+from percept_obs.recording.stereo_mat import read_stereo_mat
 
 GOOD = "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"
 
@@ -23,22 +23,22 @@ def in_euroc(text):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (GOOD, "", "is no table of text .*first row is such as"),
+        (GOOD, "", "is no table of text .*expected rows such as"),
         (GOOD, "# only comments\n", "is no table of text"),
         (
             "1 0 0 0 0 0 0 1",
             "1 nan 0 0 0 0 0 1",
-            "'nan' in row 2 of the column '(tx|p_x)' is no number; write",
+            "'nan' in row 2 of the column '(tx|p_x)'; write",
         ),
-        ("1 0 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "'inf' in row 2 .* is infinite"),
-        ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)' is not a number"),
+        ("1 0 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "'inf' in row 2 of the column '(tx|p_x)'; write"),
+        ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)'; write"),
         ("1 0 0 0 0 0 0 1", "when 0 0 0 0 0 0 1", "column 'timestamp': row 2 has the time 'when'; every row needs"),
         ("1 0 0 0 0 0 0 1", "inf 0 0 0 0 0 0 1", "row 2 has the time 'inf'"),
         ("1 0 0 0 0 0 0 1", "1e9999999 0 0 0 0 0 0 1", "row 2 has the time '1e9999999'"),
         ("2 0", "0.5 0", r"increase strictly; look at row 3, .*sort the rows"),
         ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 2", "quaternion in row 2 has the length 2, expected 1"),
         ("1 0 0 0 0 0 0 1", "1 0 0 0 0 0 0 0", "quaternion in row 2 has the length 0, expected 1"),
-        (GOOD, "0 0 0 0\n1 0 0 0\n", "has 4 columns; 8 are needed: timestamp, "),
+        (GOOD, "0 0 0 0\n1 0 0 0\n", "has 4 columns, and 8 are needed: timestamp, "),
         (GOOD, GOOD[:16], "at least two seconds"),
     ],
 )
@@ -56,16 +56,16 @@ TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (TABLE, "", "is no table of text .*first row is such as time,id,u,v"),
+        (TABLE, "", "is no table of text .*expected rows such as time,id,u,v"),
         (TABLE, TABLE[:18], "header and no rows"),
-        ("301", "inf", "'inf' in row 2 of the column 'u' is infinite"),
-        ("301", "left", "'left' in row 2 of the column 'u' is not a number"),
+        ("301", "inf", "'inf' in row 2 of the column 'u'; write"),
+        ("301", "left", "'left' in row 2 of the column 'u'; write"),
         ("0.1,a", ",a", "column 'time': row 2 has the time ''"),
         ("0.1,a", "0.2,a", "times of the point a do not increase at row 3; sort the rows by time"),
         ("0.1,a", "-0.1,a", "do not increase at row 2"),
         ("0.1,a", "0.1,", "row 2 has no id; every row needs the name of its point"),
-        ("id,u", "id,x", "it needs 'u' for the pixels: rename the column, or say what it is called"),
-        ("id,u,v,", "id,u,u,", "names a column twice|needs 'v'"),
+        ("id,u", "id,x", "it needs 'u' for the pixels: rename the column, or give its name"),
+        ("id,u,v,", "id,u,u,", "two columns of one name|needs 'v'"),
         ("time,id,u,v,depth", "time,id,u,v", "rows with more cells than its header"),
         ("301,200,2", "301,200,-2", "has the depth -2 in row 2; a point that is seen is in front of the camera"),
         ("301,200,2", "301,200,0", "has the depth 0 in row 2"),
@@ -73,7 +73,7 @@ TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
         (
             "0,a,300,200,2\n0.1,a,301,200,2\n0.2",
             "50,a,300,200,2\n51,a,301,200,2\n52",
-            "the clocks do not overlap; bring",
+            "the clocks do not overlap; give",
         ),
         (TABLE, "time,id,u,v,depth\n0,a,300,200,2\n0.1,b,300,200,2\n", "no point that is seen twice"),
     ],
@@ -95,7 +95,7 @@ def test_a_point_behind_the_camera_has_its_own_error(tmp_path):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"gap": 0.0}, "gap is 0.0 s; it must be positive"),
+        ({"gap": 0.0}, "gap is 0.0 s .* expected a positive gap"),
         ({"shortest": -1.0}, "shortest is -1.0 s"),
         ({"pixels": ["u"]}, "pixels names the columns"),
         ({"camera": None, "pixel_sigma": 1.0}, "pixel_sigma is in pixels; give also camera"),
@@ -140,7 +140,7 @@ def test_stereo_files_that_are_none_are_refused(tmp_path, name, value, message):
     from scipy.io import loadmat, savemat
 
     path = tmp_path / "s.mat"
-    write_stereo_mat(path, stereo())
+    write_stereo(path)
     values = {key: each for key, each in loadmat(path).items() if not key.startswith("__")}
     values.pop(name)
     savemat(path, values if value is None else values | {name: value})

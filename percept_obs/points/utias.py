@@ -10,7 +10,7 @@ import numpy as np
 from percept_obs.points.bodies import independent_points
 from percept_obs.recording import Recording
 from percept_obs.recording.stereo_mat import LONGEST_GAP
-from percept_obs.recording.utias import PIXEL_SIGMA, utias_tables
+from percept_obs.recording.utias import PIXEL_SIGMA, utias_tracks
 from percept_obs.validation import checked
 
 
@@ -28,7 +28,7 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     Returns
     -------
     Recording
-        Images of the tracks of `utias_tables`, from the first track's beginning to the last one's end, NaN between
+        Images of the tracks of `utias_tracks`, from the first track's beginning to the last one's end, NaN between
         them.  The truth has all landmarks at all times, from the fitted poses; `distances` has the independent
         ``"stereo"`` depth.
 
@@ -37,7 +37,7 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     ValueError
         If a landmark has no track.
     """
-    tables = utias_tables(path)
+    tables = utias_tracks(path)
     followed = sorted({track.point for track in tables.tracks})
     chosen = followed if landmarks is None else list(landmarks)
     missing = sorted(set(chosen) - set(followed))

@@ -1,12 +1,12 @@
-"""Recordings: what a camera leaves behind, from a simulation or from the world."""
+"""Recordings of cameras, from a simulation or from the world."""
 
 from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
 from percept_obs.recording.conversion import seen_on
 from percept_obs.recording.frames import Frames, render
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.recording import Recording, Sighting
 from percept_obs.recording.simulation import Scenario, record
-from percept_obs.recording.track_table import Unlikely
 
 __all__ = [
     "NO_NOISE",

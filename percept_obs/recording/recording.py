@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import Array, Flags, Indices
-from percept_obs.recording.doubts import doubts
 from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.plausibility import warn_if_implausible
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
-from percept_obs.recording.track_table import Columns, Unlikely, recordings_in
+from percept_obs.recording.track_table import fields_of_recordings
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked, warn
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True)
@@ -112,8 +112,7 @@ class Recording:
         if self.noise_variance is not None and not 0 <= self.noise_variance < np.inf:
             raise ValueError(f"the noise_variance is {self.noise_variance}; a variance is finite and not negative")
         self.motion.known(self.time[[0, -1]])
-        for doubt in doubts(self.time, self.outputs, self.names, self.view, self.motion):
-            warn(Unlikely(doubt))
+        warn_if_implausible(self.time, self.outputs, self.names, self.view, self.motion)
 
     def __repr__(self) -> str:
         return (
@@ -394,6 +393,8 @@ class Recording:
         >>> near.source, len(near.time)
         ('tracks.csv, point near', 17)
         """
-        columns = Columns(time, camera, pixels, pixel_sigma, point, depth, distances, clock, gap, shortest)
-        found = tuple(cls(**parts) for parts in recordings_in(path, motion, surface or pinhole(), columns))
-        return found[0] if point is None else found
+        columns = {"time": time, "point": point, "depth": depth, "distances": distances, "pixels": pixels}
+        settings = {"camera": camera, "pixel_sigma": pixel_sigma, "clock": clock, "gap": gap, "shortest": shortest}
+        found = fields_of_recordings(path, motion, surface or pinhole(), **columns, **settings)
+        recordings = tuple(cls(**fields) for fields in found)
+        return recordings[0] if point is None else recordings

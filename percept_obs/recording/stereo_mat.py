@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.io import loadmat, savemat
+from scipy.io import loadmat
 from scipy.io.matlab import MatReadError
 from scipy.spatial.transform import Rotation
 
@@ -44,91 +44,33 @@ LANDMARKS = "rho_i_pj_i"
 
 @dataclass(frozen=True, eq=False)
 class StereoTracks:
-    """What a file holds: K samples of a stereo camera on a body, which follows L landmarks.
+    """Tracks of L landmarks in K samples of a stereo camera, and how it moves.
 
     Parameters
     ----------
-    body : Poses
-        Of the body, K of them.
-    mount : Poses
-        Of the left camera in the body's frame, twice the same.
+    poses : Poses
+        Of the left camera, as recorded.
+    path : CameraPath
+        Smoothed poses and velocities.
     images : array of shape (K, L, 4)
-        (u, v) in the left image and in the right one; NaN where not seen.
+        (u, v) in the left image and in the right one; NaN outside the tracks.
     camera : PixelCamera
         Of the left images, which are rectified.
     baseline : float
         Distance from the left to the right camera in metres.
-    landmarks : array of shape (L, 3), optional
+    tracks : tuple of Sighting
+        When a landmark is seen without interruption, in the order in which they begin and end.
+    landmarks : array of shape (L, 3) or None
         Places in the world, in metres.
     """
 
-    body: Poses
-    mount: Poses
+    poses: Poses
+    path: CameraPath
     images: Array
     camera: PixelCamera
     baseline: float
-    landmarks: Array | None = None
-
-    @cached_property
-    def poses(self) -> Poses:
-        """Those of the left camera."""
-        return self.body.mounted(self.mount.position[0], self.mount.orientation[0])
-
-    def tables(
-        self, derivative: Derivative = DERIVATIVE, shortest: float = SHORTEST_TRACK, gap: float = LONGEST_GAP
-    ) -> StereoTables:
-        """The camera's motion and the landmarks' tracks.
-
-        Parameters
-        ----------
-        derivative : Neighbours, Quadratic or SmoothingSpline
-            Of the poses.
-        shortest : float
-            Seconds that a track lasts at least.
-        gap : float
-            Seconds between two samples of a track at most.
-        """
-        path, time = self.poses.path(derivative), self.body.time
-        tracks = _tracks(time, np.asarray(np.isfinite(self.images).all(axis=-1)), shortest, gap)
-        followed = np.zeros(self.images.shape[:2], dtype=bool)
-        for track in tracks:
-            followed[track.first : track.last + 1, track.point] = True
-        images = np.where(followed[..., None], self.images, np.nan)
-        disparity = images[..., 0] - images[..., 2]
-        with np.errstate(divide="ignore"):
-            depth = np.where(disparity > 0, self.camera.focal[0] * self.baseline / disparity, np.nan)
-        return StereoTables(path, self.landmarks, tracks, images[..., :2], depth, self.camera, self.baseline)
-
-
-@dataclass(frozen=True, eq=False)
-class StereoTables:
-    """Tracks of the left camera, and how it moves.
-
-    Parameters
-    ----------
-    path : CameraPath
-        Poses and velocities at K samples.
-    landmarks : array of shape (L, 3) or None
-        Places in the world, in metres.
-    tracks : tuple of Sighting
-        When a landmark is seen without interruption, in the order in which they begin and end.
-    pixels : array of shape (K, L, 2)
-        Measured (u, v) in the left image; NaN outside the tracks.
-    stereo_depth : array of shape (K, L)
-        Depth fx baseline / (u_left - u_right) in metres; no pose enters, so it is an independent check.
-    camera : PixelCamera
-        Its images are rectified, without distortion.
-    baseline : float
-        Distance from the left to the right camera in metres.
-    """
-
-    path: CameraPath
-    landmarks: Array | None
     tracks: tuple[Sighting, ...]
-    pixels: Array
-    stereo_depth: Array
-    camera: PixelCamera
-    baseline: float
+    landmarks: Array | None
 
     @property
     def time(self) -> Array:
@@ -137,17 +79,29 @@ class StereoTables:
 
     @property
     def motion(self) -> Motion:
-        """That of a point at rest in the camera's frame: X' = -v - w x X."""
+        """Motion of a point at rest in the camera's frame: X' = -v - w x X."""
         return self.path.motion
+
+    @property
+    def pixels(self) -> Array:
+        """Measured (u, v) in the left image, shape (K, L, 2); NaN outside the tracks."""
+        return self.images[..., :2]
+
+    @cached_property
+    def stereo_depth(self) -> Array:
+        """Depth fx baseline / (u_left - u_right) in metres, shape (K, L): independent of the poses."""
+        disparity = self.images[..., 0] - self.images[..., 2]
+        with np.errstate(divide="ignore"):
+            return np.where(disparity > 0, self.camera.focal[0] * self.baseline / disparity, np.nan)
 
     @cached_property
     def points(self) -> Array:
-        """The landmarks in the camera's frame, in metres, from the smoothed poses, shape (K, L, 3).
+        """Landmarks in the camera's frame, in metres, from the smoothed poses, shape (K, L, 3).
 
         Raises
         ------
         ValueError
-            If the file does not tell where they are.
+            If the file does not hold their places.
         """
         if self.landmarks is None:
             raise ValueError(f"the file has no {LANDMARKS}, so it is not known where the landmarks are")
@@ -162,7 +116,7 @@ class StereoTables:
         source: str,
         pixel_sigma: float | None,
     ) -> Recording:
-        """Some samples of one landmark or of several, with what is known of them in all cases."""
+        """Return the recording of some samples of one landmark or of several, seen as a view."""
         return Recording(
             self.time[rows],
             self.camera.image(self.pixels)[rows, columns],
@@ -176,12 +130,12 @@ class StereoTables:
         )
 
     def recordings(self, name: str, pixel_sigma: float | None = None) -> tuple[Recording, ...]:
-        """One recording a track, with both image coordinates; its truth is the landmark seen from the smoothed pose.
+        """Return a recording of each track; its truth is the landmark seen from the smoothed pose.
 
         Parameters
         ----------
         name : str
-            Of the whole, for the sources of the recordings.
+            Of the file, for the sources of the recordings.
         pixel_sigma : float, optional
             Standard deviation of the noise in pixels, if it is known.
         """
@@ -195,18 +149,28 @@ class StereoTables:
 
 
 @checked
-def read_stereo_mat(path: str | os.PathLike[str]) -> StereoTracks:
+def read_stereo_mat(
+    path: str | os.PathLike[str],
+    derivative: Derivative = DERIVATIVE,
+    shortest: float = SHORTEST_TRACK,
+    gap: float = LONGEST_GAP,
+) -> StereoTracks:
     """Read a MATLAB file of stereo tracks.
 
     Parameters
     ----------
     path : path
         Up to version 7 of the format.
+    derivative : Neighbours, Quadratic or SmoothingSpline
+        Of the poses.
+    shortest : float
+        Seconds that a track lasts at least.
+    gap : float
+        Seconds between two samples of a track at most.
 
     Returns
     -------
     StereoTracks
-        ``read_stereo_mat(path).tables().recordings(name)`` makes recordings of it.
 
     Raises
     ------
@@ -220,66 +184,46 @@ def read_stereo_mat(path: str | os.PathLike[str]) -> StereoTracks:
     --------
     ::
 
-        tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat")
-        recordings = tracks.tables(shortest=1.0).recordings("KITTI 0036", pixel_sigma=0.5)
+        tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)
+        recordings = tracks.recordings("KITTI 0036", pixel_sigma=0.5)
     """
     file = Path(path)
     if not file.is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a MATLAB file of stereo tracks")
     try:
-        recorded = loadmat(file, variable_names=(*SHAPES, LANDMARKS))
+        recorded = loadmat(file, variable_names=(*SHAPES, LANDMARKS), squeeze_me=True)
     except (ValueError, TypeError, IndexError, NotImplementedError, MatReadError, OSError, zlib.error) as error:
         raise ValueError(
             f"the path names '{file}', which is no MATLAB file up to version 7 ({error}); save it with -v7"
         ) from None
     sizes: dict[str, int] = {}
     found = {name: _variable(recorded, name, shape, sizes, file) for name, shape in SHAPES.items()}
-    known = _variable(recorded, LANDMARKS, (3, "L"), sizes, file).T if LANDMARKS in recorded else None
-    images = np.moveaxis(found["y_k_j"], 0, -1)
-    images = np.where((images != NOT_SEEN).all(axis=-1, keepdims=True), images, np.nan)
-    body = Poses(found["t"], found["r_i_vk_i"].T, Rotation.from_rotvec(found["theta_vk_i"].T).as_quat())
-    mount = Poses(np.arange(2.0), np.stack([found["rho_v_c_v"]] * 2), np.stack([found["C_c_v"].T] * 2))
+    landmarks = _variable(recorded, LANDMARKS, (3, "L"), sizes, file).T if LANDMARKS in recorded else None
     fx, fy, cx, cy, baseline = (float(found[name]) for name in ("fu", "fv", "cu", "cv", "b"))
     if not baseline > 0:
         raise ValueError(f"'{file}' has the baseline b = {baseline} m; it must be positive")
-    return StereoTracks(body, mount, images, PixelCamera((fx, fy), (cx, cy)), baseline, known)
 
-
-@checked
-def write_stereo_mat(path: str | os.PathLike[str], tracks: StereoTracks) -> None:
-    """Write a file that `read_stereo_mat` reads.
-
-    Parameters
-    ----------
-    path : path
-    tracks : StereoTracks
-    """
-    (fx, fy), (cx, cy) = tracks.camera.focal, tracks.camera.centre
-    images = np.where(np.isfinite(tracks.images), tracks.images, NOT_SEEN)
-    values = {
-        "t": tracks.body.time[None],
-        "y_k_j": np.moveaxis(images, -1, 0),
-        "r_i_vk_i": tracks.body.position.T,
-        "theta_vk_i": tracks.body.rotation.as_rotvec().T,
-        "C_c_v": tracks.mount.rotation[0].inv().as_matrix(),
-        "rho_v_c_v": tracks.mount.position[0][:, None],
-        **{"fu": fx, "fv": fy, "cu": cx, "cv": cy, "b": tracks.baseline},
-    }
-    savemat(path, values if tracks.landmarks is None else values | {LANDMARKS: tracks.landmarks.T})
+    body = Poses(found["t"], found["r_i_vk_i"].T, Rotation.from_rotvec(found["theta_vk_i"].T).as_quat())
+    poses = body.mounted(found["rho_v_c_v"], found["C_c_v"].T)
+    images = np.moveaxis(found["y_k_j"], 0, -1)
+    seen = np.asarray((images != NOT_SEEN).all(axis=-1))
+    tracks, followed = _tracks(body.time, seen, shortest, gap), np.zeros_like(seen)
+    for track in tracks:
+        followed[track.first : track.last + 1, track.point] = True
+    images = np.where(followed[..., None], images, np.nan)
+    camera = PixelCamera((fx, fy), (cx, cy))
+    return StereoTracks(poses, poses.path(derivative), images, camera, baseline, tracks, landmarks)
 
 
 def _variable(
     recorded: dict[str, object], name: str, shape: tuple[int | str, ...], sizes: dict[str, int], file: Path
 ) -> Array:
-    """A variable of the file, whose letters in the shape are the same sizes in all of them."""
+    """Return a variable of the file; a letter in a shape is one size in all variables."""
     if name not in recorded:
         raise ValueError(f"'{file}' has no variable {name}; it needs {', '.join(SHAPES)}")
     array = numbers(recorded[name], f"the variable {name} of '{file}'")
     wanted = tuple(sizes.get(size, size) if isinstance(size, str) else size for size in shape)
-    if (not shape and array.size == 1) or (len(shape) == 1 and array.size == max(array.shape)):
-        array = array.reshape((-1,) * len(shape))  # MATLAB has neither numbers nor vectors, only matrices,
-    elif array.ndim + 1 == len(shape):
-        array = array[..., None]  # and keeps no last dimension of 1
+    array = array.reshape(array.shape + (1,) * (len(shape) - array.ndim))  # back the dimensions that loadmat squeezed
     pairs = list(zip(wanted, array.shape, strict=False))
     fits = array.ndim == len(wanted) and all(isinstance(size, str) or size == found for size, found in pairs)
     if not fits or not array.size:
@@ -291,7 +235,7 @@ def _variable(
 
 
 def _tracks(time: Array, seen: Flags, shortest: float, gap: float) -> tuple[Sighting, ...]:
-    """Landmarks seen at consecutive samples, long enough and without a gap; `seen` has the shape (K, L)."""
+    """Return when landmarks are seen at consecutive samples, long enough and without a gap; `seen` is (K, L)."""
     tracks = []
     for landmark, column in enumerate(seen.T):
         samples = np.flatnonzero(column)

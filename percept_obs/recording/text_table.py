@@ -1,30 +1,30 @@
-"""Tables of numbers in text files: every cell is a number or empty, or it is told which one is not."""
+"""Tables of numbers in text files, and the clocks by which their times are read."""
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from numbers import Integral
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.validation import checked, write_whole
+from percept_obs.validation import checked
 
 PathLike = str | os.PathLike[str]
 
 LARGEST_POWER = 300
-"""Power of ten from which on a reading is no number of a clock."""
+"""Largest power of ten of a clock's reading, near that of a float."""
 
 
 @checked
 @dataclass(frozen=True)
 class Clock:
-    """How a clock in a file is read: seconds = (reading - zero) tick.
+    """Clock of a file: seconds = (reading - zero) tick.
 
     Two devices have two clocks.  Give each file its own, so that both give the same seconds.
 
@@ -34,12 +34,16 @@ class Clock:
         The reading at 0 s.  Whole numbers are exact, however large: the nanoseconds since 1970 of some files leave
         no digits for a millionth of a second otherwise.
     tick : float
-        Seconds that a reading counts for, such as 1e-9 for nanoseconds; positive.
+        Seconds in one unit of the reading, such as 1e-9 for nanoseconds; positive.
 
     Raises
     ------
     ValueError
         If zero is not finite, or tick not positive and finite.
+
+    See Also
+    --------
+    read_tum, read_euroc, Recording.from_csv : Take a clock.
 
     Examples
     --------
@@ -56,11 +60,11 @@ class Clock:
                 f"a clock with the zero {self.zero} and the tick {self.tick} s reads no time; give a finite zero and a "
                 "positive tick"
             )
-        object.__setattr__(self, "zero", int(self.zero) if isinstance(self.zero, Integral) else float(self.zero))
-        object.__setattr__(self, "tick", float(self.tick))
+        zero = int(self.zero) if isinstance(self.zero, Integral) else float(self.zero)  # numpy's have another repr
+        vars(self).update(zero=zero, tick=float(self.tick))
 
     def seconds(self, readings: list[str]) -> Array:
-        """Seconds of readings in text, shape (K,); subtracted before they are rounded.
+        """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding.
 
         Raises
         ------
@@ -78,11 +82,10 @@ class Clock:
             found.append(float(reading - zero) * self.tick)
         return np.array(found)
 
-    def readings(self, seconds: Array, whole: bool = False) -> list[str]:
-        """The readings, as text with all digits, at some seconds; rounded to whole ones if asked for."""
+    def readings(self, seconds: Array) -> list[str]:
+        """Return the readings at some seconds as text with all digits."""
         zero, tick = Decimal(repr(self.zero)), Decimal(repr(self.tick))
-        exact = [Decimal(repr(second)) / tick + zero for second in seconds.tolist()]
-        return [str(round(each)) if whole else f"{each:f}" for each in exact]
+        return [f"{Decimal(repr(second)) / tick + zero:f}" for second in seconds.tolist()]
 
 
 SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
@@ -90,20 +93,20 @@ SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
 
 @dataclass(frozen=True, eq=False)
 class TextTable:
-    """A table as text; an empty cell is "".
+    """Table of text; an empty cell is "".
 
     Parameters
     ----------
     file : str
-        What it is called in messages.
+        Its name in messages.
     columns : mapping of names to lists of text
     """
 
     file: str
     columns: dict[str, list[str]]
 
-    def column(self, name: str, of: str = "") -> list[str]:
-        """The cells of a column, which tells what the second text says.
+    def column(self, name: str, meaning: str = "") -> list[str]:
+        """Return the cells of a column; the meaning, such as "time", is for the message.
 
         Raises
         ------
@@ -112,54 +115,49 @@ class TextTable:
         """
         if name not in self.columns:
             raise ValueError(
-                f"{self.file} has the columns {', '.join(self.columns)}; it needs {name!r}{of and f' for the {of}'}: "
-                "rename the column, or say what it is called"
+                f"{self.file} has the columns {', '.join(self.columns)}; it needs {name!r}"
+                f"{meaning and f' for the {meaning}'}: rename the column, or give its name"
             )
         return self.columns[name]
 
-    def numbers(self, name: str, of: str = "", gaps: bool = True) -> Array:
-        """The numbers of a column, shape (K,), NaN for an empty cell.
+    def numbers(self, name: str, meaning: str = "", gaps: bool = True) -> Array:
+        """Return the numbers of a column, shape (K,); NaN for a cell that is empty or nan, if gaps are allowed.
 
         Raises
         ------
         ValueError
-            If a cell is no finite number, or is empty though there may be no gaps.
+            If another cell is no finite number.
         """
-        found = np.full(len(cells := self.column(name, of)), np.nan)
-        for row, text in enumerate(cells):
+        found = []
+        for row, text in enumerate(self.column(name, meaning), 1):
             try:
-                found[row] = float(text) if text else np.nan
+                value = float(text or math.nan)
             except ValueError:
-                raise ValueError(self._complaint(name, row, "is not a number")) from None
-            if math.isinf(found[row]):
-                raise ValueError(self._complaint(name, row, "is infinite"))
-            if math.isnan(found[row]) and not gaps:
-                raise ValueError(self._complaint(name, row, "is no number" if text else "is empty"))
-        return found
+                value = math.inf
+            if not (math.isfinite(value) or (gaps and math.isnan(value))):
+                raise ValueError(
+                    f"{self.file} has {text!r} in row {row} of the column {name!r}; write a finite number there, or "
+                    "leave the row out"
+                )
+            found.append(value)
+        return np.array(found)
 
     def seconds(self, name: str, clock: Clock) -> Array:
-        """The times of a column in seconds, shape (K,)."""
+        """Return the times of a column in seconds, shape (K,)."""
         try:
             return clock.seconds(self.column(name, "time"))
         except ValueError as error:
             raise ValueError(f"{self.file}, column {name!r}: {error}") from None
 
-    def _complaint(self, name: str, row: int, problem: str) -> str:
-        text = self.columns[name][row]
-        return (
-            f"{self.file} has a cell that is not a number: {text!r} in row {row + 1} of the column {name!r} {problem}; "
-            "write a finite number, or leave the row out"
-        )
-
 
 def read_table(path: PathLike, names: tuple[str, ...] = (), separator: str = ",", example: str = "") -> TextTable:
-    """Read a table of text; lines that begin with # are comments, and what follows a # in a line is one.
+    """Read a table of text; what follows a # in a line is a comment.
 
     Parameters
     ----------
     path : path
     names : tuple of str
-        Of the columns, where the file has no header.  More columns may follow these, and are left out.
+        Of the columns, where the file has no header.  Further columns are left out.
     separator : str
         A regular expression.
     example : str
@@ -177,36 +175,24 @@ def read_table(path: PathLike, names: tuple[str, ...] = (), separator: str = ","
     file = os.fspath(path)
     if not Path(path).is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a text file with a table")
+    layout: dict[str, Any] = {"sep": separator, "comment": "#", "skipinitialspace": True, "encoding": "utf-8-sig"}
     try:
-        rows = pd.read_csv(
-            path,
-            sep=separator,
-            comment="#",
-            header=None if names else 0,
-            dtype=str,
-            keep_default_na=False,
-            skipinitialspace=True,
-            encoding="utf-8-sig",
-        )
+        rows = pd.read_csv(path, header=None if names else 0, dtype=str, keep_default_na=False, **layout)
     except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
         raise ValueError(
-            f"{file} is no table of text ({str(error).strip()}); the path must name a text file whose first row is "
-            f"such as {example}"
+            f"{file} is no table of text ({str(error).strip()}); expected rows such as {example}"
         ) from None
-    if not isinstance(rows.index, pd.RangeIndex):
-        raise ValueError(f"{file} has rows with more cells than its header has names; expected such as {example}")
     found = [str(name).strip() for name in rows.columns]
-    if len(found) < len(names):
-        raise ValueError(f"{file} has {len(found)} columns; {len(names)} are needed: {', '.join(names)}")
-    if len(set(found)) != len(found):
-        raise ValueError(f"{file} names a column twice, among {', '.join(found)}; rename one of them")
-    if not len(rows):
-        raise ValueError(f"{file} has a header and no rows; at least two samples are needed")
+    problem = ""
+    if not isinstance(rows.index, pd.RangeIndex):
+        problem = "rows with more cells than its header has names"
+    elif len(found) < len(names):
+        problem = f"{len(found)} columns, and {len(names)} are needed: {', '.join(names)}"
+    elif len(set(found)) != len(found):
+        problem = f"two columns of one name, among {', '.join(found)}"
+    elif not len(rows):
+        problem = "a header and no rows"
+    if problem:
+        raise ValueError(f"{file} has {problem}; expected rows such as {example}")
     columns = zip(names or found, (rows[name] for name in rows.columns), strict=False)
-    return TextTable(file, {name: [str(cell).strip() for cell in column.fillna("")] for name, column in columns})
-
-
-def write_table(path: PathLike, head: list[str], rows: Iterable[Iterable[str]], separator: str = ",") -> None:
-    """Write rows of text below some lines, whole or not at all."""
-    lines = [*head, *(separator.join(row) for row in rows)]
-    write_whole(Path(path), ("\n".join(lines) + "\n").encode())
+    return TextTable(file, {name: column.fillna("").str.strip().tolist() for name, column in columns})

@@ -1,15 +1,16 @@
-"""Writing recordings as a table that `Recording.from_csv` reads."""
+"""Write recordings as a table that `Recording.from_csv` reads."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.text_table import SECONDS, Clock, PathLike, write_table
-from percept_obs.validation import checked
+from percept_obs.recording.text_table import SECONDS, Clock, PathLike
+from percept_obs.validation import checked, write_whole
 
 
 @checked
@@ -34,6 +35,10 @@ def write_tracks(
         If there are no recordings, their outputs differ, or pixels are asked for and it is no pinhole with both image
         coordinates.
 
+    See Also
+    --------
+    Recording.from_csv : Reads the table.
+
     Notes
     -----
     The columns are time, point_id, the outputs, depth (of the surface, empty where it is not known; left out if no
@@ -55,9 +60,8 @@ def write_tracks(
     for each in recordings:
         if (each.names, set(each.distances)) != (first.names, set(first.distances)):
             raise ValueError(
-                f"the recordings {first.source!r} and {each.source!r} have different outputs or distances: "
-                f"{', '.join((*first.names, *first.distances))}, and {', '.join((*each.names, *each.distances))}; "
-                "write them to files of their own"
+                f"the recordings {first.source!r} and {each.source!r} have different outputs or distances; write them "
+                "to files of their own"
             )
         if each.outputs.ndim != 2:
             raise ValueError(f"the recording {each.source!r} is of several points; a table has recordings of one point")
@@ -66,14 +70,15 @@ def write_tracks(
             f"the recordings have {', '.join(first.names)} of the {first.view.name}; pixels need y1 and y2 of the "
             "pinhole: leave camera out"
         )
+    import pandas as pd
+
     known = any(each.truth is not None for each in recordings)
-    names = ("u", "v") if camera else first.names
-    header = ["time", "point_id", *names, *(["depth"] if known else []), *first.distances]
-    rows = []
+    tables = []
     for number, each in enumerate(recordings):
         shown = camera.pixels(each.outputs) if camera else each.outputs
-        depth = [each.distance if each.truth is not None else np.full(len(each.time), np.nan)] if known else []
-        values = np.column_stack([shown, *depth, *(each.distances[name] for name in first.distances)])
-        for reading, row in zip(clock.readings(each.time), values.tolist(), strict=True):
-            rows.append([reading, str(number), *("" if value != value else repr(value) for value in row)])
-    write_table(path, [",".join(header)], rows)
+        columns = {"time": clock.readings(each.time), "point_id": number}
+        columns |= dict(zip(("u", "v") if camera else first.names, shown.T, strict=True))
+        if known:
+            columns["depth"] = np.nan if each.truth is None else each.distance
+        tables.append(pd.DataFrame(columns | {name: each.distances[name] for name in first.distances}))
+    write_whole(Path(path), pd.concat(tables).to_csv(index=False, lineterminator="\n").encode())

@@ -18,7 +18,7 @@ import urllib.request
 from pathlib import Path
 
 from percept_obs.recording import Recording
-from percept_obs.recording.stereo_mat import StereoTables, read_stereo_mat
+from percept_obs.recording.stereo_mat import StereoTracks, read_stereo_mat
 from percept_obs.validation import checked, write_whole
 
 UTIAS_ADDRESS = (
@@ -83,11 +83,11 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
     tuple of Recording
         44 tracks of 3.0 to 8.6 s.
     """
-    return utias_tables(path).recordings("UTIAS", PIXEL_SIGMA)
+    return utias_tracks(path).recordings("UTIAS", PIXEL_SIGMA)
 
 
 @checked
-def utias_tables(path: str | os.PathLike[str] | None = None) -> StereoTables:
+def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
     """Convert the recording to the camera's motion and the landmarks' tracks.
 
     The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted
@@ -104,7 +104,7 @@ def utias_tables(path: str | os.PathLike[str] | None = None) -> StereoTables:
     degree of attitude, in 42 tracks, but 22 and 19 px in tracks 14 and 15.  Treat a pixel as known to about
     4 px.
     """
-    return read_stereo_mat(find_utias(path)).tables()
+    return read_stereo_mat(find_utias(path))
 
 
 def _checked(place: Path, origin: str) -> Path:

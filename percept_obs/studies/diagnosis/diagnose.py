@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from percept_obs.recording import Recording
-from percept_obs.recording.doubts import LARGEST_USUAL
+from percept_obs.recording.plausibility import LARGEST_USUAL
 from percept_obs.studies.diagnosis.experiments import EXPERIMENTS, impossible, within_reach
 from percept_obs.studies.diagnosis.explaining import Explained, explain
 from percept_obs.validation import checked
