@@ -26,11 +26,11 @@ from percept_obs import observers, points, structure
 from percept_obs.observability import (
     empirical_gramian,
     error_gramian,
-    gramian,
     instantaneous,
     lie_ranks,
 )
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
+from percept_obs.points import gramian
 from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.ray import ray_turning

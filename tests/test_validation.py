@@ -188,7 +188,7 @@ def test_a_motion_between_samples_is_followed_over_its_kinks():
 
 
 def test_a_motion_that_changes_too_fast_is_refused(monkeypatch):
-    monkeypatch.setattr("percept_obs.recording.path.MOST_LOOKS", 2000)
+    monkeypatch.setattr("percept_obs.recording.path.MOST_EVALUATIONS", 2000)
     with pytest.raises(TooMuchWork, match="it changes too fast: slow it down"):
         varying_path(lambda t, x: 1e5 * np.cos(1e5 * t) * np.ones(1), np.zeros(1), np.array([0.0, 10.0]))
 

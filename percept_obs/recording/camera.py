@@ -1,4 +1,4 @@
-"""How a scene is sampled: a camera's clock, its noise, and what it loses."""
+"""Sampling of a scene: a camera's clock, its noise, and the samples that it loses."""
 
 from __future__ import annotations
 
@@ -18,15 +18,42 @@ from percept_obs.validation import checked, limit
 Seed = np.random.Generator | int
 
 
-def _check_spread(name: str, value: float) -> None:
-    if not (np.isfinite(value) and value >= 0):
-        raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
+class _Noise(ABC):
+    """Independent noise of one spread, which is its bound or its standard deviation."""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (np.isfinite(value) and value >= 0):
+                raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
+
+    @property
+    @abstractmethod
+    def variance(self) -> float:
+        """Variance of a sample."""
+
+    @abstractmethod
+    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+        """Return independent samples of a shape."""
 
 
 @checked
 @dataclass(frozen=True)
-class Uniform:
+class Uniform(_Noise):
     """Uniform noise between -bound and bound.
+
+    Parameters
+    ----------
+    bound : float
+
+    Raises
+    ------
+    ValueError
+        If the bound is not finite or negative.
+
+    See Also
+    --------
+    Gaussian : The other noise.
+    Camera : Takes a noise.
 
     Examples
     --------
@@ -37,26 +64,34 @@ class Uniform:
 
     bound: float
 
-    def __post_init__(self) -> None:
-        _check_spread("bound", self.bound)
-
     @property
     def variance(self) -> float:
         """bound^2 / 3."""
         return self.bound**2 / 3
 
     def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Independent samples."""
-        return self._draw(generator, shape)
-
-    def _draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+        """Return independent samples of a shape."""
         return generator.uniform(-self.bound, self.bound, shape)
 
 
 @checked
 @dataclass(frozen=True)
-class Gaussian:
+class Gaussian(_Noise):
     """Gaussian noise of standard deviation sigma.
+
+    Parameters
+    ----------
+    sigma : float
+
+    Raises
+    ------
+    ValueError
+        If sigma is not finite or negative.
+
+    See Also
+    --------
+    Uniform : The other noise.
+    Camera : Takes a noise.
 
     Examples
     --------
@@ -67,19 +102,14 @@ class Gaussian:
 
     sigma: float
 
-    def __post_init__(self) -> None:
-        _check_spread("sigma", self.sigma)
-
     @property
     def variance(self) -> float:
         """sigma^2."""
         return self.sigma**2
 
     def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Independent samples, by the Box-Muller transform of two uniform ones."""
-        return self._draw(generator, shape)
-
-    def _draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+        """Return independent samples of a shape."""
+        # Box and Muller's transform, so that other languages draw the same from the same uniform numbers
         first, second = generator.random((*shape, 2)).transpose(-1, *range(len(shape)))
         return self.sigma * np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
 
@@ -91,7 +121,7 @@ NO_NOISE = Uniform(0.0)
 @checked
 @dataclass(frozen=True)
 class Camera:
-    """How a scene is sampled.
+    """Camera that samples a scene.
 
     Parameters
     ----------
@@ -125,27 +155,24 @@ class Camera:
     field_of_view: float = 2 * math.pi
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.period) and self.period > 0):
-            raise ValueError(f"the camera's period is {self.period} s; it must be positive")
-        if not 0 <= self.dropout < 1:
-            raise ValueError(f"the camera's dropout is {self.dropout}; it is a probability, 0 or more and below 1")
-        if not self.reach > 0:
-            raise ValueError(f"the camera's reach is {self.reach}; the largest coordinate it sees must be positive")
-        if not 0 < self.field_of_view <= 2 * math.pi:
-            raise ValueError(
-                f"the camera's field of view is {self.field_of_view} rad; it must be above 0 and at most 2 pi: use "
-                "np.radians(...) for degrees"
-            )
+        for holds, name, unit, expected in (
+            (0 < self.period < math.inf, "period", " s", "it must be positive"),
+            (0 <= self.dropout < 1, "dropout", "", "it is a probability, 0 or more and below 1"),
+            (self.reach > 0, "reach", "", "the largest coordinate it sees must be positive"),
+            (0 < self.field_of_view <= 2 * math.pi, "field_of_view", " rad", "it must be above 0 and at most 2 pi"),
+        ):
+            if not holds:
+                raise ValueError(f"the camera's {name} is {getattr(self, name)}{unit}; {expected}")
 
     def times(self, duration: float, each: int = 1) -> Array:
-        """Times of the samples in seconds, from 0 on.
+        """Return the times of the samples in seconds, from 0 on, shape (K,).
 
         Parameters
         ----------
         duration : float
             In seconds.
         each : int
-            Numbers that are kept of a sample.
+            Numbers kept of a sample, for the limit of memory.
 
         Raises
         ------
@@ -166,7 +193,7 @@ class Camera:
         return self.period * np.arange(int(np.floor(duration / self.period + 1e-9)) + 1, dtype=float)
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
-        """Samples of a scene.
+        """Return samples of a scene and the variance of their noise.
 
         Parameters
         ----------
@@ -176,7 +203,7 @@ class Camera:
         truth : array of shape (K, n)
             Coordinates of the scene's view.
         generator : numpy Generator
-            Of the noise and then of the lost samples.
+            Draws the noise and then the lost samples.
 
         Returns
         -------
@@ -188,37 +215,34 @@ class Camera:
         exact = scene.view.outputs(truth)
         outputs = exact + self.noise.draw(generator, exact.shape)
         lost = self.lost(generator, exact.shape[:-1])
-        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._beside(scene.view, truth)] = np.nan
+        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._out_of_view(scene.view, truth)] = np.nan
         return outputs, self.noise.variance
 
     def drawn(self, seeds: Sequence[int], shape: tuple[int, ...]) -> Array:
-        """For each of S seeds the noise of outputs of a shape, (S, K, ..., m); NaN where a sample is lost by chance."""
+        """Return noise for each of S seeds, shape (S, K, ..., m); NaN where a sample is lost by chance."""
         noise = np.zeros((len(seeds), *shape))
         for k, generator in enumerate(_generators(seeds) if self.noise.variance or self.dropout else ()):
-            noise[k] = self.noise._draw(generator, shape)
+            noise[k] = self.noise.draw(generator, shape)
             if self.dropout:
-                noise[k][self._lost(generator, shape[:-1])] = np.nan
+                noise[k][self.lost(generator, shape[:-1])] = np.nan
         return noise
 
-    def _beside(self, view: View, truth: Array) -> Flags | bool:
-        """Which points lie outside of the field of view, shape (K, ...)."""
+    def _out_of_view(self, view: View, truth: Array) -> Flags | bool:
+        """Return True for points outside of the field of view, shape (K, ...)."""
         if self.field_of_view == 2 * math.pi:
             return False
         points = view.locate(truth)
         return np.asarray(points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1))
 
     def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
-        """Which samples are lost by chance, the first ones never."""
-        return self._lost(generator, shape)
-
-    def _lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
+        """Return True for samples lost by chance; the first ones never are."""
         lost = generator.random(shape) < self.dropout
         lost[0] = False
         return lost
 
 
 class Scene(ABC):
-    """What a camera can be pointed at: a point, the points of a state, or an object whose structure is sought.
+    """Scene in front of a camera: a point, the points of a state, or an object whose structure is sought.
 
     Examples
     --------
@@ -234,24 +258,24 @@ class Scene(ABC):
     @property
     @abstractmethod
     def view(self) -> View:
-        """As what it is seen."""
+        """View in which it is seen."""
 
     @property
     @abstractmethod
     def known_motion(self) -> Motion:
-        """What an observer may know of the motion."""
+        """Motion as an observer may know it."""
 
     @abstractmethod
     def coordinates(self, times: ArrayLike) -> Array:
-        """True coordinates of the view at some times in seconds from 0 on, shape (K, n)."""
+        """Return true coordinates of the view at times in seconds from 0 on, shape (K, n)."""
 
     @property
     def camera(self) -> Camera:
-        """The camera that is taken if none is asked for: one sample every 10 ms without noise."""
+        """Default camera: one sample every 10 ms without noise."""
         return Camera()
 
     def _check(self, what: str, values: Sequence[float], names: Sequence[str]) -> tuple[float, ...]:
-        """The finite numbers that the scene begins with, one for each name, and a positive duration."""
+        """Return the scene's initial values as floats; refuse infinite ones and a duration <= 0."""
         array = np.asarray(values, dtype=float)
         if array.shape != (len(names),) or not np.isfinite(array).all():
             raise ValueError(
@@ -264,7 +288,12 @@ class Scene(ABC):
 
 
 def seeded(seed: Seed) -> np.random.Generator:
-    """The Mersenne Twister MT19937 with its reference seeding, whose numbers are the same in every language.
+    """Return the Mersenne Twister MT19937 with its reference seeding, the same in every language.
+
+    Parameters
+    ----------
+    seed : int or numpy Generator
+        A generator is returned as it is.
 
     Raises
     ------
@@ -285,7 +314,7 @@ def seeded(seed: Seed) -> np.random.Generator:
 
 
 def _generators(seeds: Iterable[int]) -> Iterator[np.random.Generator]:
-    """One generator, seeded anew each time, for making one takes longer than a hundred seedings."""
+    """Yield one generator, seeded anew each time, for making one takes longer than a hundred seedings."""
     bits = np.random.MT19937(0)
     generator, seeding = np.random.Generator(bits), np.random.RandomState(bits)
     for seed in seeds:

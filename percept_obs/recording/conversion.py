@@ -1,4 +1,4 @@
-"""The same recording as another imaging surface would have shown it."""
+"""Conversion of a recording to another imaging surface."""
 
 from __future__ import annotations
 
@@ -35,6 +35,10 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
     ValueError
         If an image coordinate was not measured, for then the rays are not known.
 
+    See Also
+    --------
+    record : Simulates a recording on any surface.
+
     Examples
     --------
     >>> from percept_obs import record, scenarios, seen_on, sphere
@@ -47,8 +51,7 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
     missing = [name for name in names if name not in recording.names]
     if missing:
         raise ValueError(
-            f"the recording has no {', '.join(missing)}, so that the rays along which the point was seen are not "
-            f"known; measure all of {', '.join(names)}"
+            f"the recording has no {', '.join(missing)}, so its rays are not known; measure all of {', '.join(names)}"
         )
     order = [recording.names.index(name) for name in names]
 
@@ -71,7 +74,7 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
 
 
 def _seen(surface: ImagingSurface, points: Array) -> Array:
-    """Coordinates of points of shape (K, 3), shape (K, n); NaN where they are not known or not seen."""
+    """Return coordinates, shape (K, n), of points of shape (K, 3); NaN where they are not known or not seen."""
     coordinates = np.full((len(points), len(surface.coordinates)), np.nan)
     known = np.flatnonzero(np.isfinite(points).all(axis=-1))
     seen = known[surface.sees(points[known])]

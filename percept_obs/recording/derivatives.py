@@ -1,4 +1,4 @@
-"""Velocities from poses: which derivative suits depends on how fast the camera moves and how noisy its poses are."""
+"""Velocities from poses; which derivative suits depends on the pace of the camera and the noise of its poses."""
 
 from __future__ import annotations
 
@@ -11,20 +11,23 @@ from percept_obs.compile import Array, Indices
 from percept_obs.validation import checked
 
 AT_ONCE = 200_000
-"""Poses in windows that are fitted together: with what is computed from them they take about 50 MB."""
+"""Poses in windows that are fitted together, for about 50 MB of memory."""
 
 Derived = tuple[Array, Array, Array, Array]
-"""Positions and quaternions, smoothed, with the rates of both: velocities along the axes of the world, and angular
-velocities along those of the camera."""
+"""Positions and quaternions, smoothed, velocities along the world's axes, and angular velocities along the camera's."""
 
 
 @checked
 @dataclass(frozen=True)
 class Neighbours:
-    """Differences of neighbours: the slope at each pose of the parabola through it and the two beside it.
+    """Derivative from neighbours: the slope at each pose of the parabola through it and the next on either side.
 
     Poses are kept as they are.  It follows the fastest motion, and noise sigma in a position becomes sigma/(sqrt(2) h)
     in the velocity if the poses are h seconds apart.
+
+    See Also
+    --------
+    Quadratic, SmoothingSpline : The other derivatives.
 
     Examples
     --------
@@ -38,34 +41,33 @@ class Neighbours:
     fewest = 3
 
     def of(self, time: Array, position: Array, orientation: Array) -> Derived:
-        """Poses and rates; see `Derived`."""
-        from scipy.spatial.transform import Rotation
-
-        rotation, k = Rotation.from_quat(orientation), np.arange(len(time))
-        middle = np.clip(k, 1, len(time) - 2)
-        near = np.stack([middle - 1, middle, middle + 1])
-        a, b, c = time[near] - time
-        # slopes at 0 of the three parabolas that are 1 at one of a, b, c and 0 at the others
-        slopes = [-(b + c) / ((a - b) * (a - c)), -(a + c) / ((b - a) * (b - c)), -(a + b) / ((c - a) * (c - b))]
-        velocity, turning = np.zeros((2, len(time), 3))
-        for slope, each in zip(slopes, near, strict=True):
-            velocity += slope[:, None] * position[each]
-            turning += slope[:, None] * (rotation.inv() * rotation[each]).as_rotvec()
+        """Return poses and rates; see `Derived`."""
+        begin = np.clip(np.arange(len(time)) - 1, 0, len(time) - 3)
+        _, _, velocity, turning = _parabolas(time, position, orientation, begin, begin + 3)
         return position, orientation, velocity, turning
 
 
 @checked
 @dataclass(frozen=True)
 class Quadratic:
-    """The slope at each pose of a parabola fitted to all poses within a time to either side.
+    """Derivative from a window: the slope at each pose of a parabola fitted to all poses within a time to either side.
 
-    Poses are smoothed by it.  With n poses in the window the noise in the velocity is about sigma sqrt(3/n)/half_width;
+    Poses are smoothed.  With n poses in the window the noise in the velocity is about sigma sqrt(3/n)/half_width;
     what the motion does faster than the window is lost, about half_width^2/10 of the third derivative.
 
     Parameters
     ----------
     half_width : float
-        Seconds to either side, positive; `fewest` poses are taken where fewer are so near.
+        Seconds to either side, positive; the nearest five poses are taken where fewer lie in the window.
+
+    Raises
+    ------
+    ValueError
+        If the half_width is not positive and finite.
+
+    See Also
+    --------
+    Neighbours, SmoothingSpline : The other derivatives.
 
     Examples
     --------
@@ -85,33 +87,11 @@ class Quadratic:
             raise ValueError(f"the half_width is {self.half_width} s; it must be positive, for instance 0.2")
 
     def of(self, time: Array, position: Array, orientation: Array) -> Derived:
-        """Poses and rates; see `Derived`."""
-        from scipy.spatial.transform import Rotation
-
-        begin, end = self._windows(time)
-        rotation, widest = Rotation.from_quat(orientation), int((end - begin).max())
-        reach = np.maximum(time[end - 1] - time, time - time[begin])
-        fit = np.empty((len(time), 2, 6))
-        for rows in np.array_split(np.arange(len(time)), len(time) * widest // AT_ONCE + 1):
-            near = begin[rows, None] + np.arange(widest)
-            inside = near < end[rows, None]
-            near = np.minimum(near, len(time) - 1)
-            turned = rotation[np.repeat(rows, widest)].inv() * rotation[near.ravel()]
-            shifted = position[near] - position[rows, None]
-            values = np.concatenate([shifted, turned.as_rotvec().reshape(shifted.shape)], axis=-1)
-            powers = (((time[near] - time[rows, None]) / reach[rows, None])[..., None] ** np.arange(3)) * inside[
-                ..., None
-            ]
-            transposed = np.swapaxes(powers, 1, 2)
-            fit[rows] = np.linalg.solve(transposed @ powers, transposed @ values)[:, :2]
-        (shift, turn), (velocity, turning) = (np.split(fit[:, i], 2, axis=1) for i in (0, 1))
-        velocity, turning = velocity / reach[:, None], turning / reach[:, None]
-        smoothed = rotation * Rotation.from_rotvec(turn)
-        # The first two terms of the series for w in the fit's correction; the others are of its second order.
-        return position + shift, smoothed.as_quat(), velocity, turning - np.cross(turn, turning) / 2
+        """Return smoothed poses and rates; see `Derived`."""
+        return _parabolas(time, position, orientation, *self._windows(time))
 
     def _windows(self, time: Array) -> tuple[Indices, Indices]:
-        """First pose of each window and the one after its last: all that are near, or the nearest few."""
+        """Return the first pose of each window and the one after its last."""
         width = self.half_width * (1 + 1e-9)  # a pose at the very edge is in, however its time was rounded
         begin, end = np.searchsorted(time, time - width), np.searchsorted(time, time + width)
         starts = np.arange(len(time))[:, None] + np.arange(1 - self.fewest, 1)
@@ -125,10 +105,14 @@ class Quadratic:
 @checked
 @dataclass(frozen=True)
 class SmoothingSpline:
-    """The slope of cubic smoothing splines, whose smoothness generalised cross-validation chooses.
+    """Derivative of cubic smoothing splines, whose smoothness generalised cross-validation chooses.
 
-    Nothing has to be chosen, if the noise of one pose tells nothing of the noise of the next.  Where it does, as for
-    poses that a filter has smoothed, noise is taken for motion.  The splines go through the entries of the quaternions.
+    It needs no setting, but the noise must be white: correlated noise, as of poses that a filter has smoothed, is taken
+    for motion.  The splines go through the entries of the quaternions.
+
+    See Also
+    --------
+    Neighbours, Quadratic : The other derivatives.
 
     Examples
     --------
@@ -142,7 +126,7 @@ class SmoothingSpline:
     fewest = 5
 
     def of(self, time: Array, position: Array, orientation: Array) -> Derived:
-        """Poses and rates; see `Derived`."""
+        """Return smoothed poses and rates; see `Derived`."""
         from scipy.interpolate import make_smoothing_spline
 
         quaternion = orientation.copy()
@@ -158,3 +142,27 @@ class SmoothingSpline:
 
 
 Derivative = Neighbours | Quadratic | SmoothingSpline
+
+
+def _parabolas(time: Array, position: Array, orientation: Array, begin: Indices, end: Indices) -> Derived:
+    """Fit a parabola to the poses begin[k] to end[k] - 1 around each pose k, and return its value and slope there."""
+    from scipy.spatial.transform import Rotation
+
+    rotation, widest = Rotation.from_quat(orientation), int((end - begin).max())
+    reach = np.maximum(time[end - 1] - time, time - time[begin])
+    fit = np.empty((len(time), 2, 6))
+    for rows in np.array_split(np.arange(len(time)), len(time) * widest // AT_ONCE + 1):
+        near = begin[rows, None] + np.arange(widest)
+        inside = near < end[rows, None]
+        near = np.minimum(near, len(time) - 1)
+        turned = rotation[np.repeat(rows, widest)].inv() * rotation[near.ravel()]
+        shifted = position[near] - position[rows, None]
+        values = np.concatenate([shifted, turned.as_rotvec().reshape(shifted.shape)], axis=-1)
+        powers = (((time[near] - time[rows, None]) / reach[rows, None])[..., None] ** np.arange(3)) * inside[..., None]
+        transposed = np.swapaxes(powers, 1, 2)
+        fit[rows] = np.linalg.solve(transposed @ powers, transposed @ values)[:, :2]
+    (shift, turn), (velocity, turning) = (np.split(fit[:, i], 2, axis=1) for i in (0, 1))
+    velocity, turning = velocity / reach[:, None], turning / reach[:, None]
+    smoothed = rotation * Rotation.from_rotvec(turn)
+    # The first two terms of the series for w in the fit's correction; the others are of its second order.
+    return position + shift, smoothed.as_quat(), velocity, turning - np.cross(turn, turning) / 2

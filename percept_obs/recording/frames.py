@@ -1,9 +1,8 @@
-"""Pictures behind a track: the frames of a film as PNG files, and a film that is drawn of a recording."""
+"""Frames of a film behind a track, as PNG files, and a film drawn from a recording."""
 
 from __future__ import annotations
 
-import struct
-import zlib
+import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.signal import frozen
 from percept_obs.validation import checked, limit
 
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
+SIGNATURE = b"\x89PNG"
 MOST_BYTES = 20_000_000
 """Bytes of all frames together, which a notebook keeps with a lab."""
 
@@ -25,7 +24,7 @@ MOST_BYTES = 20_000_000
 @checked
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames of a film, each seen from one time until the next.
+    """Frames of a film, each shown from its time until the next one's.
 
     Parameters
     ----------
@@ -45,6 +44,10 @@ class Frames:
     TooMuchWork
         If the frames are too large together.
 
+    See Also
+    --------
+    render : Draws frames of a simulated recording.
+
     Examples
     --------
     >>> film = Frames([np.zeros((2, 3)), np.ones((2, 3))], [0.0, 0.5], (-1, 1, -1, 1))
@@ -57,12 +60,11 @@ class Frames:
     extent: Sequence[float]
 
     def __post_init__(self) -> None:
-        given = self.images
-        if isinstance(given, str | Path):
-            given = sorted(Path(given).glob("*.png"))
-            if not given:
-                raise ValueError(f"the folder {str(self.images)!r} holds no .png files; give one with frames in it")
-        images = tuple(_png(image, k) for k, image in enumerate(given, 1))
+        folder = isinstance(self.images, str | Path)
+        pictures = sorted(Path(self.images).glob("*.png")) if folder else self.images
+        if folder and not pictures:
+            raise ValueError(f"the folder {str(self.images)!r} holds no .png files; give one with frames in it")
+        images = tuple(_png(image, k) for k, image in enumerate(pictures, 1))
         limit(sum(map(len, images)), "bytes of frames", "take fewer or smaller ones", MOST_BYTES)
         time = frozen(np.asarray(self.time, dtype=float), "the times of the frames")
         extent = frozen(np.asarray(self.extent, dtype=float), "the edges of the frames")
@@ -74,11 +76,11 @@ class Frames:
             raise ValueError(
                 f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge"
             )
-        for name, value in (("images", images), ("time", time), ("extent", tuple(extent.tolist()))):
-            object.__setattr__(self, name, value)
+        vars(self).update(images=images, time=time, extent=tuple(extent.tolist()))
 
 
 def _png(image: Any, number: int) -> bytes:
+    """Return the bytes of a PNG file, or of pixels as one."""
     if isinstance(image, str | Path):
         data = Path(image).read_bytes()
         if not data.startswith(SIGNATURE):
@@ -89,36 +91,31 @@ def _png(image: Any, number: int) -> bytes:
         pixels = np.round(255 * np.clip(pixels, 0, 1))
     if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3) or not pixels.size:
         raise ValueError(f"frame {number} has the shape {pixels.shape}; expected (h, w), or (h, w, 3) for colours")
-    return _encoded(np.clip(pixels, 0, 255).astype(np.uint8))
+    from PIL.Image import fromarray  # matplotlib brings it
 
-
-def _encoded(pixels: np.ndarray) -> bytes:
-    """Pixels as a PNG file (ISO/IEC 15948): header, rows without a filter, end."""
-    height, width = pixels.shape[:2]
-    rows = np.zeros((height, 1 + pixels[0].size), dtype=np.uint8)
-    rows[:, 1:] = pixels.reshape(height, -1)
-    header = struct.pack(">IIBBBBB", width, height, 8, 0 if pixels.ndim == 2 else 2, 0, 0, 0)
-    parts = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 6)), (b"IEND", b""))
-    chunks = (
-        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in parts
-    )
-    return SIGNATURE + b"".join(chunks)
+    written = io.BytesIO()
+    fromarray(np.clip(pixels, 0, 255).astype(np.uint8)).save(written, "PNG")
+    return written.getvalue()
 
 
 @checked
 def render(recording: Recording, count: int = 60, size: int = 160, radius: float = 0.15) -> Frames:
-    """Draw a film of a recording with its truth: a ball around the point, which looms as it comes nearer.
+    """Draw a film of a recording with its truth: a ball around the point, which grows as it comes nearer.
 
     Parameters
     ----------
     recording : Recording
         Of one point, with its truth.
     count : int
-        Frames, spread over the recording.
+        Number of frames, spread over the recording.
     size : int
-        Pixels of a frame's side.
+        Side of a frame in pixels.
     radius : float
         Of the ball, in metres.
+
+    Returns
+    -------
+    Frames
 
     Raises
     ------
@@ -147,6 +144,7 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
 
 
 def _with_ball(floor: Array, y1: Array, y2: Array, ball: tuple[float, float, float]) -> Array:
+    """Return the floor's brightness with a ball of a centre and a radius, lit from the upper left."""
     at1, at2, size = ball
     away = np.hypot(y1 - at1, y2 - at2) / max(size, 1e-6)
     lit = 0.25 + 0.5 * np.clip(1 - np.hypot(y1 - at1 + size / 3, y2 - at2 - size / 3) / max(2 * size, 1e-6), 0, 1)

@@ -1,4 +1,4 @@
-"""Many scenarios that differ in numbers only."""
+"""Scenarios with other numbers, and the transitions of many constant motions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from percept_obs.system.surfaces import POINT
 
 
 def numbers_of(scenario: Scenario) -> dict[str, float]:
-    """What can be another number in a scenario, and what it is now: X, Y, Z, a constant motion's and the surface's."""
+    """Return the numbers of a scenario by name: X, Y, Z, a constant motion's and the surface's."""
     motion, surface = scenario.motion, scenario.surface
     found = {symbol.name: float(value) for symbol, value in zip(POINT, scenario.position, strict=True)}
     found |= {symbol.name: value for symbol, value in motion.values.items()}
@@ -23,12 +23,12 @@ def numbers_of(scenario: Scenario) -> dict[str, float]:
 
 
 def with_numbers(scenario: Scenario, **values: float) -> Scenario:
-    """The scenario with some of its `numbers_of` replaced.
+    """Return the scenario with some of its `numbers_of` replaced.
 
     Raises
     ------
     BehindCamera
-        If its point does not begin in front of the camera.
+        If its point does not start in front of the camera.
     """
     now = numbers_of(scenario) | values
     motion, surface = scenario.motion, scenario.surface
@@ -40,19 +40,19 @@ def with_numbers(scenario: Scenario, **values: float) -> Scenario:
 
 
 def transitions(A: Array, b: Array, length: float) -> Array:
-    """Maps [M | v] of a position to the one a length of time later under constant motions.
+    """Return maps [M | v] of a position to the one a time later, under D constant motions.
 
     Parameters
     ----------
     A, b : arrays of shapes (D, 3, 3) and (D, 3)
     length : float
-        In seconds.
+        Of time, in seconds.
 
     Returns
     -------
     array of shape (D, 3, 4)
     """
-    whole = np.zeros((len(A), 4, 4))
+    whole = np.zeros((len(A), 4, 4))  # of (X, 1), so that b is a part of the matrix
     whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
     fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))
     halvings = max(0, int(np.ceil(np.log2(max(fastest / REACH, 1.0)))))

@@ -1,4 +1,4 @@
-"""Where a linear motion x' = A x + b leads: exactly if it is constant, else to a relative error of a solver's."""
+"""Paths under a linear motion x' = A x + b: exact if it is constant, else by an adaptive solver."""
 
 from __future__ import annotations
 
@@ -14,28 +14,22 @@ from percept_obs.validation import TooMuchWork, bar, limit
 Rate = Callable[[float, Array], ArrayLike]
 
 REACH = 0.5
-"""|A| times the time over which the exponential series is summed; longer times are products of such pieces."""
+"""Largest norm of a matrix whose exponential series is summed; exponentials of longer times are products."""
 TERMS = 15
 """Terms of that series: the next one is below 1e-18 of the first."""
 
 RELATIVE_ERROR, ABSOLUTE_ERROR = 1e-10, 1e-12
-"""Error that a step of the solver may leave of a motion that varies."""
-LONGEST_LOOK = 0.25
-"""Seconds after which a motion that varies is looked at, however smooth it seems."""
-MOST_LOOKS = 400_000
-"""Looks at a motion that varies: about ten seconds of computing."""
+"""Tolerances of a step of the solver, for a motion that varies."""
+LONGEST_SOLVER_STEP = 0.25
+"""Longest step of the solver in seconds, however smooth the motion seems."""
+MOST_EVALUATIONS = 400_000
+"""Most evaluations of a motion that varies: about ten seconds of computing."""
 
 
 def times_of(times: ArrayLike, states: int) -> Array:
-    """Times at which a path is asked for: finite, from 0 on, not decreasing, and not too many for so many states."""
+    """Return times of a path as an array; refuse them unless finite, from 0 on, not decreasing and not too many."""
     array = np.atleast_1d(np.asarray(times, dtype=float))
-    if (
-        array.ndim != 1
-        or not array.size
-        or not np.isfinite(array).all()
-        or (array < 0).any()
-        or (np.diff(array) < 0).any()
-    ):
+    if array.ndim != 1 or not array.size or not np.isfinite(array).all() or (np.diff(array, prepend=0) < 0).any():
         raise ValueError(
             "the times must be a list, not empty, of finite seconds from 0 on that do not decrease; sort them"
         )
@@ -44,7 +38,7 @@ def times_of(times: ArrayLike, states: int) -> Array:
 
 
 def exponential(matrices: Array) -> Array:
-    """Exponentials of square matrices, shape (..., n, n), whose norm is at most `REACH`, by their series."""
+    """Return exponentials of square matrices, shape (..., n, n), whose norm is at most `REACH`, by their series."""
     one = np.eye(matrices.shape[-1])
     found = one
     for k in range(TERMS, 0, -1):
@@ -53,9 +47,9 @@ def exponential(matrices: Array) -> Array:
 
 
 def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
-    """States at the times under a constant motion, shape (K, n), by the matrix exponential.
+    """Return states at the times under a constant motion, shape (K, n); NaN once they grow without bounds.
 
-    NaN from where they leave every bound on, as for a motion that varies.
+    The exponential of a short time is squared up to the last one; from the nearest state a series leads to each time.
     """
     from scipy.sparse import csr_array
 
@@ -85,7 +79,7 @@ def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
 
 
 def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ()) -> Array:
-    """States at the times under a motion that varies, shape (K, n), by scipy's DOP853 and its dense output.
+    """Return states at the times under a motion that varies, shape (K, n), by scipy's DOP853 and its dense output.
 
     Parameters
     ----------
@@ -98,7 +92,7 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
     Raises
     ------
     TooMuchWork
-        If the motion changes so fast that it would have to be looked at too often.
+        If the motion changes so fast that it would have to be evaluated too often.
     """
     from scipy.integrate import DOP853
 
@@ -106,18 +100,18 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
     inner = np.asarray(breaks, dtype=float)
     ends = [*inner[(inner > 0) & (inner < last)].tolist(), last]
     path = np.full((len(times), len(start)), np.nan)
-    begin, state, looks = 0.0, start, 0
+    begin, state, evaluations = 0.0, start, 0
     path[times == 0] = start
     with bar(None, "moving", last, unit="s") as progress, np.errstate(all="ignore"):
         for end in ends if last else ():
-            longest = min(LONGEST_LOOK, end - begin)
+            longest = min(LONGEST_SOLVER_STEP, end - begin)
             solver = DOP853(rate, begin, state, end, longest, RELATIVE_ERROR, ABSOLUTE_ERROR, first_step=longest)
             while solver.status == "running":
                 solver.step()
-                if looks + solver.nfev > MOST_LOOKS or solver.status == "failed":
+                if evaluations + solver.nfev > MOST_EVALUATIONS or solver.status == "failed":
                     raise TooMuchWork(
-                        f"up to {solver.t:.4g} s of {last:.4g} s the motion had to be looked at {MOST_LOOKS} times; "
-                        "it changes too fast: slow it down or shorten the duration"
+                        f"up to {solver.t:.4g} s of {last:.4g} s the motion had to be evaluated "
+                        f"{MOST_EVALUATIONS} times; it changes too fast: slow it down or shorten the duration"
                     )
                 between = slice(*np.searchsorted(times, [solver.t_old, solver.t], side="right"))
                 if between.start < between.stop:
@@ -125,12 +119,12 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
                 progress.update(solver.t - solver.t_old)
                 if not (solver.y**2).sum() < LARGEST_SQUARED_STATE:
                     return _bounded(path)
-            begin, state, looks = end, solver.y, looks + solver.nfev
+            begin, state, evaluations = end, solver.y, evaluations + solver.nfev
     return _bounded(path)
 
 
 def _bounded(path: Array) -> Array:
-    """A path, NaN from where it left every bound on."""
+    """Return a path with NaN once it has grown without bounds."""
     with np.errstate(over="ignore", invalid="ignore"):
         inside = (path**2).sum(axis=1) < LARGEST_SQUARED_STATE
     path[~np.logical_and.accumulate(inside)] = np.nan
@@ -138,13 +132,13 @@ def _bounded(path: Array) -> Array:
 
 
 def lowest_between(values: Array, rates: Array, times: Array) -> tuple[float, float]:
-    """The lowest value that a cubic through values and rates takes between the times, and when."""
+    """Return the lowest value between the times of a cubic through values and rates, and its time."""
     dips = np.flatnonzero((rates[:-1] < 0) & (rates[1:] > 0))
     if not len(dips):
         return float(np.inf), 0.0
     h, low, high = np.diff(times)[dips], values[dips], values[dips + 1]
     begin, end = h * rates[dips], h * rates[dips + 1]
-    # the cubic is low + begin s + bend s^2 + turn s^3; its slope is negative at s = 0, positive at 1 and 0 once between
+    # The cubic is low + begin s + bend s^2 + turn s^3; its slope is negative at s = 0, positive at 1 and 0 once between
     turn, bend = begin + end - 2 * (high - low), 3 * (high - low) - 2 * begin - end
     root = np.sqrt(np.maximum(bend**2 - 3 * turn * begin, 0))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -18,10 +18,10 @@ LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
 """Coefficients of a lens in OpenCV's order: k of the radius, p of a lens that is not centred."""
 
 LENS_COUNTS = (0, 4, 5, 8)
-"""How many of them OpenCV's files give."""
+"""Numbers of coefficients in OpenCV's files."""
 
 MOST_TRIALS = 50
-"""Steps of Newton's method; about five are needed where the lens maps one to one."""
+"""Most steps of Newton's method; about five are needed where the lens maps one to one."""
 
 
 @checked
@@ -46,6 +46,10 @@ class PixelCamera:
     ValueError
         If a number is not finite, a focal length or a size is not positive, or their number is wrong.
 
+    See Also
+    --------
+    Recording.from_csv : Takes a camera for tables of pixels.
+
     Notes
     -----
     The model is that of the OpenCV documentation, "Camera Calibration and 3D Reconstruction", without thin prisms,
@@ -66,33 +70,35 @@ class PixelCamera:
     distortion: Sequence[float] = ()
 
     def __post_init__(self) -> None:
-        for name in ("focal", "centre", "size")[: 2 if self.size is None else 3]:
-            values, kind = np.asarray(getattr(self, name), dtype=float), "finite" if name == "centre" else "positive"
-            if values.shape != (2,) or not np.isfinite(values).all() or (kind == "positive" and not (values > 0).all()):
+        for name, least, kind in (("focal", 0, "positive"), ("centre", -math.inf, "finite"), ("size", 0, "positive")):
+            if name == "size" and self.size is None:
+                continue
+            values = np.asarray(getattr(self, name), dtype=float)
+            if values.shape != (2,) or not ((values > least) & np.isfinite(values)).all():
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
-            object.__setattr__(self, name, tuple(values.tolist()))
+            vars(self)[name] = tuple(values.tolist())
         lens = np.asarray(self.distortion, dtype=float)
         if lens.size not in LENS_COUNTS or not np.isfinite(lens).all():
             raise ValueError(
                 f"the distortion is {self.distortion!r}; it must be {', '.join(map(str, LENS_COUNTS[1:]))} finite "
                 f"numbers, {', '.join(map(str, LENS))}, or none"
             )
-        object.__setattr__(self, "distortion", tuple(lens.tolist()))
+        vars(self)["distortion"] = tuple(lens.tolist())
 
     @property
     def matrix(self) -> Array:
-        """The intrinsic matrix A_c, of shape (3, 3)."""
+        """Intrinsic matrix A_c, shape (3, 3)."""
         return np.array([[self.focal[0], 0, self.centre[0]], [0, self.focal[1], self.centre[1]], [0, 0, 1.0]])
 
     def pixels(self, image: ArrayLike) -> Array:
-        """Pixel coordinates of image coordinates (y1, y2), shape (..., 2)."""
+        """Return the pixels of image coordinates (y1, y2), shape (..., 2)."""
         image = numbers(image, "the image coordinates", 2)
         if any(self.distortion):
             image = np.stack(self._lens()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
         return image * self.focal + self.centre
 
     def image(self, pixels: ArrayLike) -> Array:
-        """Image coordinates (y1, y2) of pixel coordinates, shape (..., 2); NaN where a pixel is.
+        """Return the image coordinates (y1, y2) of pixels, shape (..., 2); NaN where a pixel is.
 
         Raises
         ------
@@ -103,27 +109,27 @@ class PixelCamera:
         return self._undistorted(distorted) if any(self.distortion) else distorted
 
     def variance(self, sigma: float) -> float:
-        """Variance of an image coordinate for noise of a standard deviation in pixels, the mean of both."""
+        """Return the variance of the image coordinates, the mean of both, for a standard deviation in pixels."""
         variance = float(np.mean(np.square(sigma / np.array(self.focal))))
         if not (math.isfinite(variance) and sigma >= 0):
             raise ValueError(f"the pixel sigma is {sigma}; it must be finite and not negative")
         return variance
 
     def sees(self, pixels: ArrayLike) -> Flags:
-        """Whether pixel coordinates lie in the image, shape (...)."""
+        """Return True for pixels in the image, shape (...)."""
         pixels = numbers(pixels, "the pixels", 2)
         if self.size is None:
             return np.ones(pixels.shape[:-1], dtype=bool)
         return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
 
     def _lens(self) -> Callable[..., list[Array]]:
-        """Distorted coordinates and their derivatives, as a function of undistorted ones."""
+        """Return the function from undistorted coordinates to distorted ones and their derivatives."""
         lens = np.zeros(len(LENS))
         lens[: len(self.distortion)] = self.distortion
         return lambda y1, y2: distortion()(y1, y2, *lens)
 
     def _undistorted(self, distorted: Array) -> Array:
-        """Where a lens took its images from, by Newton's method from the distorted ones."""
+        """Undistort image coordinates by Newton's method."""
         found, lens = distorted.copy(), self._lens()
         with np.errstate(all="ignore"):
             for _ in range(MOST_TRIALS):
@@ -150,7 +156,7 @@ class PixelCamera:
 
 @lru_cache(maxsize=1)
 def distortion() -> Callable[..., list[Array]]:
-    """Distorted image coordinates and their four derivatives, of undistorted ones and of eight coefficients."""
+    """Return the function from undistorted coordinates and eight coefficients to distorted ones and derivatives."""
     y1, y2 = sp.symbols("y1 y2", real=True)
     k1, k2, p1, p2, k3, k4, k5, k6 = LENS
     r2 = y1**2 + y2**2

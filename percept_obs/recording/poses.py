@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
 UNIT = 0.01
-"""By how much the length of a quaternion, or R^T R, may differ from 1: files are rounded."""
+"""Largest difference of a quaternion's length, or of R^T R, from 1: files are rounded."""
 
 USUAL = Quadratic(0.1)
-"""The derivative that is taken if none is named: a bargain for a camera that a hand carries."""
+"""Default derivative, a compromise for a camera carried by hand."""
 
 
 @checked
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Where a camera, or the body that carries it, is at some times: X_world = R X_camera + p.
+    """Poses of a camera, or of the body that carries it: X_world = R X_camera + p.
 
     Parameters
     ----------
@@ -43,6 +43,10 @@ class Poses:
     ------
     ValueError
         If shapes do not fit, values are not finite, times do not increase, or an orientation is no rotation.
+
+    See Also
+    --------
+    read_tum, read_euroc : Poses from files.
 
     Examples
     --------
@@ -82,8 +86,7 @@ class Poses:
                 f"the poses' times must increase strictly; look at row {late.argmax() + 2}, "
                 f"{float(time[late.argmax() + 1])!r} s: sort the rows and remove repeated ones"
             )
-        for name, value in zip(vars(self).copy(), (time, position, _quaternions(turns)), strict=True):
-            object.__setattr__(self, name, readonly(value))
+        vars(self).update(time=readonly(time), position=readonly(position), orientation=readonly(_quaternions(turns)))
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -93,7 +96,7 @@ class Poses:
         return Rotation.from_quat(self.orientation)
 
     def mounted(self, position: ArrayLike, orientation: ArrayLike) -> Poses:
-        """Poses of a camera that is fixed to this body: X_body = R X_camera + p.
+        """Return the poses of a camera fixed to this body: X_body = R X_camera + p.
 
         Parameters
         ----------
@@ -116,7 +119,7 @@ class Poses:
         return Poses(self.time, places, (self.rotation * mount.rotation[0]).as_quat())
 
     def path(self, derivative: Derivative = USUAL) -> CameraPath:
-        """The poses with their velocities.
+        """Return the poses with their velocities.
 
         Parameters
         ----------
@@ -136,7 +139,7 @@ class Poses:
         return CameraPath(self.time, position, smoothed.orientation, smoothed.rotation.inv().apply(velocity), turning)
 
     def motion(self, derivative: Derivative = USUAL) -> Motion:
-        """The motion of points at rest as the camera sees it, with the velocities of `path`."""
+        """Return the motion of points at rest in the camera's frame, with the velocities of `path`."""
         return self.path(derivative).motion
 
 
@@ -165,11 +168,11 @@ class CameraPath:
 
     @cached_property
     def motion(self) -> Motion:
-        """That of a point at rest in the camera's frame: X' = -v - w x X, so that `rigid` gets -w."""
+        """Motion of a point at rest in the camera's frame: X' = -v - w x X, so `rigid` takes -w."""
         return rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
 
     def sees(self, places: ArrayLike) -> Array:
-        """Where points at rest in the world are in the camera's frame, in metres, shape (K, n, 3) for (n, 3)."""
+        """Return points at rest in the world, shape (n, 3), in the camera's frame, in metres, shape (K, n, 3)."""
         places, back = numbers(places, "the places", "n", 3), self.rotation.inv()
         return np.stack([back.apply(place - self.position) for place in places], axis=1)
 
@@ -182,21 +185,21 @@ def rigid_from_poses(
     frame: Literal["world", "camera"] = "world",
     derivative: Derivative = USUAL,
 ) -> Motion:
-    """The rigid motion of points at rest, from the poses of the camera that sees them.
+    """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
     Parameters
     ----------
     times : array of shape (K,)
         Seconds, strictly increasing.
     positions : array of shape (K, 3)
-        Metres.
+        In metres.
     orientations : array of shape (K, 4) or (K, 3, 3)
         Quaternions (x, y, z, w) of length 1, or matrices.
     frame : "world" or "camera"
-        Whose frame the poses are stated in: "world" for a camera in the world, X_world = R X_camera + p, as files of
-        trajectories have it; "camera" for the world before a camera, X_camera = R X_world + p, as calibration has it.
+        "world" for poses of the camera in the world, X_world = R X_camera + p, as files of trajectories have them;
+        "camera" for poses of the world in the camera's frame, X_camera = R X_world + p, as calibration has them.
     derivative : Neighbours, Quadratic or SmoothingSpline
-        How velocities are made of poses; a parabola over 0.1 s to either side when left out.
+        For the velocities; a parabola over 0.1 s to either side when left out.
 
     Returns
     -------
@@ -207,6 +210,10 @@ def rigid_from_poses(
     ------
     ValueError
         If there are too few poses or they are none; see `Poses`.
+
+    See Also
+    --------
+    read_tum, read_euroc : Poses from files.
 
     Examples
     --------
@@ -219,21 +226,17 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [-0.1, 0.2]
     """
-    if frame not in ("world", "camera"):
-        raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
-    given = {"the times": times, "the positions": positions, "the orientations": orientations}
-    poses = Poses(*(numbers(values, name) for name, values in given.items()))
-    return (poses if frame == "world" else _turned_round(poses)).motion(derivative)
-
-
-def _turned_round(poses: Poses) -> Poses:
-    """The camera in the world, from the world before the camera."""
-    back = poses.rotation.inv()
-    return Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
+    poses = Poses(
+        numbers(times, "the times"), numbers(positions, "the positions"), numbers(orientations, "the orientations")
+    )
+    if frame == "camera":
+        back = poses.rotation.inv()
+        poses = Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
+    return poses.motion(derivative)
 
 
 def _quaternions(turns: Array) -> Array:
-    """Quaternions of length 1 of quaternions or matrices."""
+    """Return quaternions of length 1 of quaternions or matrices; refuse what is no rotation."""
     from scipy.spatial.transform import Rotation
 
     if turns.ndim == 2:

@@ -1,4 +1,4 @@
-"""Recordings: what a camera leaves behind."""
+"""Recordings of a camera: samples of the image, and the known motion."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from percept_obs.validation import checked
 
 @dataclass(frozen=True)
 class Sighting:
-    """A point in sight, from one sample to another.
+    """Samples between which a point is in sight.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Sighting:
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Recording:
-    """Samples of the images of one point or of several, and what is known about the camera's and the points' motion.
+    """Samples of the images of one point or of several, with the known motion of the camera and the points.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Recording:
     names : tuple of str
         Names of a point's outputs, such as ("y1", "y2").
     view : View
-        As what they were seen: an imaging surface, several points of one state, or a scaled inverse depth.
+        View in which they were seen: an imaging surface, several points of one state, or a scaled inverse depth.
     motion : Motion
         Known motion, with numbers for all times.
     truth : array of shape (K, n), optional
@@ -83,6 +83,18 @@ class Recording:
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
+
+    See Also
+    --------
+    record : Simulates a recording.
+    Recording.from_csv : Reads one from a table.
+
+    Examples
+    --------
+    >>> from percept_obs import Recording, pinhole, rigid
+    >>> still = rigid([0, 0, 0], [0, 0, 0], [0, 0, 0])
+    >>> Recording([0.0, 0.1], [[0.1], [0.2]], ("y1",), pinhole(), still, source="two pictures")
+    <Recording of y1 (pinhole): 2 samples from 0 to 0.1 s, without a truth; two pictures>
     """
 
     time: Array
@@ -97,16 +109,20 @@ class Recording:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("time", "outputs", "truth")[: 2 if self.truth is None else 3]:
-            object.__setattr__(self, name, readonly(getattr(self, name)))
-        object.__setattr__(self, "names", tuple(self.names))
-        distances = {name: readonly(values) for name, values in self.distances.items()}
-        object.__setattr__(self, "distances", MappingProxyType(distances))
+        truth = None if self.truth is None else readonly(self.truth)
+        distances = MappingProxyType({name: readonly(values) for name, values in self.distances.items()})
+        vars(self).update(
+            time=readonly(self.time),
+            outputs=readonly(self.outputs),
+            names=tuple(self.names),
+            truth=truth,
+            distances=distances,
+        )
         self._check_times()
         self._check_outputs()
         self._check_truth()
+        expected = (len(self.time), *self.view.point_shape)
         for name, values in distances.items():
-            expected = (len(self.time), *self.view.point_shape)
             if values.shape != expected or not (np.isnan(values) | (np.isfinite(values) & (values > 0))).all():
                 raise ValueError(f"the distances {name!r} must be positive numbers or NaN, of shape {expected}")
         if self.noise_variance is not None and not 0 <= self.noise_variance < np.inf:
@@ -126,7 +142,7 @@ class Recording:
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the recording has times of shape {time.shape}; at least two samples are needed")
         if not np.isfinite(time).all() or not (self.intervals > 0).all():
-            k = int(np.argmin(np.diff(time) > 0)) if np.isfinite(time).all() else int(np.argmin(np.isfinite(time)))
+            k = int(np.argmin(self.intervals > 0)) if np.isfinite(time).all() else int(np.argmin(np.isfinite(time)))
             raise ValueError(
                 f"the recording's times must increase strictly and be finite; look at row {k + 1}, "
                 f"{float(time[k])!r} s: sort the rows and remove repeated ones"
@@ -172,7 +188,7 @@ class Recording:
 
     @cached_property
     def elapsed(self) -> Array:
-        """Seconds since the first sample, shape (K,): the clock in which people are told of times."""
+        """Seconds since the first sample, shape (K,), as messages and figures give them."""
         return self.time - self.time[0]
 
     @cached_property
@@ -182,7 +198,7 @@ class Recording:
 
     @cached_property
     def places(self) -> Indices:
-        """0 to K - 1, the places of the samples where each ends a step."""
+        """Indices 0 to K - 1 of the samples in a grid in which each ends a step."""
         return np.arange(len(self.time))
 
     @cached_property
@@ -192,7 +208,7 @@ class Recording:
 
     @cached_property
     def last_outputs(self) -> Array:
-        """Each output, or where it was lost the last one before, of the shape of the outputs."""
+        """Outputs, with the last one before where a sample was lost."""
         there = np.isfinite(self.outputs)
         if there.all():
             return self.outputs
@@ -201,12 +217,12 @@ class Recording:
 
     @property
     def seen(self) -> Flags:
-        """Where all outputs of a point were sampled, shape (K,) or (K, p)."""
+        """True where all outputs of a point were sampled, shape (K,) or (K, p)."""
         return np.asarray(np.isfinite(self.outputs).all(axis=-1))
 
     @property
     def imaging_surface(self) -> ImagingSurface:
-        """The view, where rays and distances of one point are needed.
+        """View of one point, with rays and distances.
 
         Raises
         ------
@@ -236,7 +252,7 @@ class Recording:
         return 1 / self.view.inverse(self.truth)
 
     def reference(self, name: str) -> Array:
-        """Distances to compare estimates with, in metres, shape (K,) or (K, p).
+        """Return distances to compare estimates with, in metres, shape (K,) or (K, p).
 
         Parameters
         ----------
@@ -254,7 +270,13 @@ class Recording:
         return self.distance if name == "truth" else self.distances[name]
 
     def between(self, begin: float, end: float) -> Recording:
-        """The part of the recording with begin <= time <= end."""
+        """Return the part of the recording with begin <= time <= end, in seconds.
+
+        Raises
+        ------
+        ValueError
+            If there are less than two samples.
+        """
         keep = (self.time >= begin) & (self.time <= end)
         if keep.sum() < 2:
             raise ValueError(
@@ -270,7 +292,7 @@ class Recording:
         )
 
     def without(self, begin: float, end: float, point: int = 0) -> Recording:
-        """The same without the images of a point with begin <= time < end.
+        """Return the recording without the images of a point with begin <= time < end.
 
         Parameters
         ----------
@@ -281,7 +303,7 @@ class Recording:
         Raises
         ------
         ValueError
-            If there is no such point.
+            If there is no such point, or the end does not come after the begin.
         """
         if not begin < end:
             raise ValueError(f"without() got the times from {begin} to {end} s; the end must come after the begin")
@@ -293,12 +315,17 @@ class Recording:
         return replace(self, outputs=outputs)
 
     def sightings(self, absence: float) -> tuple[Sighting, ...]:
-        """When points are in sight, in the order of their beginnings.
+        """Return when points are in sight, in the order of their beginnings.
 
         Parameters
         ----------
         absence : float
             Seconds without a sample after which it is another sighting.
+
+        Raises
+        ------
+        ValueError
+            If it is not positive.
         """
         if not absence > 0:
             raise ValueError(f"the absence is {absence} s; it must be positive")
@@ -333,7 +360,7 @@ class Recording:
         Parameters
         ----------
         path : path
-            A row a sample and a column each for the times and for the outputs (y1, y2, or pixels).  A column with the
+            A row for each sample, and columns for the times and the outputs (y1, y2, or pixels).  A column with the
             name of the inverse distance (y3 for the pinhole) is the truth.  Empty cells are lost samples, and lines
             that begin with # are comments.
         motion : Motion
@@ -349,13 +376,13 @@ class Recording:
         distances : sequence of str
             Names of columns with distances in metres that were measured independently, such as ("stereo",).
         camera : PixelCamera, optional
-            What turns pixels into image coordinates, its lens included.
+            Converts pixels to image coordinates, its lens included.
         pixels : pair of str
             Names of the columns of pixels; read with a camera only.
         pixel_sigma : float, optional
             Standard deviation of the noise in pixels, if it is known.
         clock : Clock
-            How times are read, so that they are those of the motion.
+            Of the table, so that its times are those of the motion.
         gap : float
             Seconds without a sample after which a point's track is another recording.
         shortest : float
@@ -381,6 +408,10 @@ class Recording:
         ValueError
             If a column is missing, a cell is not a number, the clocks do not overlap, or the rows are no recording.
 
+        See Also
+        --------
+        percept_obs.read_tum, percept_obs.read_euroc : Poses of the camera.
+
         Examples
         --------
         >>> from percept_obs.recording.pose_files import read_tum
@@ -393,8 +424,7 @@ class Recording:
         >>> near.source, len(near.time)
         ('tracks.csv, point near', 17)
         """
-        columns = {"time": time, "point": point, "depth": depth, "distances": distances, "pixels": pixels}
-        settings = {"camera": camera, "pixel_sigma": pixel_sigma, "clock": clock, "gap": gap, "shortest": shortest}
-        found = fields_of_recordings(path, motion, surface or pinhole(), **columns, **settings)
+        columns = (time, point, depth, distances, camera, pixels)
+        found = fields_of_recordings(path, motion, surface or pinhole(), *columns, pixel_sigma, clock, gap, shortest)
         recordings = tuple(cls(**fields) for fields in found)
         return recordings[0] if point is None else recordings

@@ -1,4 +1,4 @@
-"""Simulation: a scene in motion, and the recording that a camera makes of it."""
+"""Simulation of a scene in motion, and of its recording by a camera."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.validation import checked
 
-LONGEST_LOOK_SHARE = 0.25
-"""Share of the shortest time constant of a motion after which the distance is looked at."""
+LONGEST_STEP_SHARE = 0.25
+"""Longest interval between two checks of the distance, as a share of the motion's shortest time constant."""
 
 
 @checked
@@ -44,6 +44,18 @@ class Scenario(Scene):
     source : str
         Where the set-up comes from.
 
+    Raises
+    ------
+    BehindCamera
+        If the point does not start in front of the camera.
+    ValueError
+        If the position or the duration is not finite, or the duration not positive.
+
+    See Also
+    --------
+    record : Simulates a recording of it.
+    percept_obs.scenarios : Ready ones.
+
     Examples
     --------
     >>> from percept_obs import Scenario, affine, pinhole
@@ -61,11 +73,11 @@ class Scenario(Scene):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", self._check("position", self.position, ("X", "Y", "Z")))
+        vars(self)["position"] = self._check("position", self.position, ("X", "Y", "Z"))
         self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
-        """Positions of the point: exact if the motion is constant, else to a relative error of 1e-10 a step.
+        """Return positions of the point: exact if the motion is constant, else to a relative error of 1e-10 a step.
 
         Parameters
         ----------
@@ -80,7 +92,7 @@ class Scenario(Scene):
         Raises
         ------
         BehindCamera
-            If the point leaves every bound before.
+            If the point goes to infinity before.
         TooMuchWork
             If there are too many times, or the motion is too fast.
         """
@@ -92,11 +104,11 @@ class Scenario(Scene):
         return points
 
     def in_front(self, times: ArrayLike) -> Flags:
-        """At which times, as `points` takes them, the point is in front of the camera, shape (K,)."""
+        """Return True for times, as in `points`, at which the point is in front of the camera, shape (K,)."""
         return self.surface.sees(self._path(times))
 
     def _path(self, times: ArrayLike) -> Array:
-        """Positions of the point, NaN from where it left every bound on."""
+        """Positions of the point, shape (K, 3); NaN once it has gone to infinity."""
         times, start, motion = times_of(times, len(POINT)), np.array(self.position), self.motion
         motion.known(times[:1])
         if motion.signal is None or motion.signal.constant:
@@ -108,16 +120,16 @@ class Scenario(Scene):
 
     @property
     def view(self) -> View:
-        """The surface."""
+        """Imaging surface on which the point is seen."""
         return self.surface
 
     @property
     def known_motion(self) -> Motion:
-        """The whole motion."""
+        """Motion, known completely."""
         return self.motion
 
     def coordinates(self, times: ArrayLike) -> Array:
-        """Image coordinates and inverse distance of the point, shape (K, n).
+        """Return image coordinates and inverse distance of the point, shape (K, n).
 
         Raises
         ------
@@ -135,10 +147,10 @@ class Scenario(Scene):
         return seen
 
     def _refuse_a_dip(self, times: Array, points: Array) -> None:
-        """Refuse a motion that takes the point behind the camera and back between two of the times."""
+        """Refuse a motion that takes the point behind the camera and back between two samples."""
         A, b = coefficients(self.motion, self.motion.known(times))
         fastest = float(np.abs(A).sum(axis=-1).max(initial=0))
-        grid, _ = step_grid(times, LONGEST_LOOK_SHARE / max(fastest, 1e-9))
+        grid, _ = step_grid(times, LONGEST_STEP_SHARE / max(fastest, 1e-9))
         if len(grid) > len(times):
             times, points = grid, self.points(grid)
             A, b = coefficients(self.motion, self.motion.known(times))
@@ -168,12 +180,21 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
 
+    Returns
+    -------
+    Recording
+
     Raises
     ------
     BehindCamera
         If a single point does not stay in front of the camera; several ones are not seen where they are behind it.
     ValueError
         If the duration is not positive or shorter than one period, or the motion grows without bounds.
+
+    See Also
+    --------
+    Camera : Sampling, noise and lost samples.
+    Recording.from_csv : A recording of one's own.
 
     Examples
     --------
@@ -191,7 +212,7 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         ask_for_degrees(known, time)
     truth = scenario.coordinates(time)
     outputs, variance = camera.samples(scenario, time, truth, seeded(seed))
-    named = "of a given generator" if isinstance(seed, np.random.Generator) else seed
+    name = "of a given generator" if isinstance(seed, np.random.Generator) else seed
     return Recording(
         time,
         outputs,
@@ -201,12 +222,12 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         truth,
         _signal(scenario),
         variance,
-        source=f"{scenario.name}, {duration:g} s, {camera}, seed {named}",
+        source=f"{scenario.name}, {duration:g} s, {camera}, seed {name}",
     )
 
 
 def _signal(scene: Scene) -> Callable[[Array], Array]:
-    """The outputs at any times; the latest ones are kept, for observers ask for the same times again."""
+    """Return the outputs as a function of times; two results are kept, for observers ask for the same times again."""
 
     @lru_cache(maxsize=2)
     def outputs(times: bytes) -> Array:
@@ -219,7 +240,7 @@ def _signal(scene: Scene) -> Callable[[Array], Array]:
 
 @lru_cache(maxsize=64)
 def point_in_motion(A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, parameters: tuple[sp.Symbol, ...]) -> Equations:
-    """The motion of a single point as equations without outputs."""
+    """Return the motion of a single point as equations without outputs."""
     return Equations(POINT, tuple(A * sp.ImmutableMatrix(POINT) + b), (), parameters)
 
 
@@ -229,7 +250,7 @@ def _flow(equations: Equations) -> Callable[..., list[float]]:
 
 
 def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
-    """A and b for values of the motion's parameters, shape (T, p), as arrays of shapes (T, 3, 3) and (T, 3)."""
+    """Return A and b, shapes (T, 3, 3) and (T, 3), for values of the motion's parameters, shape (T, p)."""
     columns = known.T if known.shape[1] else [np.zeros(len(known))]
     symbols = motion.parameters or (TIME,)
     rows = np.stack(vectorised(symbols, (*motion.A, *motion.b))(*columns), axis=-1)

@@ -222,9 +222,9 @@ def _variable(
     if name not in recorded:
         raise ValueError(f"'{file}' has no variable {name}; it needs {', '.join(SHAPES)}")
     array = numbers(recorded[name], f"the variable {name} of '{file}'")
-    wanted = tuple(sizes.get(size, size) if isinstance(size, str) else size for size in shape)
+    wanted: tuple[int | str, ...] = tuple(sizes.get(size, size) if isinstance(size, str) else size for size in shape)
     array = array.reshape(array.shape + (1,) * (len(shape) - array.ndim))  # back the dimensions that loadmat squeezed
-    pairs = list(zip(wanted, array.shape, strict=False))
+    pairs: list[tuple[int | str, int]] = list(zip(wanted, array.shape, strict=False))
     fits = array.ndim == len(wanted) and all(isinstance(size, str) or size == found for size, found in pairs)
     if not fits or not array.size:
         raise ValueError(f"the variable {name} of '{file}' has the shape {array.shape}; expected {wanted}")

@@ -24,7 +24,6 @@ def fields_of_recordings(
     path: PathLike,
     motion: Motion,
     surface: ImagingSurface,
-    *,
     time: str,
     point: str | None,
     depth: str | None,

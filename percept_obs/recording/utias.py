@@ -1,4 +1,4 @@
-"""The UTIAS recording: landmarks at known places, seen by one moving stereo camera.
+"""UTIAS recording: landmarks at known places, seen by one moving stereo camera.
 
 The data were recorded for the course AER1513 of the University of Toronto Institute for Aerospace Studies
 (UTIAS) and are published at https://github.com/utiasSTARS/msckf-swf-comparison under the MIT licence,
@@ -33,7 +33,7 @@ PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 
 class DatasetUnavailable(ConnectionError):
-    """The recording is not on this machine and could not be fetched."""
+    """Raised when the recording is not on this machine and could not be fetched."""
 
 
 @checked
@@ -43,9 +43,8 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
     Parameters
     ----------
     path : str or path, optional
-        The file dataset3.mat or a folder that holds it.  Without it the environment variable
-        PERCEPT_OBS_UTIAS is read, in the same two forms; without that, too, the file is fetched once from the
-        laboratory's repository and kept in this user's cache.
+        The file dataset3.mat or a folder that holds it; the environment variable PERCEPT_OBS_UTIAS when left out.
+        Without either the file is fetched once from the laboratory's repository and kept in this user's cache.
 
     Returns
     -------
@@ -70,7 +69,7 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
 
 @checked
 def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, ...]:
-    """Tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
+    """Return tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
 
     The motion is rigid: the point rests and the camera moves, with angular velocity w = -(the camera's).  The truth is
     the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth.
@@ -88,7 +87,7 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
 
 @checked
 def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
-    """Convert the recording to the camera's motion and the landmarks' tracks.
+    """Return the camera's motion and the landmarks' tracks in the recording.
 
     The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted
     around each sample to the recorded poses within 0.30 s, or to the nearest five where these are fewer.  The
@@ -108,6 +107,7 @@ def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
 
 
 def _checked(place: Path, origin: str) -> Path:
+    """Return the file that a path or a folder names, its hash checked."""
     place = place.expanduser()
     file = place / UTIAS_FILE if place.is_dir() else place
     if not file.is_file():
@@ -126,7 +126,7 @@ def _checked(place: Path, origin: str) -> Path:
 
 
 def _fetched() -> Path:
-    """The recording in the system's cache, which it enters only if it is the one."""
+    """Return the file in the system's cache, fetched if it is not there."""
     from platformdirs import user_cache_path
 
     file = user_cache_path("percept_obs") / UTIAS_FILE

@@ -16,7 +16,7 @@ from percept_obs.observers.base import Observer
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Camera, Scenario
 from percept_obs.recording.many import numbers_of, transitions, with_numbers
-from percept_obs.recording.simulation import LONGEST_LOOK_SHARE, coefficients
+from percept_obs.recording.simulation import LONGEST_STEP_SHARE, coefficients
 from percept_obs.studies.counting import STATISTICS, moving, told, watched
 from percept_obs.studies.least_error import Values, least_error
 from percept_obs.studies.varying import camera_with
@@ -211,7 +211,7 @@ class Plan:
         """Whether points stay in front of the camera: looked at closely where they may dip between samples."""
         nearest, drop = (counts[:, COLUMNS.index(name)] for name in ("nearest", "drop"))
         fine = nearest > 0
-        for k in np.flatnonzero(fine & ~((nearest > DIP * drop) & (turning <= LONGEST_LOOK_SHARE))):
+        for k in np.flatnonzero(fine & ~((nearest > DIP * drop) & (turning <= LONGEST_STEP_SHARE))):
             row = tuple(float(columns[name][k]) for name in scenes)
             fine[k] = np.isfinite(_coordinates(self.scenario, tuple(scenes), row, time.tobytes())).all()
         return np.asarray(fine)
