@@ -101,10 +101,11 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
         own = {s: sp.Symbol(key(s.name)) for s in one.free_symbols | other.free_symbols}
         _, (left, right) = sfield([one.xreplace(own), other.xreplace(own)])
         return bool(left == right)
-    if _agree(one, other, opaque=True):
+    kinked = any(e.has(*KINKED) for e in (one, other))
+    if _agree(one, other, opaque=True) and not (kinked and _agree(one, other) is False):
         return True
     agree = _agree(one, other)
-    return None if agree and any(e.has(*KINKED) for e in (one, other)) else agree
+    return None if agree and kinked else agree
 
 
 def _agree(one: sp.Expr, other: sp.Expr, opaque: bool = False) -> bool | None:

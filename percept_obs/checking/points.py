@@ -97,7 +97,7 @@ class Point:
     def _opaque(self, e: sp.Basic) -> Any:
         """Return a random value for a function with kinks, an integral, ...; arguments by their values."""
         if isinstance(e, sp.Abs | sp.sign):
-            sign = self._drawn(f"sign {self._name(e.args[0])}")
+            _, sign = _random(self.seed, f"sign {self._name(e.args[0])}")  # its square is 1, as that of the true one
             return sign * self(e.args[0]) if isinstance(e, sp.Abs) else sign
         return self._drawn(f"{e.func.__name__} {[self._name(part) for part in e.args]}")
 

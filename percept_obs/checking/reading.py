@@ -448,7 +448,7 @@ def _about_token(token: Token, accepted: set[str]) -> str:
     open_brackets = [_CLOSING[kind] for kind in accepted if kind in _CLOSING]
     if accepted <= {"LPAR", "LBRACE", "_POWER", "RAISED"}:
         return "a function takes its argument in brackets, as in sin(...), and a command in braces"
-    if ("NAME" in accepted and "PLUS" not in accepted) or "_TIMES" not in accepted:
+    if "NAME" in accepted and "_TIMES" not in accepted:
         end = token.type == "$END"
         return f"{'the formula ends too early: ' if end else ''}a number, a letter or a bracket is expected here"
     if token.type == "_POWER" or token.type == "RAISED":
