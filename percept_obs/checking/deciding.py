@@ -19,19 +19,24 @@ MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 
 
 def explicit(formula: sp.Basic) -> sp.Basic:
-    """A formula with matrices of letters written out, letters such as sigma^2 as powers, and bound letters renamed.
+    """Write matrices of letters out, letters such as sigma^2 as powers, and rename bound letters.
 
     Where the size n of a matrix is a letter, it is written out with two rows, m with three: an identity of matrices of
     that size.
     """
+    sizes = sizes_of(*formula.atoms(sp.MatrixSymbol))
+    return on_sides(lambda side: _explicit(side, sizes), formula)
+
+
+def on_sides(function: Callable[[Any], Any], formula: Any) -> Any:
+    """Apply a function to a formula, or to both sides of a relation, which stays as it is written."""
     if isinstance(formula, Relational):
-        sizes, sides = sizes_of(*formula.atoms(sp.MatrixSymbol)), formula.args
-        return formula.func(*(_explicit(side, sizes) for side in sides), evaluate=False)
-    return _explicit(formula, sizes_of(*formula.atoms(sp.MatrixSymbol)))
+        return formula.func(*map(function, formula.args), evaluate=False)
+    return function(formula)
 
 
 def sizes_of(*matrices: sp.MatrixSymbol) -> dict[sp.Symbol, sp.Integer]:
-    """Numbers for the letters that are sizes of matrices."""
+    """Return numbers for the letters that are sizes of matrices."""
     letters = {s for m in matrices for size in m.shape for s in size.free_symbols}
     return {size: sp.Integer(2 + k % 2) for k, size in enumerate(sorted(letters, key=str, reverse=True))}
 
@@ -40,15 +45,18 @@ def _explicit(formula: sp.Basic, sizes: Mapping[sp.Symbol, sp.Integer]) -> sp.Ba
     powers = {s: _power(s) for s in formula.atoms(sp.Symbol) if "^" in s.name}
     formula = formula.xreplace(powers) if powers else formula
     formula = formula.as_dummy() if formula.atoms(ExprWithLimits) else formula
-    if formula.atoms(sp.MatrixSymbol):
-        formula = formula.xreplace(sizes)
-        letters = {m: sp.ImmutableMatrix(*m.shape, _letters(m)) for m in formula.atoms(sp.MatrixSymbol)}
-        formula = formula.xreplace(letters).doit()
+    formula = formula.xreplace(sizes) if sizes else formula
+    entries = {m: entries_of(m, "{}[{},{}]", 0) for m in formula.atoms(sp.MatrixSymbol)}
+    formula = formula.xreplace(entries).doit() if entries else formula
     return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula
 
 
-def _letters(matrix: sp.MatrixSymbol) -> Callable[[int, int], sp.Symbol]:
-    return lambda i, j: sp.Symbol(f"{matrix.name}[{i},{j}]", real=True)
+def entries_of(matrix: sp.MatrixExpr, pattern: str, first: int, name: str = "") -> sp.ImmutableMatrix:
+    """Return a matrix of real letters, named by a pattern of name, row and column, which are counted from `first`."""
+    name = name or matrix.name
+    return sp.ImmutableMatrix(
+        *matrix.shape, lambda i, j: sp.Symbol(pattern.format(name, i + first, j + first), real=True)
+    )
 
 
 def _power(symbol: sp.Symbol) -> sp.Expr:
@@ -137,7 +145,9 @@ def proportional(one: sp.Expr, other: sp.Expr, positive: bool = False) -> bool |
 
 
 def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) -> bool | None:
-    """Whether two rational functions vanish at the same real points: up to factors that never do, and to exponents.
+    """Return True if two rational functions vanish at the same real points; None if it cannot be told.
+
+    Factors that never vanish do not count, nor do exponents.
 
     Of irreducible polynomials that take both signs, only multiples of each other vanish at the same real points
     (Bochnak, Coste and Roy, "Real Algebraic Geometry", theorem 4.5.1); of those that do not, such as sums of squares,
@@ -161,7 +171,7 @@ def _takes_both_signs(polynomial: sp.Expr) -> bool:
 
 
 def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | None:
-    """The factors of a rational function's numerator that may be zero, each once."""
+    """Return the factors of a rational function's numerator that may be zero, each once."""
     if not rational(expression) or not small(expression):
         return None
     _, factors = sp.factor_list(sp.numer(sp.together(expression)))
@@ -169,7 +179,7 @@ def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | 
 
 
 def _positive(polynomial: sp.Expr) -> bool:
-    """Whether all terms are positive, one of them a number: 1 + y1^2."""
+    """Return True if all terms are positive, one of them a number: 1 + y1^2."""
     terms = sp.Poly(polynomial).terms()
     signs = {c > 0 for _, c in terms}
     even = all(power % 2 == 0 for powers, _ in terms for power in powers)
@@ -178,7 +188,7 @@ def _positive(polynomial: sp.Expr) -> bool:
 
 @lru_cache(maxsize=1 << 14)
 def degree(e: sp.Basic) -> int:
-    """How high the powers of letters are, at most."""
+    """Return an upper bound of the degree."""
     inner = [degree(part) for part in e.args] or [1]
     if e.is_Pow and e.exp.is_Rational:
         return inner[0] * max(1, abs(int(e.exp.p)))
@@ -186,7 +196,7 @@ def degree(e: sp.Basic) -> int:
 
 
 def size(e: sp.Basic) -> int:
-    """How many terms there are at most once brackets are multiplied out."""
+    """Return an upper bound of the number of terms once brackets are multiplied out."""
     if e.is_Add:
         return sum(map(size, e.args))
     if e.is_Mul:
@@ -204,7 +214,7 @@ def small(*formulas: sp.Expr) -> bool:
 
 
 def letters_in_a_row(value: sp.Basic) -> int:
-    """How many letters of matrices are multiplied in a value; those of a sum are as many as in its longest term."""
+    """Return how many letters of matrices the longest product in a value has."""
     if not isinstance(value, sp.MatrixExpr):
         return 0
     parts = [letters_in_a_row(part) for part in value.args]
@@ -212,10 +222,12 @@ def letters_in_a_row(value: sp.Basic) -> int:
 
 
 def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
-    """A formula, or a relation, with matrices in the place of their letters."""
+    """Replace letters of matrices by matrices in a formula or a relation."""
     if not matrices or not formula.atoms(sp.MatrixSymbol):
         return formula
-    if isinstance(formula, Relational):
-        return formula.func(*(written_out(side, matrices) for side in formula.args), evaluate=False)
-    formula = formula.xreplace(matrices).doit(integrals=False)
-    return formula.as_explicit() if isinstance(formula, sp.MatrixExpr) else formula
+
+    def replaced(side: Any) -> Any:
+        side = side.xreplace(matrices).doit(integrals=False)
+        return side.as_explicit() if isinstance(side, sp.MatrixExpr) else side
+
+    return on_sides(replaced, formula)

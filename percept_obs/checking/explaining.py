@@ -1,42 +1,55 @@
-"""What is wrong with a formula, in words: the slip, the term in which it is, the step in which it happened."""
+"""Explain a wrong formula: the slip, the term in which it is, the step in which it happened."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 import sympy as sp
+from sympy.polys.fields import sfield
 
+from percept_obs.checking.deciding import points, rational, small
 from percept_obs.checking.search import THROUGHOUT, Search, at, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
 from percept_obs.checking.target import VALUE, ZEROS, Target
-from percept_obs.checking.terms import Comparison, compared
 
 SECONDS = 1.2
-"""How long slips are looked for; after that what was found is told."""
+"""Time limit of the search for slips; what was found by then is reported."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A product of letters whose coefficient differs: yours, and the true one."""
+
+    product: sp.Expr
+    mine: sp.Expr
+    true: sp.Expr
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """What is wrong with a line.
+    """An explanation of a wrong line.
 
     Parameters
     ----------
     slips : tuple of Slip
         Changes that mend the formula, one or two; "missing" has nothing before, and "throughout" concerns all terms.
-    comparison : Comparison
+    differences : tuple of Difference
+    wrong : tuple of int
+        Numbers of my terms that hold a product with a wrong coefficient.
     steps : tuple of str
-        In which step of the derivation it can have happened.
+        Steps of the derivation in which it can have happened.
     """
 
-    slips: tuple[Slip, ...]
-    comparison: Comparison
+    slips: tuple[Slip, ...] = ()
+    differences: tuple[Difference, ...] = ()
+    wrong: tuple[int, ...] = ()
     steps: tuple[str, ...] = ()
 
 
 def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Explanation:
-    """What is wrong with a line.
+    """Explain a wrong line.
 
     Parameters
     ----------
@@ -50,16 +63,16 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     line = target.lines[row]
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + SECONDS)
     if not search.places:
-        return Explanation((), Comparison())
+        return Explanation()
     one = search.single()
     everywhere = None if one else search.throughout()
     steps = tuple(_steps(search, row, target, right)) if line.kind == VALUE else ()
     found = tuple(filter(None, (one, everywhere))) or (() if steps else search.pair())
-    return Explanation(found, Comparison() if line.kind == ZEROS else compared(mine, line.formula), steps)
+    return Explanation(found, *(((), ()) if line.kind == ZEROS else compared(mine, line.formula)), steps)
 
 
 def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Iterator[str]:
-    """The steps of the derivation in which one slip leads to my line and to the lines that are right.
+    """Yield the steps of the derivation in which one slip leads to my line and to the lines that are right.
 
     What follows from a step is linear in each of its values, which tells where to look; then it is worked out.
     """
@@ -107,7 +120,7 @@ def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr
 
 
 def _said(name: str, slip: Slip) -> str:
-    """What happened in a step."""
+    """Describe a slip in a step."""
     what = plain(slip.before)
     if slip.kind == "dropped":
         return f"{name} was left out" if not slip.path else f"in {name} the term {what} was left out"
@@ -117,12 +130,12 @@ def _said(name: str, slip: Slip) -> str:
 
 
 def plain(e: sp.Basic) -> str:
-    """An expression as it may be typed."""
+    """Return an expression as it may be typed."""
     return str(e).replace("**", "^").replace("*", " ")
 
 
 def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...], sp.Expr]]:
-    """Places of the wrong terms, and what stands there; what is missing has no place."""
+    """Return the places of wrong terms and the terms; a missing term has no place."""
     places: dict[tuple[int, ...], sp.Expr] = {}
     for path in [slip.path for slip in found.slips if slip.path or slip.kind not in ("missing", *THROUGHOUT)]:
         # up from the slip to the term in which it is
@@ -130,23 +143,20 @@ def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...]
             path = path[:-1]
         places[path] = at(mine, path)
     if not found.slips:
-        indices = [(k,) for k in found.comparison.wrong] if mine.is_Add else [()]
+        indices = [(k,) for k in found.wrong] if mine.is_Add else [()]
         places |= {path: at(mine, path) for path in indices}
     return [(path, term) for path, term in places.items() if not any(path[:n] in places for n in range(len(path)))]
 
 
 def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]) -> tuple[list[str], list[str]]:
-    """Where to look, and what is wrong there, with formulas shown by a function."""
+    """Return two lists of sentences, where to look and what is wrong there; `show` prints formulas."""
     terms = [show(term) for _, term in wrong_terms(found, mine)]
     places = [f"look at {', '.join(terms)}"] if terms else []
-    lacking = [d for d in found.comparison.differences if d.mine == 0]
+    lacking = [d for d in found.differences if d.mine == 0]
     if any(slip.kind == "missing" for slip in found.slips) or (not found.slips and lacking):
         places.append("something is missing")
     slips = [_sentence(slip, show) for slip in found.slips]
-    slips += [
-        f"{show(d.product)}: you have {_signed(d.mine)}, it is {_signed(d.true)}"
-        for d in found.comparison.differences[:6]
-    ]
+    slips += [f"{show(d.product)}: you have {_signed(d.mine)}, it is {_signed(d.true)}" for d in found.differences[:6]]
     slips += [f"{'or' if k else 'it comes out so'} if in step {step}" for k, step in enumerate(found.steps)]
     return places or ["look at what all terms share"], slips
 
@@ -177,3 +187,53 @@ def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
         "signs": f"{before} have the wrong sign everywhere, as in a cross product with the other sign",
         "transpose": f"indices are swapped, as in the transposed matrix: {before} stands where {after} belongs",
     }[kind]
+
+
+def compared(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[Difference, ...], tuple[int, ...]]:
+    """Return products whose coefficients differ, and the numbers of my terms that hold one.
+
+    Denominators are cleared first; nothing is found in formulas that are too large to multiply out.
+    """
+    if not small(mine, true):
+        return (), ()
+    parts = [*sp.Add.make_args(mine), true]
+    letters = _letters_for_functions(parts)
+    field, elements = sfield([part.xreplace(letters) for part in parts])
+    common = field.ring.one
+    for element in elements:
+        common = common.lcm(element.denom)
+    polynomials = [element.numer * (common.quo(element.denom)) for element in elements]
+    *own, target = [dict(p.terms()) for p in polynomials]
+    total = dict(sum(polynomials[:-1], field.ring.zero).terms())
+    back = {letter: function for function, letter in letters.items()}
+    differ = [m for m in {**target, **total} if total.get(m, 0) != target.get(m, 0)]
+    found = [
+        Difference(
+            sp.Mul(*(g**k for g, k in zip(field.symbols, m, strict=True))).xreplace(back),
+            *(sp.sympify(field.domain.to_sympy(side.get(m, field.domain.zero))) for side in (total, target)),
+        )
+        for m in differ
+    ]
+    wrong = tuple(k for k, part in enumerate(own) if any(m in part for m in differ))
+    return tuple(found), wrong
+
+
+def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]:
+    """Return a letter for every root and function, the same one for equal values."""
+    if all(map(rational, parts)):
+        return {}
+    point = next(points(*parts, opaque=True), None)
+    outermost: dict[sp.Expr, sp.Symbol] = {}
+
+    def visit(node: sp.Basic) -> None:
+        if node.is_Symbol or node.is_Rational:
+            return
+        if node.is_Add or node.is_Mul or (node.is_Pow and node.exp.is_Integer):
+            for part in node.args:
+                visit(part)
+        else:
+            outermost[node] = sp.Symbol(f"f{complex(point(node)):.10e}" if point else f"f{node}")
+
+    for part in parts:
+        visit(part)
+    return outermost

@@ -1,4 +1,4 @@
-"""Which line is which, and whether it is right: by itself, by another convention, or from there on."""
+"""Match lines with those of the target, and judge each: right, wrong, right by another convention or from there on."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from percept_obs.checking.target import EQUATION, INEQUALITY, VALUE, ZEROS, Targ
 
 
 class Verdict(StrEnum):
-    """What is found of a line."""
+    """The verdict on a line."""
 
     RIGHT = "right"
     WRONG = "wrong"
@@ -27,7 +27,7 @@ TRANSPOSED = "your matrix is the transpose of the one asked for"
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A line that was judged.
+    """A line and its verdict.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Judged:
 
 
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
-    """Each line with its verdict."""
+    """Return each line with its verdict."""
     given = _assigned(readings, target)
     lines = [Judged(row, formula, _verdict(formula, target, row)) for row, formula in given]
     return tuple(_carried(_by_convention(_turned(lines, readings, target), target), target))
@@ -64,7 +64,7 @@ def _verdict(mine: sp.Expr, target: Target, row: int) -> Verdict:
 
 
 def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr]]:
-    """Which line each formula should be."""
+    """Return the row of the target and the expression of each formula."""
     count, rows = len(target.lines), target.rows
     given: list[tuple[int, sp.Expr]] = []
     unnamed = [r for r in readings if r.name not in rows and r.name not in target.blocks]
@@ -108,7 +108,7 @@ def _asked(target: Target) -> str:
 
 
 def _turned(lines: list[Judged], readings: Sequence[Reading], target: Target) -> list[Judged]:
-    """The lines, with a note on those that are wrong only because a matrix is given transposed."""
+    """Add a note to lines that are wrong only because a matrix is transposed."""
     if (
         len(readings) != 1
         or not isinstance(readings[0].formula, sp.MatrixBase)
@@ -122,7 +122,7 @@ def _turned(lines: list[Judged], readings: Sequence[Reading], target: Target) ->
 
 
 def _scalar(formula: sp.Basic, target: Target, row: int) -> sp.Expr:
-    """A line as an expression, of a relation what the target's line makes of it."""
+    """Return a line as an expression, comparable with the target's line."""
     kind = target.lines[row].kind
     if isinstance(formula, sp.And | sp.Or) or (kind == ZEROS and isinstance(formula, Relational)):
         return condition(formula if not isinstance(formula, sp.Eq) else sp.Ne(*formula.args, evaluate=False))
@@ -135,7 +135,7 @@ def _scalar(formula: sp.Basic, target: Target, row: int) -> sp.Expr:
 
 
 def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
-    """The lines, with those that only follow another convention marked."""
+    """Mark lines that only follow another convention."""
     if not any(line.verdict == Verdict.WRONG for line in lines):
         return lines
     for convention in target.conventions:
@@ -155,7 +155,7 @@ def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
 
 
 def _carried(lines: list[Judged], target: Target) -> Iterator[Judged]:
-    """The lines, with those marked that follow correctly from a wrong one before."""
+    """Mark lines that follow correctly from a wrong one before."""
     for k, line in enumerate(lines):
         before = [other for other in lines[:k] if other.verdict == Verdict.WRONG]
         note = _follows(line, before, lines[:k], target) if line.verdict == Verdict.WRONG and before else ""
@@ -163,7 +163,7 @@ def _carried(lines: list[Judged], target: Target) -> Iterator[Judged]:
 
 
 def _follows(line: Judged, wrong: Sequence[Judged], before: Sequence[Judged], target: Target) -> str:
-    """From which wrong line this one follows; empty if from none."""
+    """Say from which wrong line this one follows; empty if from none."""
     if any(other.row == line.row and same(other.mine, line.mine) for other in wrong):
         return "this follows from the line before, which is wrong"
     mine = {other.row: other.mine for other in before}

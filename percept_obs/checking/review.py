@@ -1,4 +1,4 @@
-"""Checking somebody's derivation, and showing what is found, hint by hint."""
+"""Check somebody's derivation, and show the result hint by hint."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ HINTS = ("which line", "which term", "which slip, and in which step")
 
 @dataclass(frozen=True, eq=False)
 class Review:
-    """What is found of a derivation; it shows itself in a notebook, and tells no more than is asked for.
+    """The result of a check; it shows itself in a notebook, with as many hints as are asked for.
 
     Parameters
     ----------
@@ -53,14 +53,14 @@ class Review:
 
     @property
     def right(self) -> bool | None:
-        """Whether all lines are right; None if that cannot be told."""
+        """True if all lines are right; None if that cannot be told."""
         verdicts = {line.verdict for line in self.lines}
         if verdicts & {Verdict.WRONG, Verdict.CARRIED}:
             return False
         return None if Verdict.CANNOT_TELL in verdicts else True
 
     def hint(self, number: int) -> Review:
-        """The same review with more said: 1 which line, 2 which term, 3 which slip and in which step.
+        """Return the review with a hint: 1 which line, 2 which term, 3 which slip and in which step.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class Review:
 
     @cached_property
     def explanations(self) -> dict[int, Explanation]:
-        """What is wrong, by the number of the line among `lines`; looked for when it is first asked for."""
+        """Explanations of wrong lines by their number among `lines`."""
         good = {line.row: line.mine for line in self.lines if line.verdict == Verdict.RIGHT}
         return {
             k: explained(line.mine, line.row, self.target, good)
@@ -83,7 +83,7 @@ class Review:
 
     @property
     def summary(self) -> str:
-        """The verdict on all lines, in a sentence."""
+        """Verdict on all lines in a sentence."""
         wrong = [line for line in self.lines if line.verdict == Verdict.WRONG]
         if wrong:
             count = len(self.lines)
@@ -112,11 +112,11 @@ class Review:
         return "\n\n".join(out)
 
     def _mark(self, line: Judged) -> str:
-        """Whether the line is right, unless which line is wrong is a hint that was not asked for."""
+        """Return the mark of a line, a blank before the first hint."""
         return " " if self.right is False and not self.hints else MARKS[line.verdict]
 
     def _told(self, k: int, show: Callable[[sp.Basic], str]) -> Iterator[str]:
-        """What is said of a line."""
+        """Yield the sentences on a line."""
         line = self.lines[k]
         if line.verdict == Verdict.WRONG and self.hints > 1 and k in self.explanations:
             yield from sentences(self.explanations[k], line.mine, show)[self.hints - 2]
@@ -124,7 +124,7 @@ class Review:
             yield line.note
 
     def _boxed(self, k: int) -> str:
-        """The line in LaTeX, wrong terms in a box if they were asked for."""
+        """Return the line in LaTeX, from the second hint on with wrong terms in a box."""
         mine = self.lines[k].mine
         boxes: dict[sp.Symbol, str] = {}
         for path, term in wrong_terms(self.explanations[k], mine) if self.hints > 1 and k in self.explanations else ():
@@ -135,7 +135,7 @@ class Review:
 
 
 def _left(name: str) -> str:
-    """The left side of a line in LaTeX."""
+    """Return the left side of a line in LaTeX."""
     if name.endswith("'"):
         return rf"\dot{{{sp.latex(sp.Symbol(name[:-1]))}}} = "
     return rf"\text{{{name}}} = " if " " in name else f"{sp.latex(sp.Symbol(name))} = " if name else ""

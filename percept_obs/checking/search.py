@@ -1,4 +1,4 @@
-"""A search for what mends a formula: single slips by the difference they make, pairs by the sum of two."""
+"""Search for changes that mend a formula: single slips by the difference they make, pairs by the sum of two."""
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -26,13 +26,13 @@ THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
 
 @dataclass(frozen=True)
 class Search:
-    """A search for what mends one line.
+    """A search for changes that mend one line.
 
     Parameters
     ----------
     mine : expression
     line : Line
-        What it should be.
+        The true line.
     letters : set of symbols
     until : float
         The time on the clock at which it ends.
@@ -45,7 +45,7 @@ class Search:
 
     @property
     def over(self) -> bool:
-        """Whether the time is over."""
+        """True once the time is up."""
         return time.thread_time() > self.until
 
     @cached_property
@@ -54,7 +54,7 @@ class Search:
         return list(islice(points(self.mine, self.line.formula, opaque=True), 3))
 
     def values(self, e: sp.Expr) -> Values | None:
-        """Values of an expression at all points; None where there are none."""
+        """Return the values of an expression at all points; None where one is missing."""
         try:
             return np.array([point(e) for point in self.places])
         except NoValue:
@@ -62,17 +62,17 @@ class Search:
 
     @cached_property
     def terms(self) -> tuple[sp.Expr, ...]:
-        """My terms."""
+        """Terms of my formula."""
         return sp.Add.make_args(self.mine)
 
     @cached_property
     def lacking(self) -> Values:
-        """What my formula lacks: the true one less mine."""
+        """Values of the true formula less mine."""
         return np.array([point(self.line.formula) - point(self.mine) for point in self.places])
 
     @cached_property
     def changes(self) -> list[tuple[Values, Slip]]:
-        """Every single slip with what it adds to the formula."""
+        """Every single slip with the values that it adds to the formula."""
         siblings = siblings_in(self.letters | symbols_in(self.mine))
         found: list[tuple[Values, Slip]] = []
         for k, term in enumerate(self.terms):
@@ -89,13 +89,13 @@ class Search:
 
     @cached_property
     def true_terms(self) -> tuple[sp.Expr, ...]:
-        """The true terms, also multiplied out."""
+        """Terms of the true formula, also multiplied out."""
         whole = self.line.formula
         expanded = sp.expand(whole) if small(whole) else whole
         return tuple(dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))))
 
     def mends(self, added: Values, slip: Slip) -> bool:
-        """Whether a change, which adds this, makes the line right."""
+        """Return True if a slip, which adds these values, makes the line right."""
         if self.line.kind == VALUE:
             return close(added, self.lacking)
         if self.line.kind == ZEROS:
@@ -106,7 +106,7 @@ class Search:
         return bool(np.all(changed != 0)) and close(changed * true[0], true * changed[0])
 
     def single(self) -> Slip | None:
-        """The plainest single change that mends the formula."""
+        """Return the plainest single change that mends the formula."""
         ways = []
         for added, slip in self.changes:
             if self.over and self.line.kind == ZEROS:
@@ -118,7 +118,7 @@ class Search:
         return min(ways, key=lambda slip: (ORDER.index(slip.kind), len(slip.path)), default=None)
 
     def by_ratio(self) -> Iterator[Slip]:
-        """Terms with a wrong factor, found from what they would have to be multiplied by: a number, a letter, two."""
+        """Yield terms with a wrong factor, found from the ratio that they lack: a number or a quotient of letters."""
         u = sp.Symbol("one more", real=True)
         one = self.values(u)
         for path, node in takewhile(lambda _: not self.over, _term_places(self.mine)):
@@ -144,7 +144,7 @@ class Search:
                 yield Slip(kind, wrong, right, path, node, put(self.mine, path, node * right / wrong))
 
     def in_its_place(self) -> Iterator[Slip]:
-        """The one part that differs where the two formulas have the same build: inside a root, below a fraction."""
+        """Yield the one part that differs where both formulas have the same structure."""
         path, mine, true = _aligned(self.mine, self.line.formula)
         changed = put(self.mine, path, true)
         if not path or not close(self.values(changed), self.values(self.line.formula)):
@@ -170,7 +170,7 @@ class Search:
         }
 
     def throughout(self) -> Slip | None:
-        """One change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
+        """Return one change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
         true, mine = self.values(self.line.formula), self.mine
         candidates: list[tuple[str, sp.Basic, sp.Basic, sp.Expr]] = []
         used = sorted(mine.free_symbols, key=str)
@@ -197,7 +197,7 @@ class Search:
         return None
 
     def pair(self) -> tuple[Slip, ...]:
-        """Two changes that mend the formula together: in different terms, or in one."""
+        """Return two changes that mend the formula together: in different terms, or in one."""
         if self.line.kind != VALUE:
             return ()
         by_value: dict[tuple[float, ...], list[Slip]] = {}
@@ -240,7 +240,7 @@ class Search:
 
 
 def _aligned(mine: sp.Basic, true: sp.Basic) -> tuple[tuple[int, ...], sp.Basic, sp.Basic]:
-    """The smallest part of my formula outside of which it is the same as the true one: where, mine, the true part."""
+    """Return the only part in which two formulas differ: its place, my part, the true part."""
     if mine.func != true.func or not mine.args:
         return (), mine, true
     left = [k for k, part in enumerate(mine.args) if part not in true.args]
@@ -255,14 +255,14 @@ def _aligned(mine: sp.Basic, true: sp.Basic) -> tuple[tuple[int, ...], sp.Basic,
 
 
 def at(e: Any, path: Sequence[int]) -> Any:
-    """What stands at a place of a formula."""
+    """Return the part at a place of a formula."""
     for index in path:
         e = e.args[index]
     return e
 
 
 def _place_of(part: sp.Basic, whole: sp.Basic) -> tuple[int, ...]:
-    """Where a part stands first; the place of the whole if it stands nowhere."""
+    """Return the first place of a part; that of the whole if there is none."""
     paths: list[tuple[int, ...]] = [()]
     for path in paths:
         node = at(whole, path)
@@ -273,7 +273,7 @@ def _place_of(part: sp.Basic, whole: sp.Basic) -> tuple[int, ...]:
 
 
 def put(formula: sp.Basic, path: Sequence[int], new: sp.Basic) -> sp.Basic:
-    """The formula with something else at a place."""
+    """Return a formula with another part at a place."""
     if not path:
         return new
     args = list(formula.args)
@@ -282,7 +282,7 @@ def put(formula: sp.Basic, path: Sequence[int], new: sp.Basic) -> sp.Basic:
 
 
 def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:
-    """One wrong letter, where the wrong term was merged with another one or cancelled it."""
+    """Yield one wrong letter where the wrong term was merged with another one or cancelled it."""
     for lost, merged in ((one, other), (other, one)):
         wrong = merged.before - merged.after
         if lost.kind == "missing" and merged.kind in ("missing", "factor", "superfluous"):
@@ -308,14 +308,14 @@ def _missing(term: sp.Expr) -> Slip:
 
 
 def _named(slip: Slip) -> Slip:
-    """A mend in the words for the slip: what has to be dropped was superfluous."""
+    """Rename a mend: a term to be dropped was superfluous."""
     return replace(slip, kind="superfluous") if slip.kind == "dropped" else slip
 
 
 def _term_places(
     e: sp.Basic, path: tuple[int, ...] = (), is_term: bool = True
 ) -> Iterator[tuple[tuple[int, ...], sp.Expr]]:
-    """Places of all terms and sums, outside of functions."""
+    """Yield the places of all terms and sums outside of functions."""
     if is_term or e.is_Add:
         yield path, e
     if e.is_Add or e.is_Mul:
@@ -324,12 +324,12 @@ def _term_places(
 
 
 def abs_letter(e: sp.Expr) -> sp.Symbol:
-    """The letter of a letter with a sign."""
+    """Return a letter without its sign."""
     return -e if e.could_extract_minus_sign() else e
 
 
 def _transposed(letter: sp.Symbol, letters: Iterable[sp.Symbol]) -> sp.Symbol | None:
-    """The letter with its two indices swapped: a21 for a12."""
+    """Return the letter with its two indices swapped: a21 for a12."""
     name = letter.name
     if len(name) < 3 or not name[-2:].isdigit() or name[-1] == name[-2]:
         return None

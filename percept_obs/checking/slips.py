@@ -21,7 +21,7 @@ Siblings = dict[tuple[bool, str], list[sp.Basic]]
 
 @dataclass(frozen=True)
 class Moves:
-    """Which slips there are, besides a letter for its sibling and an inverse or a transpose left out.
+    """Kinds of slips, besides a letter for its sibling and an inverse or a transpose left out.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ PRINTS = Moves()
 MISTAKES = Moves((-sp.S.One, sp.Integer(2), sp.S.Zero))
 """Slips that a student makes: a term may be dropped."""
 MENDS = Moves((-sp.S.One, sp.S.Half, sp.Integer(2), sp.S.Zero, sp.Rational(1, 3), sp.Integer(3)), (-1, 1))
-"""What mends a slip."""
+"""Changes that mend a slip."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Slip:
     kind : str
         "sign", "factor", "dropped", "exponent", "letter", "left out" (an inverse or a transpose).
     before, after : sympy expressions
-        What stood there, and what stands there now.
+        The part before and after the change.
     path : tuple of int
         Which argument of which argument: the place in the formula.
     term : sympy expression
@@ -69,7 +69,7 @@ class Slip:
 
 @lru_cache(maxsize=1024)
 def family(symbol: sp.Symbol | sp.MatrixSymbol) -> tuple[bool, str]:
-    """What a symbol shares with those that may be mistaken for it: all but its index and its hat."""
+    """Return the part of a name that symbols share which may be mistaken for each other: all but index and hat."""
     stem = re.sub(r"\d+|hat", "", symbol.name)
     for letters in FAMILIES:
         for letter in letters:
@@ -78,17 +78,17 @@ def family(symbol: sp.Symbol | sp.MatrixSymbol) -> tuple[bool, str]:
 
 
 def is_symbol(node: sp.Basic) -> bool:
-    """Whether a node is a letter."""
+    """Return True for a letter."""
     return isinstance(node, sp.Symbol | sp.MatrixSymbol)
 
 
 def symbols_in(node: sp.Basic) -> set[sp.Basic]:
-    """Symbols as they are printed; the sizes of matrix symbols are not."""
+    """Return the symbols of a formula without the sizes of matrices."""
     return {node} if is_symbol(node) else set().union(*map(symbols_in, node.args))
 
 
 def siblings_in(pool: Iterable[sp.Basic]) -> Siblings:
-    """Letters by their families."""
+    """Return letters by their families."""
     siblings: Siblings = {}
     for symbol in sorted(pool, key=str):
         siblings.setdefault(family(symbol), []).append(symbol)
@@ -98,7 +98,7 @@ def siblings_in(pool: Iterable[sp.Basic]) -> Siblings:
 def slips(
     printed: tuple[sp.Basic, ...], pool: Iterable[sp.Basic], moves: Moves = PRINTS
 ) -> Iterator[tuple[sp.Basic, ...]]:
-    """The formulas with one sign, factor, exponent or symbol changed.
+    """Yield the formulas with one sign, factor, exponent or symbol changed.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def slips(
 
 
 def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Iterator[Slip]:
-    """Every single slip in a formula, with its place."""
+    """Yield every single slip in a formula."""
     if is_symbol(node):
         for other in siblings.get(family(node), []):
             if other != node:
@@ -140,13 +140,13 @@ def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Itera
 
 
 def factored(term: sp.Expr, moves: Moves) -> list[Slip]:
-    """A term with another sign, another factor, or dropped."""
+    """Return a term with another sign, with another factor, and dropped."""
     kinds = {-1: "sign", 0: "dropped"}
     return [Slip(kinds.get(c, "factor"), term, c * term, (), term, c * term) for c in moves.factors]
 
 
 def _has_term(part: sp.Basic, slip: Slip) -> bool:
-    """Whether a sum on the way down to the slip holds its term."""
+    """Return True if a sum on the way down to the slip holds its term."""
     for index in slip.path:
         if _is_sum(part):
             return True
@@ -163,7 +163,7 @@ def _is_sum(node: sp.Basic) -> bool:
 
 
 def _is_a_term(node: sp.Basic, k: int) -> bool:
-    """Whether a part is a term: of a sum, a side of a relation, an entry of a matrix, a branch."""
+    """Return True for a term: of a sum, a side of a relation, an entry of a matrix, a branch."""
     return _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
 
 

@@ -1,4 +1,4 @@
-"""What a derivation is compared with: lines with names, the letters that may stand in them, and the steps to them."""
+"""The target of a check: lines with names, the letters that may stand in them, and the steps to them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from lark import Token
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.checking.deciding import explicit, written_out
+from percept_obs.checking.deciding import entries_of, explicit, on_sides, sizes_of, written_out
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Reading, read, words_of
 from percept_obs.compile import intermediates
@@ -34,14 +34,14 @@ VALUE, EQUATION, INEQUALITY, ZEROS = "value", "equation", "inequality", "zeros"
 
 @dataclass(frozen=True)
 class Line:
-    """A line of what is compared with.
+    """A line of a target.
 
     Parameters
     ----------
     name : str
-        What stands on its left as it is typed, "y1'", or words; empty if it has no name.
+        Left side as it is typed, "y1'", or words; empty if it has no name.
     formula : expression
-        What stands on its right; of other equations and inequalities the left side less the right one.
+        Right side; of other equations and inequalities the left side less the right one.
     kind : "value", "equation", "inequality" or "zeros"
         Equations are the same up to a number, inequalities up to a positive one; of "zeros" it only matters where
         the formula is zero.
@@ -53,7 +53,7 @@ class Line:
 
     @property
     def key(self) -> str:
-        """The name as `read` gives it."""
+        """Name as `read` returns it."""
         return typed(self.name)
 
 
@@ -68,7 +68,7 @@ def _conventions() -> tuple[Convention, ...]:
 
 
 def typed(name: str) -> str:
-    """A name in letters and digits, with "dot" for a prime; empty for words."""
+    """Return a name in letters and digits, with "dot" for a prime; empty for words."""
     if not re.fullmatch(r"[\w^]+'*", name):
         return ""
     return key(name.replace("'", "dot"))
@@ -76,7 +76,7 @@ def typed(name: str) -> str:
 
 @dataclass(frozen=True)
 class Convention:
-    """Another choice that is no error: what it is, and how the letters change with it."""
+    """Another choice that is no error, and how the letters change with it."""
 
     words: str
     changes: Mapping[sp.Symbol, sp.Expr] = field(hash=False)
@@ -84,7 +84,7 @@ class Convention:
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """What is compared with.
+    """The formulas that somebody's derivation is compared with.
 
     Parameters
     ----------
@@ -92,13 +92,13 @@ class Target:
     pool : set of symbols
         Letters that may stand in the lines, besides those that do.
     derivation : function, optional
-        Gives the way there, step by step, whose result are the lines.
+        Returns the derivation whose result are the lines.
     nonzero : set of symbols
-        Letters that are known not to be zero.
+        Letters that are not zero.
     blocks : mapping of names to rows
-        Several lines that can be given together: those of step 5 as "step5".
+        Lines that can be typed together: those of step 5 as "step5".
     matrices : mapping of letters to matrices
-        What letters of matrices that may be typed stand for.
+        Entries of the letters of matrices that may be typed.
     """
 
     lines: tuple[Line, ...]
@@ -110,13 +110,13 @@ class Target:
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
-        """The steps that lead to the lines, with their numbers."""
+        """Steps that lead to the lines, with their numbers."""
         steps = enumerate(self.derivation() if self.derivation else (), 1)
         return tuple((number, step) for number, step in steps if step.leads_on)
 
     @cached_property
     def result(self) -> dict[int, int]:
-        """Of the lines that are the derivation's result: which row they are in it."""
+        """Row in the derivation's result of each line that is in it."""
         if not self.steps:
             return {}
         number, step = self.steps[-1]
@@ -127,7 +127,7 @@ class Target:
 
     @cached_property
     def rows(self) -> dict[str, int]:
-        """Which line a name stands for."""
+        """Row of each name."""
         return {line.key: row for row, line in enumerate(self.lines) if line.key}
 
     @cached_property
@@ -139,12 +139,12 @@ class Target:
 
     @cached_property
     def conventions(self) -> tuple[Convention, ...]:
-        """Choices that are no errors."""
+        """Other choices that are no errors here."""
         letters = set(self.letters.values())
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def read(self, mine: Any) -> list[Reading]:
-        """What somebody gives, as readings: text, sympy, or a list or a mapping of either."""
+        """Return readings of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
             found = read(mine, *self._known)
             return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
@@ -173,31 +173,29 @@ class Target:
         return f"step{name}" if isinstance(name, int) else typed(str(name))
 
     def words(self, text: str) -> list[Token]:
-        """The words of a text as they are understood here, as far as it can be read."""
+        """Return the tokens of a text, with the letters of this target told apart."""
         return words_of(text, *self._known)
 
     @property
     def _known(self) -> tuple[dict[str, Any], list[str]]:
-        """The letters that are read, and what may stand on the left of a line besides."""
+        """Letters that are read, and further names for the left of a line."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
         matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
         return extra | named | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
 
     def own(self, formula: sp.Basic) -> sp.Basic:
-        """A formula of sympy in the target's own letters, matched by name."""
+        """Return a formula of sympy in the target's own letters, matched by name."""
         formula = explicit(written_out(formula, self.matrices))
         own = {s: self.letters.get(key(s.name), s) for s in formula.free_symbols}
-        if isinstance(formula, Relational):
-            return formula.func(*(side.xreplace(own) for side in formula.args), evaluate=False)
-        return formula.xreplace(own)
+        return on_sides(lambda side: side.xreplace(own), formula)
 
 
 _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
 
 
 def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
-    """Letters that differ from the given ones in an index or a hat."""
+    """Yield letters that differ from these in an index or a hat."""
     for symbol in sorted(letters, key=str):
         stem = symbol.name.rstrip("0123456789")
         indices = min(len(symbol.name) - len(stem), 2)
@@ -208,12 +206,12 @@ def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
 
 @singledispatch
 def target_of(thing: Any) -> Target:
-    """What is compared with, from anything that the package derives or a formula of one's own.
+    """Return the target of a check: anything that the package derives, or a formula of one's own.
 
     Raises
     ------
     ValueError
-        If it is nothing that a formula can be compared with.
+        If no formula can be compared with it.
     """
     if isinstance(thing, str):
         words = {str(t) for t in words_of(thing) if t.type == "NAME"}
@@ -234,7 +232,7 @@ def target_of(thing: Any) -> Target:
 
 
 def _called(name: str, target: Target) -> Target:
-    """A target with a name; of several lines the names are numbered."""
+    """Name a target; of several lines the names are numbered."""
     many = len(target.lines) > 1
     named = (replace(line, name=f"{name}{k if many else ''}") for k, line in enumerate(target.lines, 1))
     return replace(target, lines=tuple(named))
@@ -319,7 +317,7 @@ def _(thing: sp.Basic) -> Target:
 
 
 def _line(name: str, formula: sp.Basic) -> list[Line]:
-    """The lines of an expression, a matrix or a relation."""
+    """Return the lines of an expression, a matrix or a relation."""
     if isinstance(formula, sp.MatrixBase):
         return [Line("", entry) for entry in formula]
     if isinstance(formula, Relational):
@@ -330,7 +328,7 @@ def _line(name: str, formula: sp.Basic) -> list[Line]:
 
 
 def relation_lines(relation: Relational) -> list[Line]:
-    """A relation as lines: y = f as a value, f = 0 and f != 0 as a set of zeros, matrices entry by entry."""
+    """Return a relation as lines: y = f as a value, f = 0 and f != 0 as a set of zeros, matrices entry by entry."""
     left, right = relation.lhs, relation.rhs
     if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
         pairs = zip(left, right, strict=True)
@@ -345,12 +343,12 @@ def relation_lines(relation: Relational) -> list[Line]:
 
 
 def primed(name: str) -> str:
-    """The name of a rate as it is typed: y1' for ydot1."""
+    """Return the name of a rate as it is typed: y1' for ydot1."""
     return re.sub(r"dot(\d*)$", r"\1'", name)
 
 
 def condition(formula: Boolean) -> sp.Expr:
-    """What is not zero where a condition of parts that are not zero holds."""
+    """Return the expression that is not zero where a condition of parts that are not zero holds."""
     if isinstance(formula, sp.And):
         return sp.Mul(*map(condition, formula.args))
     if isinstance(formula, sp.Or):
@@ -358,3 +356,35 @@ def condition(formula: Boolean) -> sp.Expr:
     if isinstance(formula, sp.Ne):
         return formula.lhs - formula.rhs
     raise ValueError(f"the condition {formula} cannot be compared; give one of parts that must not be zero, f != 0")
+
+
+def matrix_target(relations: Iterable[Relational]) -> Target:
+    """Return a target whose matrices can be typed by their letters, "xi' = G A xi", and are compared entry by entry.
+
+    The inverse of a letter has entries of its own, for written out it is too long.
+
+    Raises
+    ------
+    ValueError
+        If a matrix is given in several forms, or is an integral: entries do not tell whether those are the same.
+    """
+    relations = tuple(relations)
+    named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]
+    integrals = sp.Tuple(*relations).atoms(sp.Integral)
+    if len(set(named)) < len(named) or any(isinstance(i.function, sp.MatrixExpr) for i in integrals):
+        raise ValueError("matrices in several forms, or integrals of them, are not compared; name one of the formulas")
+    given = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
+    sizes = sizes_of(*given)
+    names = {m: m.name for m in given} | {m.inv(): f"{m.name}inv" for m in given if m.is_square}
+    matrices = {m: entries_of(m.xreplace(sizes), "{}_{}{}", 1, name) for m, name in names.items()}
+    lines: list[Line] = []
+    blocks = {}
+    for relation in relations:
+        left, right = relation.args
+        if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
+            rows = [Line(f"{primed(left.name)}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
+            blocks[key(left.name)] = tuple(range(len(lines), len(lines) + len(rows)))
+            lines += rows
+        else:
+            lines += relation_lines(written_out(relation, matrices))
+    return Target(tuple(lines), blocks=blocks, matrices=matrices)

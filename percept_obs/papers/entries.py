@@ -10,8 +10,7 @@ from functools import cached_property, partial
 
 import sympy as sp
 
-from percept_obs.checking.matrices import in_letters_of_matrices
-from percept_obs.checking.target import Target
+from percept_obs.checking.target import Target, matrix_target
 from percept_obs.papers.mathml import shown
 
 Printed = tuple[sp.Basic, ...]
@@ -172,7 +171,7 @@ class Entry:
         if not self.printed or self.expected in (Verdict.FALSE, Verdict.DEPENDS):
             why = f"it {self.expected}" if self.printed else "it has no formula"
             raise ValueError(f"nothing can be compared with {self.place}: {why.replace('it false', 'it is false')}")
-        return in_letters_of_matrices(self.corrected)
+        return matrix_target(self.corrected)
 
     @property
     def verdict(self) -> str:
