@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.intermediate import definitions, written_out
-from percept_obs.validation import derived
+from percept_obs.validation import derived, set_fields
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
@@ -52,13 +52,9 @@ class Equations:
     reset: Expressions = ()
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name == "update":
-                value = tuple(derived(block, "an update") for block in value)
-            elif field.name != "reset_condition":
-                value = derived(value, f"the equations' {field.name}")
-            object.__setattr__(self, field.name, value)
+        names = ("state", "flow", "measured", "parameters", "gains", "reset")
+        set_fields(self, **{name: derived(getattr(self, name), f"the equations' {name}") for name in names})
+        set_fields(self, update=tuple(derived(block, "an update") for block in self.update))
         listed = (*self.state, *self.measured, *self.parameters, *self.gains)
         if len({symbol.name for symbol in listed}) != len(listed):
             raise ValueError(f"a symbol is listed twice among {', '.join(map(str, listed))}")

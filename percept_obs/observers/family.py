@@ -16,7 +16,7 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.validation import WrongKind, refuse_kind
+from percept_obs.validation import WrongKind, refuse_kind, set_fields
 
 
 @dataclass(frozen=True)
@@ -106,9 +106,8 @@ class Family:
     offered_for_structure: bool = False
 
     def __post_init__(self) -> None:
-        told = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
-        for name, value in (told | {"__doc__": self._docstring(), "__signature__": self._signature()}).items():
-            object.__setattr__(self, name, value)
+        names = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
+        set_fields(self, **names, __doc__=self._docstring(), __signature__=self._signature())
 
     @property
     def key(self) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.validation import refuse_kind
+from percept_obs.validation import refuse_kind, set_fields
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Gain:
     def __post_init__(self) -> None:
         refuse_kind("the gain", self.name, self.value, float)
         value = float(self.value)
-        object.__setattr__(self, "value", value)
+        set_fields(self, value=value)
         if not math.isfinite(value):
             raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
         if not self.condition.subs(self.symbol, sp.Float(value)):

@@ -1,4 +1,4 @@
-"""A derivation: sentences and formulas, shown one after the other."""
+"""Derivations: sentences and formulas, one step after the other."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from percept_obs.compile import definitions
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a derivation: why, and what follows.
+    """Step of a derivation: a reason and a formula.
 
     Parameters
     ----------
     reason, formula : str
-        Why, and the formula in LaTeX.
+        A sentence, and the formula in LaTeX.
     values : mapping of names to expressions
-        What the step finds, so that it can be compared with somebody else's.
+        Results of the step, to be compared with somebody else's.
     follows : function of a list of values, optional
-        For `onward`; linear in each of the values.
+        Result of the whole derivation from this step's values, linear in each of them.
     """
 
     reason: str
@@ -32,16 +32,16 @@ class Step:
 
     @property
     def leads_on(self) -> bool:
-        """Whether it is known what follows from the step."""
+        """True if `onward` is known."""
         return self.follows is not None
 
     def onward(self, values: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-        """The result of the whole derivation, a column, if this step had found these values instead.
+        """Result of the whole derivation, a column, from other values of this step.
 
         Raises
         ------
         ValueError
-            If it is not known what follows from the step.
+            If `leads_on` is False.
         """
         if self.follows is None:
             raise ValueError(f"it is not known what follows from {self.reason!r}; ask `leads_on` first")
@@ -53,13 +53,13 @@ class Step:
 
 @dataclass(frozen=True)
 class Derivation(Sequence[Step]):
-    """A sequence of steps that a notebook shows as text and formulas, and that prints as text; a slice is one too."""
+    """Sequence of steps, shown as text and formulas in a notebook; a slice is a derivation, too."""
 
     steps: tuple[Step, ...]
 
     @classmethod
     def of(cls, formulas: Mapping[str, str | tuple[Any, ...]]) -> Derivation:
-        """A derivation of formulas by their reasons; a formula may come with what its step finds."""
+        """Make a derivation of formulas by their reasons; a formula may come with `values` and `follows`."""
         return cls(tuple(Step(why, *([part] if isinstance(part, str) else part)) for why, part in formulas.items()))
 
     @overload
@@ -76,25 +76,25 @@ class Derivation(Sequence[Step]):
         return "\n".join(f"{k}. {step}" for k, step in enumerate(self, 1))
 
     def _repr_markdown_(self) -> str:
-        # No list and nothing indented: four spaces make code of a formula, and front ends differ in how a list goes on.
+        # neither a list nor indented: four spaces make code of a formula, and front ends continue lists differently
         return "\n\n".join(f"**{k}.** {s.reason}\n\n$$ {s.formula} $$" for k, s in enumerate(self, 1))
 
 
 def rates(symbols: Iterable[sp.Symbol], values: Iterable[sp.Expr]) -> dict[str, sp.Expr]:
-    """Values by the names of the symbols whose rates they are: y1' for y1."""
+    """Map names of rates, y1' for y1, to their values."""
     return {f"{symbol.name}'": value for symbol, value in zip(symbols, values, strict=True)}
 
 
 def equals(left: str, right: object) -> str:
-    """The formula ``left = right`` in LaTeX, the right side printed by sympy."""
+    """Formula ``left = right`` in LaTeX; sympy prints the right side."""
     return f"{left} = {right if isinstance(right, str) else sp.latex(right)}"
 
 
 def where(*expressions: sp.Basic) -> list[str]:
-    """In LaTeX, what the intermediate results are whose letters expressions carry: a formula for each."""
+    """Formulas in LaTeX of the intermediate results in expressions."""
     return [equals(sp.latex(letter), value) for letter, value in definitions(expressions).items()]
 
 
 def joined(formulas: Iterable[str]) -> str:
-    """Formulas in LaTeX side by side."""
+    """Formulas in LaTeX in one line."""
     return r",\quad ".join(formulas)

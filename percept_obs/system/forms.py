@@ -1,4 +1,4 @@
-"""Systems with a measured and a hidden part, and their canonical form, where the hidden part enters linearly."""
+"""Systems with a measured and a hidden part, and their canonical form, in which the hidden part is linear."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import sympy as sp
 from percept_obs.compile import Intermediate
 from percept_obs.system.derivation import Derivation, equals, rates, where
 from percept_obs.system.view import View
+from percept_obs.validation import set_fields
 
 
 class NotAffine(ValueError):
@@ -48,7 +49,7 @@ class NeedsMoreOutputs(ValueError):
 
 @dataclass(frozen=True)
 class PartitionedSystem:
-    """A system whose coordinates are divided into measured and hidden ones: (x1, x2)' = f(x1, x2).
+    """System with measured and hidden coordinates: (x1, x2)' = f(x1, x2).
 
     Parameters
     ----------
@@ -57,11 +58,11 @@ class PartitionedSystem:
     rate : matrix of shape (n1 + n2, 1)
         Time derivative of (x1, x2).
     parameters : tuple of symbols
-        Known motion and view.
+        Symbols of the known motion and of the view.
     coordinates : tuple of symbols
         All coordinates in the order of the view.
     view : View or None
-        Where the outputs are seen.
+        View that the outputs belong to.
 
     Examples
     --------
@@ -94,7 +95,7 @@ class PartitionedSystem:
         return tuple(symbol.name for symbol in self.x2)
 
     def canonical_form(self) -> CanonicalForm:
-        """The same system in the form that most observers need.
+        """Canonical form of the system, which most observers need.
 
         Raises
         ------
@@ -105,27 +106,27 @@ class PartitionedSystem:
             raise NotAffine(self.measured, self.culprits)
         n1, w = len(self.x1), self._weight
         away = dict.fromkeys(self.x2, sp.S.Zero)
-        # What is affine but not written so still holds hidden coordinates; their value does not matter there.
+        # a rate that is affine, but not written so, keeps hidden coordinates in w, where their value does not matter
         w = w if not w.free_symbols & set(self.x2) else w.subs(away)
-        phi, g = _multiplied_out(self.rate[:n1, :]).subs(away), self.rate[n1:, :]
+        phi, g = _expanded(self.rate[:n1, :]).subs(away), self.rate[n1:, :]
         return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.view, w=w, phi=phi, g=g)
 
     @cached_property
     def culprits(self) -> tuple[str, ...]:
-        """Names of the hidden coordinates that do not enter the measured ones' rate linearly; none: a form exists."""
+        """Names of the hidden coordinates that are not linear in the measured rate; none if a form exists."""
         return _culprits(self._weight, self.x2)
 
     @cached_property
     def _weight(self) -> sp.ImmutableMatrix:
-        """What multiplies the hidden coordinates in the measured ones' rate, shape (n2, n1)."""
-        return _multiplied_out(_multiplied_out(self.rate[: len(self.x1), :]).jacobian(self.x2).T)
+        """Factors of the hidden coordinates in the measured rate, shape (n2, n1)."""
+        return _expanded(_expanded(self.rate[: len(self.x1), :]).jacobian(self.x2).T)
 
     def _repr_latex_(self) -> str:
         n1 = len(self.x1)
         return self._displayed(sp.latex(self.rate[:n1, :]), sp.latex(self.rate[n1:, :]))
 
     def _displayed(self, *rates: str) -> str:
-        """The rates of the measured and of the hidden part in LaTeX, one below the other."""
+        """Show the rates of the measured and of the hidden part in LaTeX, one below the other."""
         parts = zip((self.x1, self.x2), rates, strict=True)
         lines = [rf"\frac{{d}}{{dt}} {sp.latex(sp.Matrix(part))} &= {rate}" for part, rate in parts]
         lines += [formula.replace("=", "&=", 1) for formula in where(self.rate)]
@@ -134,7 +135,7 @@ class PartitionedSystem:
 
 @dataclass(frozen=True)
 class CanonicalForm(PartitionedSystem):
-    """The system x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
+    """Canonical form x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
 
     Parameters
     ----------
@@ -161,20 +162,20 @@ class CanonicalForm(PartitionedSystem):
 
     def __post_init__(self) -> None:
         rate = sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
-        object.__setattr__(self, "rate", rate)
+        set_fields(self, rate=rate)
 
     def canonical_form(self) -> CanonicalForm:
-        """The form itself."""
+        """Return the form itself."""
         return self
 
     @property
     def culprits(self) -> tuple[str, ...]:
-        """None."""
+        """Empty."""
         return ()
 
     @cached_property
     def determines_hidden(self) -> bool:
-        """Whether w^T x2 determines x2: there are outputs enough, and D of `cramer` is not zero everywhere."""
+        """True if w^T x2 determines x2: there are enough outputs, and D of `cramer` is not zero everywhere."""
         return len(self.x2) <= len(self.x1) and not self._cramer[1].expand().is_zero
 
     @property
@@ -200,16 +201,16 @@ class CanonicalForm(PartitionedSystem):
 
     @cached_property
     def _cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
-        # on curved surfaces w is divided by something; times that, neither N nor D has a division
+        # on curved surfaces w has denominators; multiplied by these, neither N nor D has a division
         divisor = reduce(sp.lcm, (sp.denom(sp.together(entry)) for entry in self.w), sp.S.One)
         w = self.w if divisor == 1 else (divisor * self.w).applyfunc(sp.cancel)
         square = w.T if w.is_square else w * w.T
-        # neither is multiplied out, for small differences would be lost in the sum of large terms
+        # not expanded, for small differences would be lost in the sum of large terms
         determinant, adjugate = square.det(method="laplace"), square.adjugate(method="laplace")
         return divisor * (adjugate if w.is_square else adjugate * w), determinant
 
     def derivation(self) -> Derivation:
-        """The form in formulas, one part after the other."""
+        """Formulas of the form, one after the other."""
         x1, x2 = sp.Matrix(self.x1), sp.Matrix(self.x2)
         hidden, measured = ([s.name for s in part] for part in (self.x2, self.x1))
         shares = [f"what multiplies {h} in {m}'" for m in measured for h in hidden]
@@ -245,7 +246,7 @@ def partition(
     parameters: tuple[sp.Symbol, ...],
     view: View | None = None,
 ) -> PartitionedSystem:
-    """Divide a system, given the names of the measured coordinates and the rate in the order of all coordinates."""
+    """Divide a system by the names of its measured coordinates; `rate` is in the order of `coordinates`."""
     rates = dict(zip(coordinates, rate, strict=True))
     by_name = {symbol.name: symbol for symbol in coordinates}
     x1 = tuple(by_name[name] for name in measured)
@@ -254,19 +255,19 @@ def partition(
     return PartitionedSystem(x1, x2, ordered, parameters, coordinates, view)
 
 
-def _multiplied_out(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """A matrix multiplied out, unless intermediate results with a name would make that long."""
+def _expanded(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Expand a matrix, unless named intermediate results would make that long."""
     return matrix if matrix.has(Intermediate) else matrix.expand()
 
 
 def _culprits(w: sp.ImmutableMatrix, x2: tuple[sp.Symbol, ...]) -> tuple[str, ...]:
-    """Hidden coordinates on which w depends, or that multiply those: where a second derivative is not zero."""
-    draw = random.Random(0)
+    """Names of the hidden coordinates with a second derivative of the measured rate that is not zero."""
+    draw = random.Random(0)  # an expression is zero if it vanishes at random points; simplifying would take long
     points = [{s: sp.Float(draw.uniform(0.1, 0.9), 30) for s in sorted(w.free_symbols, key=str)} for _ in range(3)]
-    guilty: set[sp.Symbol] = set()
+    nonlinear: set[sp.Symbol] = set()
     for (row, hidden), other in product(enumerate(x2), x2):
         for entry in w.row(row):
             second = entry.diff(other)
             if any(abs(sp.N(second.xreplace(point), 30)) > 1e-20 for point in points):
-                guilty |= {hidden, other}
-    return tuple(symbol.name for symbol in x2 if symbol in guilty)
+                nonlinear |= {hidden, other}
+    return tuple(symbol.name for symbol in x2 if symbol in nonlinear)

@@ -24,12 +24,12 @@ TIME = sp.Symbol("t", real=True)
 @checked
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A motion X' = A X + b, in symbols, with numbers for the symbols if they are known.
+    """Motion X' = A X + b, in symbols, with numbers for the symbols if they are known.
 
     Parameters
     ----------
     name : str
-        What the motion is called.
+        Name in messages, such as "affine".
     A, b : sympy matrices of shape (n, n) and (n, 1), n = 3 for a single point
         Coefficients in 1/s and m/s.
     parameters : tuple of sympy symbols
@@ -58,7 +58,7 @@ class Motion:
 
     @property
     def values(self) -> dict[sp.Symbol, float]:
-        """Numbers of a constant motion's symbols; empty while there are none or they vary."""
+        """Numbers of a constant motion's symbols; empty if there are none or they vary."""
         return {} if self.constants is None else dict(zip(self.parameters, self.constants[0].tolist(), strict=True))
 
     @cached_property
@@ -108,6 +108,10 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     ValueError
         If shapes do not match, values are not finite or times do not increase.
 
+    See Also
+    --------
+    rigid, linear
+
     Examples
     --------
     >>> from percept_obs import affine
@@ -147,6 +151,10 @@ def rigid(
     ValueError
         If shapes do not match, values are not finite or times do not increase.
 
+    See Also
+    --------
+    affine, linear
+
     Examples
     --------
     >>> from percept_obs import rigid
@@ -162,7 +170,7 @@ def rigid(
 
 
 def cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """[w]x, the matrix of the cross product w x X."""
+    """Matrix [w]x of the cross product w x X."""
     return sp.ImmutableMatrix([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
 
 
@@ -196,6 +204,10 @@ def linear(
     ValueError
         If shapes do not match, n is not known, values are not finite or times do not increase.
 
+    See Also
+    --------
+    affine
+
     Examples
     --------
     >>> from percept_obs import linear
@@ -211,23 +223,23 @@ def linear(
     if different:
         raise ValueError(f"{n} states were asked for, but A or v has {different[0]}; give both for the same states")
     limit(n * n, f"entries of A for {n} states", "describe fewer states", MOST_TERMS)
-    between = "_" if n > 9 else ""
-    A_symbols = sp.ImmutableMatrix(n, n, lambda i, j: sp.Symbol(f"a{i + 1}{between}{j + 1}", real=True))
+    separator = "_" if n > 9 else ""
+    A_symbols = sp.ImmutableMatrix(n, n, lambda i, j: sp.Symbol(f"a{i + 1}{separator}{j + 1}", real=True))
     v_symbols = sp.ImmutableMatrix(sp.symbols(f"v1:{n + 1}", real=True))
     motion = bound("linear", A_symbols, v_symbols, [(A, A_symbols), (v, v_symbols)], times)
     if motion.signal is None or callable(motion.signal.samples):
         return motion
-    there = (motion.signal.samples != 0).any(axis=0).tolist()
-    zero = {s: sp.S.Zero for s, t in zip(motion.parameters, there, strict=True) if not t}
+    used = (motion.signal.samples != 0).any(axis=0).tolist()
+    zero = {s: sp.S.Zero for s, u in zip(motion.parameters, used, strict=True) if not u}
     left = tuple(s for s in motion.parameters if s not in zero)
-    signal = Signal(motion.signal.samples[:, there], motion.signal.times)
+    signal = Signal(motion.signal.samples[:, used], motion.signal.times)
     return Motion("linear", motion.A.xreplace(zero), motion.b.xreplace(zero), left, signal)
 
 
 def bound(
     name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, given: list[Coefficient], times: ArrayLike | None
 ) -> Motion:
-    """A motion whose symbols are bound to what was given for them.
+    """Motion with values for its symbols.
 
     Parameters
     ----------
@@ -238,46 +250,48 @@ def bound(
         Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
     times : array of shape (K,), optional
         Times in seconds of sampled values.
+
+    Raises
+    ------
+    ValueError
+        If only some values are None, shapes do not match, values are not finite or times do not increase.
     """
-    values = [value for value, _ in given]
-    symbols = tuple(s for _, block in given for s in block)
-    if all(value is None for value in values):
+    values, symbols = [value for value, _ in given], tuple(s for _, block in given for s in block)
+    missing = [_title(block) for value, block in given if value is None]
+    if len(missing) == len(given):
         return Motion(name, A, b, symbols)
-    if any(value is None for value in values):
-        given_names = ", ".join(_called(block) for value, block in given if value is None)
-        raise ValueError(f"a {name} motion takes all of its coefficients or none of them; give also {given_names}")
-    if any(_has_symbols(value) for value in values):
-        entries = [e for value, block in given for e in _entries(value, block)]
-        A, b = (matrix.xreplace(dict(zip(symbols, entries, strict=True))) for matrix in (A, b))
+    if missing:
+        raise ValueError(
+            f"a {name} motion takes all of its coefficients or none of them; give also {', '.join(missing)}"
+        )
+    if any(map(_has_symbols, values)):
+        entries = [e for value, block in given for e in matrix(value, _title(block), *block.shape)]
+        A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
         return Motion(name, A, b, free, Signal(OverTime(lambda times: times[:, None])) if free == (TIME,) else None)
-    if any(callable(value) for value in values):
+    if any(map(callable, values)):
         functions = [_function(value, block) for value, block in given]
         function = OverTime(lambda times: np.hstack([rows(times) for rows in functions]))
         return Motion(name, A, b, symbols, Signal(function))
-    if times is None:
-        motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(value, block, 1) for value, block in given])))
-    else:
-        times = np.atleast_1d(np.asarray(times, dtype=float))
-        if not times.size:
-            raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
-        rows = [_rows(value, block, len(times)) for value, block in given]
-        motion = Motion(name, A, b, symbols, Signal(np.hstack(rows), times))
-    assert motion.signal is not None
-    ask_for_degrees(motion, motion.signal.times if motion.signal.times is not None else 0.0)
+    times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+    if times is not None and not times.size:
+        raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
+    count = 1 if times is None else len(times)
+    motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(*each, count) for each in given]), times))
+    ask_for_degrees(motion, 0.0 if times is None else times)
     return motion
 
 
 class AreTheseDegrees(UserWarning):
-    """Something turns so fast that its angular velocity may have been given in degrees."""
+    """An angular velocity is so large that it may be in degrees."""
 
 
 LARGEST_TURNING = 20.0
-"""Angular velocity in rad/s above which it is asked whether degrees were meant: three turns a second."""
+"""Angular velocity in rad/s, three turns a second, above which degrees may have been meant."""
 
 
 def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
-    """Warn of an angular velocity that may have been given in degrees; it is read from the first place's A."""
+    """Warn of an angular velocity, read from the first three states, that may be in degrees."""
     A = motion.A
     if A.shape[0] < 3 or motion.signal is None:
         return
@@ -294,7 +308,7 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
 
 
 def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[Array], Array]:
-    """One coefficient as rows, as a function of times; what it gives is looked at once for all of them."""
+    """One coefficient as a function of times, shape (T, entries); its values are checked once for all times."""
     if not callable(value):
         row = _rows(value, block, 1)
         return lambda times: np.repeat(row, len(times), axis=0)
@@ -312,27 +326,22 @@ def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.Immutab
 
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
-    """One coefficient as rows, repeated when it is constant."""
+    """One coefficient as rows, shape (count, entries), repeated if it is constant."""
     array = numbers(value, "a coefficient of the motion")
     shape = _shape(block)
     if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
         array = array.reshape(shape)
     if array.shape not in (shape, (count, *shape)):
         sampled = f" or {(count, *shape)}" if count > 1 else ""
-        raise ValueError(f"{_called(block)} has shape {array.shape}; expected {shape}{sampled}")
+        raise ValueError(f"{_title(block)} has shape {array.shape}; expected {shape}{sampled}")
     if not np.isfinite(array).all():
-        raise ValueError(f"{_called(block)} is not finite; remove or repair the NaN or infinite entries")
+        raise ValueError(f"{_title(block)} is not finite; remove or repair the NaN or infinite entries")
     rows = array.reshape(-1, len(block))
     return rows if len(rows) == count else np.repeat(rows, count, axis=0)
 
 
-def _entries(value: Any, block: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """One coefficient in expressions."""
-    return matrix(value, _called(block), *block.shape)
-
-
-def _called(block: sp.ImmutableMatrix) -> str:
-    """The argument that stands for a block of symbols."""
+def _title(block: sp.ImmutableMatrix) -> str:
+    """Name in messages of the argument that a block of symbols stands for."""
     first, last = block[0].name, block[len(block) - 1].name
     names = {"a": "A", "b": "b", "v": "v", "w": "angular_velocity", "v_c": "camera_velocity", "v_p": "point_velocity"}
     names |= {"w_c": "camera_angular_velocity", "w_b": "body_angular_velocity"}
@@ -341,7 +350,7 @@ def _called(block: sp.ImmutableMatrix) -> str:
 
 
 def _shape(block: sp.ImmutableMatrix) -> tuple[int, ...]:
-    """The shape of a coefficient's array; a column is a vector."""
+    """Shape of a coefficient's array; a column is a vector."""
     rows, columns = block.shape
     return (rows, columns) if columns > 1 else (rows,)
 

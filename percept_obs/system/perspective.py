@@ -20,7 +20,7 @@ from percept_obs.validation import checked
 @checked
 @dataclass(frozen=True)
 class PerspectiveSystem:
-    """A point in motion, seen on an imaging surface.
+    """Point in motion, seen on an imaging surface.
 
     With the ray m(y), the inverse distance eta and the point X = m(y) / eta,
 
@@ -78,10 +78,10 @@ class PerspectiveSystem:
 
         It is expanded, unless roots or letters of the surface's shape would make it long.
         """
-        moved = self._moved(self._gradients, self._velocity)
+        moved = self._rate(self._gradients, self._velocity)
         if self.surface.multiplied_out:
             return moved.expand()
-        return moved if self._image_over_distance.free_symbols else self._shortly_moved(self._velocity)
+        return moved if self._image_over_distance.free_symbols else self._short_rate(self._velocity)
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of `rate` with respect to `coordinates`."""
@@ -97,6 +97,11 @@ class PerspectiveSystem:
         """Divide the coordinates into measured and hidden ones.
 
         This is enough for the extended Kalman filter, for any outputs on any surface; see `measure` for the names.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown, repeated, or the inverse distance, or none is given.
         """
         known = [symbol.name for symbol in self.surface.image_coordinates]
         if not names or len(set(names)) != len(names) or not set(names) <= set(known):
@@ -107,7 +112,7 @@ class PerspectiveSystem:
         return partition(self.coordinates, self.rate, names, self.parameters, self.surface)
 
     def measure(self, *names: str) -> CanonicalForm:
-        """The canonical form with the named coordinates measured.
+        """Canonical form with some coordinates measured.
 
         Parameters
         ----------
@@ -119,19 +124,23 @@ class PerspectiveSystem:
         NotAffine
             If the measured outputs' rate is not affine in the hidden coordinates.
         ValueError
-            If a name is unknown, repeated, or the inverse distance, or none is given.
+            If `partition` refuses the names.
+
+        See Also
+        --------
+        output_choices : names that give a canonical form
         """
         return self.partition(*names).canonical_form()
 
     @cached_property
     def output_choices(self) -> tuple[tuple[str, ...], ...]:
-        """Names of outputs that give a canonical form if they are measured, all of them first."""
+        """Names of measured outputs that give a canonical form, those with most outputs first."""
         names = [symbol.name for symbol in self.surface.image_coordinates]
         choices = (chosen for count in range(len(names), 0, -1) for chosen in combinations(names, count))
         return tuple(chosen for chosen in choices if not self.partition(*chosen).culprits)
 
     def derivation(self) -> Derivation:
-        """The way from X' = A X + b to the rate, step by step."""
+        """Derivation of the rate from X' = A X + b, step by step."""
         surface, motion = self.surface, self.motion
         y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
         eta = sp.latex(surface.inverse_distance)
@@ -144,7 +153,7 @@ class PerspectiveSystem:
             "The point moves:": (
                 equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
                 rates(POINT, motion.A * sp.ImmutableMatrix(POINT) + motion.b),
-                lambda found: self._moved(self._gradients, self._seen_on_the_ray(found)),
+                lambda found: self._rate(self._gradients, self._seen_on_the_ray(found)),
             ),
             f"It is seen on the {surface.name} surface:": (
                 rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}",
@@ -160,7 +169,7 @@ class PerspectiveSystem:
                     ]
                 ),
                 {f"m{k}": entry for k, entry in enumerate(surface.ray, 1)},
-                lambda ray: self._moved(self._gradients, self._velocity_along(ray)),
+                lambda ray: self._rate(self._gradients, self._velocity_along(ray)),
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
                 rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}",
@@ -169,16 +178,16 @@ class PerspectiveSystem:
                     for i, way in enumerate(ways)
                     for j, axis in enumerate(POINT)
                 },
-                lambda found: self._moved(sp.ImmutableMatrix(len(ways), 3, found), self._velocity),
+                lambda found: self._rate(sp.ImmutableMatrix(len(ways), 3, found), self._velocity),
             ),
             "The velocity, times the inverse distance:": (
                 equals(rf"A m + b\,{eta}", self._velocity),
                 {f"the velocity along {axis}": entry for axis, entry in zip(POINT, self._velocity, strict=True)},
-                lambda found: self._moved(self._gradients, sp.ImmutableMatrix(found)),
+                lambda found: self._rate(self._gradients, sp.ImmutableMatrix(found)),
             ),
             "Image coordinates do not change with scale, so the inverse distance cancels:": (
                 rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",
-                rates(self.coordinates, self._moved(self._gradients, self._velocity)),
+                rates(self.coordinates, self._rate(self._gradients, self._velocity)),
                 sp.ImmutableMatrix,
             ),
             last: (
@@ -206,18 +215,18 @@ class PerspectiveSystem:
         return self.motion.A * sp.ImmutableMatrix(ray) + self.motion.b * self.surface.inverse_distance
 
     def _seen_on_the_ray(self, velocity: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-        """A velocity in terms of the point, at the point m / eta and times eta."""
+        """Velocity of the point m / eta, times eta, from a velocity in terms of the point."""
         eta = self.surface.inverse_distance
         point = {axis: entry / eta for axis, entry in zip(POINT, self.surface.ray, strict=True)}
         return sp.ImmutableMatrix([eta * entry.subs(point, simultaneous=True) for entry in velocity])
 
-    def _moved(self, gradients: sp.ImmutableMatrix, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """Rate of the coordinates, from the gradients of image and distance and the velocity times eta."""
+    def _rate(self, gradients: sp.ImmutableMatrix, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """Rate of the coordinates from the gradients of image and distance and the velocity times eta."""
         *image, distance = gradients * velocity
         return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * distance])
 
-    def _shortly_moved(self, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """`_moved` for an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1."""
+    def _short_rate(self, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """Rate for an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1."""
         y = sp.ImmutableMatrix(self.surface.image_coordinates)
         along = (self._distance_gradient * velocity)[0]
         image = self._image_over_distance * velocity - y * along
@@ -225,7 +234,7 @@ class PerspectiveSystem:
 
     @cached_property
     def _image_over_distance(self) -> sp.ImmutableMatrix:
-        """Gradient of the image times the distance; it holds no letters if that is linear in the point."""
+        """Gradient of the image times the distance; without symbols if that is linear in the point."""
         y = sp.ImmutableMatrix(self.surface.image_coordinates)
         return (self._image_gradient + y * self._distance_gradient).applyfunc(sp.cancel)
 
@@ -242,7 +251,7 @@ class PerspectiveSystem:
         return self._on_the_ray(sp.ImmutableMatrix([self.surface.distance]).jacobian(POINT))
 
     def _on_the_ray(self, gradient: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """A gradient at X = m(y), where the distance is 1."""
+        """Evaluate a gradient at X = m(y), where the distance is 1."""
         at_one = gradient.subs(self.surface.distance, 1)
         ray = dict(zip(POINT, self.surface.ray, strict=True))
         return at_one.subs(dict(self.surface.roots)).subs(ray, simultaneous=True).applyfunc(sp.cancel)

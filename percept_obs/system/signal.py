@@ -1,4 +1,4 @@
-"""Signals: numbers known over time, and when two times are the same one."""
+"""Signals: numbers known over time."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, set_fields
 
 
 def slack_of(times: Array) -> float:
-    """By how many seconds two times may differ and still be the same one: a thousandth of the usual interval."""
+    """Tolerance in seconds of two equal times: a thousandth of the median interval."""
     return 1e-3 * float(np.median(np.diff(times)))
 
 
 def from_the_start(elapsed: Array, after: float) -> Flags:
-    """Which samples lie `after` seconds or more behind the first one, shape (K,)."""
+    """Flags of the samples that lie `after` seconds or more after the first one, shape (K,)."""
     return np.asarray(elapsed >= after - slack_of(elapsed))
 
 
@@ -47,7 +47,7 @@ class Signal:
         if callable(self.samples):
             return
         samples = frozen(np.atleast_2d(np.asarray(self.samples, dtype=float)), "the signal's samples")
-        object.__setattr__(self, "samples", samples)
+        set_fields(self, samples=samples)
         if not len(samples):
             raise ValueError("the signal has no samples; give a row of values for each of its times")
         if self.times is None:
@@ -65,11 +65,11 @@ class Signal:
                 f"the signal's times go from {before:.6g} to {after:.6g} s; sort the samples, so that the times "
                 "are strictly increasing"
             )
-        object.__setattr__(self, "times", times)
+        set_fields(self, times=times)
 
     @property
     def constant(self) -> bool:
-        """Whether the signal is the same at all times."""
+        """True if the signal is the same at all times."""
         return not callable(self.samples) and len(self.samples) == 1
 
     def at(self, times: ArrayLike) -> Array:
@@ -105,7 +105,7 @@ class Signal:
 
 @dataclass(frozen=True, eq=False)
 class OverTime:
-    """A function of time that knows its values at many times at once, for a run asks for ten thousands.
+    """Function of time that returns its values at many times at once, for a run asks for ten thousands.
 
     Parameters
     ----------
@@ -128,14 +128,14 @@ def _rows(samples: Callable[[float], ArrayLike], times: Array) -> Array:
 
 
 def frozen(array: Array, what: str) -> Array:
-    """A copy of finite numbers that cannot be changed, or a ValueError that says what they are."""
+    """Read-only copy of numbers; raise ValueError if they are not finite."""
     if not np.isfinite(array).all():
         raise ValueError(f"{what} are not finite; remove or repair the NaN or infinite ones")
     return readonly(array)
 
 
 def readonly(values: ArrayLike) -> Array:
-    """A copy of numbers that cannot be changed."""
+    """Read-only copy of numbers."""
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array

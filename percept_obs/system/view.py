@@ -1,4 +1,4 @@
-"""What is seen: the coordinates that a recording's columns stand for, whatever they are derived from."""
+"""Views: the coordinates of points as a camera sees them, one or several of them."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from numpy.typing import ArrayLike
 from percept_obs.compile import Array
 
 DISTANCE = "the distance"
-"""What verdicts judge of a point; live labs use the same words."""
+"""Quantity that verdicts judge; labs use the same words."""
 
 
 class View(Protocol):
-    """Measured and hidden coordinates of what is seen.
+    """Measured and hidden coordinates of one or several points.
 
     An imaging surface is a view of one point; a scaled inverse depth is one, and so are several points of one state.
     """
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name in messages."""
 
     @property
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of what can be measured of a point."""
+        """Symbols of the coordinates that can be measured."""
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:
@@ -44,26 +44,26 @@ class View(Protocol):
 
     @property
     def point_shape(self) -> tuple[int, ...]:
-        """Shape of what there is once a point: () for one point, (p,) for p of them."""
+        """Shape of arrays with one entry a point: () for one point, (p,) for p of them."""
 
     def fits(self, other: Any) -> bool:
-        """Whether what is derived for this view holds for the other."""
+        """Return True if formulas for this view hold for the other."""
 
     def outputs(self, coordinates: ArrayLike) -> Array:
-        """What a camera sees of points with the given coordinates, shape (..., m) or (..., p, m)."""
+        """Image coordinates of points from all coordinates, shape (..., m) or (..., p, m)."""
 
     def inverse(self, coordinates: ArrayLike) -> Array:
-        """Inverse distances in 1/m, shape (...) or (..., p), of points with the given coordinates."""
+        """Inverse distances in 1/m, shape (...) or (..., p), from all coordinates."""
 
     def locate(self, coordinates: ArrayLike) -> Array:
-        """Points of space, shape (..., 3) or (..., p, 3), that have the given coordinates."""
+        """Points of space, shape (..., 3) or (..., p, 3), from all coordinates."""
 
     @property
     def judged(self) -> str:
-        """What `relative_error` is an error of, in words."""
+        """Quantity that `relative_error` is the error of, in words."""
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
-        """Largest relative error of what is sought, the same in any unit of length.
+        """Largest relative error of the judged quantity, the same in any unit of length.
 
         Parameters
         ----------
@@ -80,12 +80,12 @@ class View(Protocol):
 
 
 class OnePoint(ABC):
-    """A view of one point, so that there is once what there is once a point; it begins with what can be measured."""
+    """View of one point; arrays lose the point axis, and the measured coordinates come first."""
 
     @property
     @abstractmethod
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of what can be measured."""
+        """Symbols of the coordinates that can be measured."""
 
     @abstractmethod
     def inverse(self, coordinates: ArrayLike) -> Array:
@@ -94,7 +94,7 @@ class OnePoint(ABC):
     point_shape: tuple[int, ...] = ()
 
     def outputs(self, coordinates: ArrayLike) -> Array:
-        """What is measured, shape (..., m): the first of the coordinates, of shape (..., n)."""
+        """Measured coordinates, shape (..., m), the first of all coordinates, shape (..., n)."""
         return np.asarray(coordinates, dtype=float)[..., : len(self.image_coordinates)]
 
     @property

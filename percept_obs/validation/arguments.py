@@ -189,6 +189,12 @@ def described(value: Any) -> str:
     return with_article(type(value).__name__)
 
 
+def set_fields(frozen: Any, **values: Any) -> None:
+    """Set fields of a frozen value while it is made, from ``__post_init__``."""
+    for name, value in values.items():
+        object.__setattr__(frozen, name, value)
+
+
 def positive(**values: float) -> None:
     """Refuse numbers that are not positive and finite, each by its name.
 

@@ -1,4 +1,4 @@
-"""Imaging surfaces: where a point of space is seen, and along which ray it must lie.
+"""Imaging surfaces: the image of a point of space, and the ray of an image point.
 
 A surface is four expressions; `perspective.py` derives everything else from them.
 """
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, definitions, vectorised
 from percept_obs.system.view import OnePoint
-from percept_obs.validation import checked, expression, expressions
+from percept_obs.validation import checked, expression, expressions, set_fields
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
@@ -28,14 +28,14 @@ class BehindCamera(ValueError):
 @checked
 @dataclass(frozen=True)
 class ImagingSurface(OnePoint):
-    """A chart of an imaging surface through which a camera sees points of space.
+    """Imaging surface through which a camera sees points of space.
 
     With the ray m(y) and the inverse distance eta, the point seen at y is m(y) / eta.
 
     Parameters
     ----------
     name : str
-        What the surface is called.
+        Name in messages.
     image : sequence of sympy expressions
         Image coordinates of the point (X, Y, Z); they stay when the point is scaled.
     distance : sympy expression
@@ -45,11 +45,11 @@ class ImagingSurface(OnePoint):
     values : mapping of sympy symbols to floats, optional
         Numbers for the symbols that shape the surface, such as a plane's normal vector.
     region : sequence of sympy expressions, optional
-        What must be positive for the point (X, Y, Z) to be seen, besides the distance.
+        Expressions that, like the distance, are positive where the point (X, Y, Z) is seen.
     roots : mapping of sympy expressions to sympy expressions, optional
-        What roots of the point (X, Y, Z), besides the distance, are on the ray.
+        Values on the ray of roots of the point (X, Y, Z), besides the distance.
     constraint : sympy expression, optional
-        What is 0 for the image coordinates of every point, if they depend on each other.
+        0 for the image coordinates of every point, if they depend on each other.
 
     Raises
     ------
@@ -76,14 +76,17 @@ class ImagingSurface(OnePoint):
     constraint: sp.Expr | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "image", expressions(self.image, "the surface's image"))
-        object.__setattr__(self, "ray", expressions(self.ray, "the surface's ray"))
-        object.__setattr__(self, "distance", expression(self.distance, "the surface's distance"))
-        object.__setattr__(self, "region", expressions(self.region, "the surface's region"))
-        if self.constraint is not None:
-            object.__setattr__(self, "constraint", expression(self.constraint, "the surface's constraint"))
-        object.__setattr__(self, "roots", MappingProxyType(dict(self.roots)))
-        object.__setattr__(self, "values", MappingProxyType({s: float(v) for s, v in self.values.items()}))
+        constraint = self.constraint
+        set_fields(
+            self,
+            image=expressions(self.image, "the surface's image"),
+            ray=expressions(self.ray, "the surface's ray"),
+            distance=expression(self.distance, "the surface's distance"),
+            region=expressions(self.region, "the surface's region"),
+            constraint=None if constraint is None else expression(constraint, "the surface's constraint"),
+            roots=MappingProxyType(dict(self.roots)),
+            values=MappingProxyType({s: float(v) for s, v in self.values.items()}),
+        )
         if not self.image or len(self.ray) != 3:
             raise ValueError(
                 f"the surface {self.name!r} has {len(self.image)} image coordinates and a ray of "
@@ -95,7 +98,7 @@ class ImagingSurface(OnePoint):
         return hash((self.image, self.distance, self.ray))
 
     def fits(self, other: ImagingSurface) -> bool:
-        """Whether what is derived for this surface holds for the other: same formulas, and same numbers if any."""
+        """Return True if another surface has the same formulas, and the same numbers if this one has numbers."""
         same = (self.image, self.distance, self.ray) == (other.image, other.distance, other.ray)
         return same and (not self.values or self.values == other.values)
 
@@ -122,16 +125,16 @@ class ImagingSurface(OnePoint):
 
     @property
     def intermediates(self) -> dict[sp.Symbol, sp.Expr]:
-        """What the named roots of the ray are, by their letters; they are carried by name in all that is derived."""
+        """Values of the named roots of the ray, by their letters."""
         return definitions(self.ray)
 
     @property
     def multiplied_out(self) -> bool:
-        """Whether rates are written multiplied out: where the distance is one coordinate of the point."""
+        """True if rates are expanded: the distance is one coordinate of the point."""
         return self.distance in POINT
 
     def project(self, points: ArrayLike) -> Array:
-        """Coordinates of points of space.
+        """Coordinates of points of space: their image and inverse distance.
 
         Parameters
         ----------
@@ -165,13 +168,13 @@ class ImagingSurface(OnePoint):
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
     def sees(self, points: ArrayLike) -> Flags:
-        """Whether points of shape (..., 3) are seen, shape (...): whether each of `bounds` is positive."""
+        """Flags, shape (...), of the points, shape (..., 3), where each of `bounds` is positive."""
         points = np.asarray(points, dtype=float)
         return np.asarray(np.all([bound > 0 for bound in self._evaluate(POINT, self.bounds, points)], axis=0))
 
     @property
     def bounds(self) -> tuple[sp.Expr, ...]:
-        """What must be positive for the point (X, Y, Z) to be seen: its distance first, then the `region`."""
+        """Expressions that are positive where the point (X, Y, Z) is seen: its distance and the `region`."""
         return (self.distance, *self.region)
 
     def distances(self, points: ArrayLike) -> Array:
@@ -183,7 +186,7 @@ class ImagingSurface(OnePoint):
         return np.asarray(coordinates, dtype=float)[..., -1]
 
     def locate(self, coordinates: ArrayLike) -> Array:
-        """Points of space that have the given coordinates: the ray over the inverse distance.
+        """Points of space from their coordinates: the ray over the inverse distance.
 
         Parameters
         ----------
@@ -195,6 +198,11 @@ class ImagingSurface(OnePoint):
         array of shape (..., 3)
             Points in metres; infinite in every coordinate where the inverse distance is not positive,
             for such a point is not in front of the camera.
+
+        Raises
+        ------
+        ValueError
+            If the shape is wrong, or the surface has symbols without values.
         """
         coordinates = np.asarray(coordinates, dtype=float)
         if coordinates.shape[-1:] != (len(self.coordinates),):
@@ -208,12 +216,12 @@ class ImagingSurface(OnePoint):
 
     def along(self, image: ArrayLike) -> Array:
         """Points at the distance 1, shape (..., 3), along the rays of image points of shape (..., m); NaN for none."""
-        with np.errstate(invalid="ignore"):  # a root of what no point of space has for its image
+        with np.errstate(invalid="ignore"):  # no point of space has such an image
             return np.stack(self._evaluate(self.image_coordinates, self.ray, np.asarray(image, dtype=float)), axis=-1)
 
     @cached_property
     def field_of_view(self) -> float:
-        """The full angle in radians of the largest cone around the optical axis that is seen, up to 2 pi."""
+        """Full angle in radians of the largest cone around the optical axis that is seen, up to 2 pi."""
         turns = np.linspace(0, 2 * np.pi, 720, endpoint=False)
 
         def seen(angle: float) -> bool:

@@ -19,23 +19,23 @@ class zeta(Intermediate):
 
     @staticmethod
     def value(y1: sp.Expr, y2: sp.Expr, *shape: sp.Expr) -> sp.Expr:
-        """The larger root."""
+        """Return the larger root."""
         q11, q12, q13, q22, q23, q33 = shape
         slope = q13 * y1 + q23 * y2
         return (sp.sqrt(slope**2 + q33 * (1 - q11 * y1**2 - 2 * q12 * y1 * y2 - q22 * y2**2)) - slope) / q33
 
     @staticmethod
     def equation(zeta: sp.Expr, y1: sp.Expr, y2: sp.Expr, *shape: sp.Expr) -> sp.Expr:
-        """That of the ellipsoid."""
-        return form_of((y1, y2, zeta), shape) - 1
+        """Return X^T Q X - 1."""
+        return quadratic_form((y1, y2, zeta), shape) - 1
 
 
 @checked
 def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> ImagingSurface:
     """Ellipsoid X^T Q X = 1 around the camera's centre: y = (X, Y) / l, inverse distance 1/l, l = sqrt(X^T Q X).
 
-    With two outputs it sees the side that faces the camera, with the third, Z/l, all around.  Ma 2005 wishes for it in
-    a remark (section 5, p. 72).
+    With two outputs it sees the side that faces the camera, with the third, Z/l, all around (Ma 2005, remark in
+    section 5, p. 72).
 
     Parameters
     ----------
@@ -57,18 +57,18 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
     if outputs not in (2, 3):
         raise ValueError(f"an ellipsoid has 2 or 3 outputs, not {outputs!r}")
     y = sp.symbols("y1:4", real=True)
-    distance = sp.sqrt(form_of(POINT, LETTERS))
+    distance = sp.sqrt(quadratic_form(POINT, LETTERS))
     values = {} if Q is None else dict(zip(LETTERS, _entries(Q), strict=True))
     if outputs == 3:
         image = [axis / distance for axis in POINT]
-        return ImagingSurface("ellipsoid", image, distance, y, values, constraint=form_of(y, LETTERS) - 1)
+        return ImagingSurface("ellipsoid", image, distance, y, values, constraint=quadratic_form(y, LETTERS) - 1)
     ray = (*y[:2], zeta(*y[:2], *LETTERS))
     facing = sum(q * axis for q, axis in zip((LETTERS[2], LETTERS[4], LETTERS[5]), POINT, strict=True))
     return ImagingSurface("ellipsoid", [axis / distance for axis in POINT[:2]], distance, ray, values, (facing,))
 
 
-def form_of(point: Sequence[sp.Expr], shape: Sequence[sp.Expr]) -> sp.Expr:
-    """The quadratic form of a point, given the entries q11, q12, q13, q22, q23, q33 of its matrix."""
+def quadratic_form(point: Sequence[sp.Expr], shape: Sequence[sp.Expr]) -> sp.Expr:
+    """Quadratic form of a point, from the entries q11, q12, q13, q22, q23, q33 of its matrix."""
     x, y, z = point
     q11, q12, q13, q22, q23, q33 = shape
     return q11 * x**2 + q22 * y**2 + q33 * z**2 + 2 * (q12 * x * y + q13 * x * z + q23 * y * z)

@@ -13,13 +13,13 @@ from percept_obs.validation import checked
 def sphere(outputs: int = 2) -> ImagingSurface:
     """Unit sphere: stereographic projection y = (X, Y) / (R + Z), or the unit direction y = (X, Y, Z) / R.
 
-    The inverse range is 1/R.  The first sees every direction but straight back, the second every direction.  Ma 2005
-    wishes for a sphere in a remark (section 5, p. 72).
+    The inverse range is 1/R.  The first sees every direction but straight back, the second every direction (Ma 2005,
+    remark in section 5, p. 72).
 
     Parameters
     ----------
     outputs : 2 or 3
-        Of the unit direction there are three, which depend on each other: y . y = 1.
+        3 for the unit direction, whose coordinates depend on each other: y . y = 1.
 
     Raises
     ------

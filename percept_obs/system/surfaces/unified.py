@@ -25,7 +25,7 @@ def unified(xi: float | None = None) -> ImagingSurface:
     Parameters
     ----------
     xi : float, optional
-        Of the mirror or lens, 0 or more; the symbol xi when left out.
+        Parameter of the mirror or lens, 0 or more; the symbol xi when left out.
 
     Raises
     ------
