@@ -10,6 +10,14 @@ from percept_obs.compile import Trace, source
 from percept_obs.compile.integrator import EACH
 
 
+def run_script(node, script, task):
+    """Answer of a script to a task, both as JSON."""
+    task = json.dumps(task, allow_nan=False)
+    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    return json.loads(answer.stdout)
+
+
 def solve_in_node(node, equations, start, table, gains):
     """What `percept_obs.compile.solve` does, in JavaScript."""
     size, count = len(equations.state), len(table.steps) + 1
@@ -23,9 +31,6 @@ def solve_in_node(node, equations, start, table, gains):
         "size": size,
         "count": count,
     }
-    script = Path(__file__).with_name("run_kernel.mjs")
-    answer = subprocess.run([node, script], input=json.dumps(task), capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    left = json.loads(answer.stdout)
+    left = run_script(node, Path(__file__).with_name("run_kernel.mjs"), task)
     states = np.array([np.nan if v is None else v for v in left["states"]]).reshape(count, size)
     return Trace(states, np.array(left["resets"]) != 0, None if left["diverged"] < 0 else left["diverged"])

@@ -1,12 +1,12 @@
 """Settings of the observer lab that its tests try, and the page's engine run on them in Node.js."""
 
 import json
-import subprocess
 import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from javascript import run_script
 
 import percept_obs.labs
 from percept_obs.labs.observer.lab import runs
@@ -68,13 +68,12 @@ def whole_model(lab):
     return {**model, **json.loads(json.dumps({**lab.model, "written": lab.written}, allow_nan=False))}
 
 
+SCRIPTS = {"observer_lab": "run_settings.js", "structure_lab": "run_structure.js", "points_lab": "run_points.js"}
+
+
 def run_in_node(node, lab, tasks):
-    """What the page's engine makes of each of the settings."""
-    task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
-    script = FRONT / "tests/run_settings.js"
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    return json.loads(answer.stdout)
+    """Answers of the page's engine to each of the settings of a lab."""
+    return run_script(node, FRONT / "tests" / SCRIPTS[lab.kind], {"model": whole_model(lab), "tasks": tasks})
 
 
 def python_runs(settings):
@@ -84,9 +83,10 @@ def python_runs(settings):
         return runs(settings)
 
 
-def as_array(numbers, width):
-    """Numbers that came as JSON, where null stands for what is not finite, in rows."""
-    return np.array([np.nan if v is None else v for v in numbers], dtype=float).reshape(-1, width)
+def as_array(numbers, width=None):
+    """Numbers that came as JSON, where null stands for what is not finite, in rows of a width."""
+    flat = np.array([np.nan if v is None else v for v in numbers], dtype=float)
+    return flat if width is None else flat.reshape(-1, width)
 
 
 PARTED = 1e-4

@@ -1,10 +1,6 @@
 """Settings of the lab of many points that its tests try, and the page's engine run on them in Node.js."""
 
-import json
-import subprocess
-
 import numpy as np
-from lab_settings import FRONT, whole_model
 
 from percept_obs.labs.points.settings import SCHEMA, WEIGHTS
 from percept_obs.labs.points.texts import STATES
@@ -46,20 +42,6 @@ CASES = {
     "short steps": {"period": 0.03, "step": 0.004, "duration": 5.0, "window": 2.0},
     "a window as long as the run": {"duration": 5.0, "window": 50.0},
 }
-
-
-def run_in_node(node, lab, tasks):
-    """What the page's engine makes of each of the settings."""
-    task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
-    script = FRONT / "tests/run_points.js"
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    return json.loads(answer.stdout)
-
-
-def as_array(numbers):
-    """Numbers that came as JSON, where null stands for what is not finite."""
-    return np.array([np.nan if v is None else v for v in numbers], dtype=float)
 
 
 def random_settings(seed):

@@ -1,12 +1,10 @@
 """Settings of the structure lab that its tests try, and the page's engine run on them in Node.js."""
 
 import json
-import subprocess
 import warnings
 from functools import lru_cache
 
 import numpy as np
-from lab_settings import FRONT, whole_model
 
 from percept_obs.labs.structure.lab import runs
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
@@ -35,15 +33,6 @@ OTHERS = {
     "crossing": {**case_of(3), "v_c": [0.0, 0.0, -0.15], "v_c_swing": [0.3, 0.3, -0.3], "duration": 4.5},
 }
 CASES = {**COROLLARIES, **OTHERS}
-
-
-def structure_in_node(node, lab, tasks):
-    """What the page's engine makes of each of the settings."""
-    task = json.dumps({"model": whole_model(lab), "tasks": tasks}, allow_nan=False)
-    script = FRONT / "tests/run_structure.js"
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    return json.loads(answer.stdout)
 
 
 def structure_runs_of(settings):

@@ -1,11 +1,11 @@
 """A link is a state: settings go into a page's address and back unchanged, and no address does anything else."""
 
 import json
-import subprocess
 
 import numpy as np
 import pytest
 from hostile_messages import messages
+from javascript import run_script
 from lab_alone import DRAWN
 from lab_browser import UNFOLD, control
 from lab_settings import FRONT, random_settings, whole_model
@@ -24,12 +24,8 @@ LONG = "9" * 400
 
 def in_node(node, models, settings=(), addresses=()):
     """What the page makes of settings and of addresses, each with the name of its lab."""
-    task = json.dumps({"models": models, "settings": settings, "addresses": addresses}, allow_nan=False)
-    answer = subprocess.run(
-        [node, FRONT / "tests/run_address.js"], input=task, capture_output=True, text=True, check=False
-    )
-    assert answer.returncode == 0, answer.stderr
-    return json.loads(answer.stdout)
+    task = {"models": models, "settings": settings, "addresses": addresses}
+    return run_script(node, FRONT / "tests/run_address.js", task)
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,8 @@
 """A map over two settings holds at every place what Python computes there, follows the hand, and leads to the place."""
 
-import json
-import subprocess
-
 import numpy as np
 import pytest
+from javascript import run_script
 from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import control, serious_violations
 from lab_settings import FRONT, NOISY, whole_model
@@ -30,11 +28,8 @@ PAIRS = {
 
 def in_the_page(node, lab, tasks):
     """What the page says became of runs at places of maps."""
-    task = json.dumps({"model": whole_model(lab), "tasks": tasks, "kind": lab.kind})
-    script = FRONT / "tests/run_cells.js"
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    return json.loads(answer.stdout)
+    task = {"model": whole_model(lab), "tasks": tasks, "kind": lab.kind}
+    return run_script(node, FRONT / "tests/run_cells.js", task)
 
 
 def somewhere(rng):

@@ -7,8 +7,6 @@ import pytest
 import sympy as sp
 from hostile_messages import TYPED
 from lab_settings import as_array, run_in_node, whole_model
-from points_settings import run_in_node as points_in_node
-from structure_settings import structure_in_node
 from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
@@ -145,7 +143,7 @@ def structure():
 def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, node):
     changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
     tasks = [structure.check({**structure.settings, **change}) for change in changes]
-    for settings, answer in zip(tasks, structure_in_node(node, structure, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, structure, tasks), strict=True):
         namespace = {"cubic": cubic}
         exec(answer["code"], namespace)
         for name, run in structure_runs(settings, {"cubic": structure._own["cubic"]}).items():
@@ -186,7 +184,7 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     assert tasks[2]["P"] == "P = 1 + t"
     for settings in tasks:
         lab.write_down(settings)
-    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         run = run_of_points(settings)
         assert_same_points(answer, run)
         namespace = {}
@@ -321,7 +319,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     lab = points_lab(form, **OF_POINTS)
     assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
     tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
-    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         run = run_of_points(settings, form)
         assert_same_points(answer, run)
         namespace = {"form": form}
@@ -355,7 +353,7 @@ def test_of_points_a_motion_in_samples_agrees(node):
     assert lab.settings["duration"] == 2.4
     changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
     tasks = [lab.check({**lab.settings, **change}) for change in changes]
-    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         run = run_of_points(settings, form)
         assert_same_points(answer, run)
         assert_same_gramian(answer, settings, run.recording)
@@ -412,7 +410,7 @@ def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(no
     lab = structure_lab(mine, period=0.01, observers=["identifier_based"])
     (run,) = lab.run().values()
     np.testing.assert_allclose(run.truth, mine.coordinates(run.time), rtol=1e-9, atol=1e-12)
-    (answer,) = structure_in_node(node, lab, [lab.settings])
+    (answer,) = run_in_node(node, lab, [lab.settings])
     found = as_array(answer["runs"]["identifier_based"]["estimate"], 5)
     np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
     with pytest.raises(ValueError, match="scaled inverse"):
@@ -447,7 +445,7 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
     for lab, given in zip(labs, (motion, motion, moved), strict=True):
         assert lab.settings["velocities"] == "samples"
         tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
-        for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+        for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
             namespace = {"motion": given}
             exec(answer["code"], namespace)
             for name, run in structure_runs(settings, samples=lab._samples).items():
@@ -461,7 +459,7 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
                 near = 1e-4 if given is moved else 1e-9
                 np.testing.assert_allclose(copied.estimate, run.estimate, rtol=near, atol=near)
     scale = labs[0].check({**labs[0].settings, "unknown": ["d_s", "v_c1", "v_c2"]})
-    (answer,) = structure_in_node(node, labs[0], [scale])
+    (answer,) = run_in_node(node, labs[0], [scale])
     with pytest.raises(ImpossibleChoice, match="none is known that is not zero") as refused:
         unknowns_of(scale, labs[0]._samples)
     assert answer["refusal"] == str(refused.value)

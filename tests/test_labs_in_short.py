@@ -2,8 +2,7 @@
 
 import pytest
 from lab_settings import NOISY, run_in_node
-from points_settings import run_in_node as points_in_node
-from structure_settings import GAUSSIAN, SWINGING, TURNED, structure_in_node
+from structure_settings import GAUSSIAN, SWINGING, TURNED
 from test_lab_engine import assert_same_recording, assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
@@ -43,8 +42,8 @@ def test_of_a_point(node):
 
 
 def test_a_single_sample_is_told(node):
-    for lab, in_node in ((observer_lab(), run_in_node), (structure_lab(), structure_in_node)):
-        (answer,) = in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
+    for lab in (observer_lab(), structure_lab()):
+        (answer,) = run_in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
         assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]
 
 
@@ -60,7 +59,7 @@ def test_of_structure(node):
             {"unknown": ["v_c1", "v_p2"], "earlier": True, "w": TURNED, **SWINGING},
         )
     ]
-    for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         assert_same(settings, answer)
         assert_same_determinant(settings, answer)
 
@@ -78,7 +77,7 @@ def test_of_points(node):
             {"weight": "scheduled", "size": 0.3, "final": 3.0, "view": 0.6, "velocity": [0.2, -0.1, 0.3]},
         )
     ]
-    for settings, answer in zip(tasks, points_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         run = run_of(settings)
         assert_same_points(answer, run)
         assert_same_gramian(answer, settings, run.recording)

@@ -1,13 +1,12 @@
 """A map of the image is the bound at each place, quickly, with the focus of expansion where the motion has it."""
 
-import json
-import subprocess
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from examples import AFFINE
+from javascript import run_script
 from sample_sizes import sampled
 
 from percept_obs import (
@@ -146,9 +145,8 @@ def test_the_page_computes_the_same(node, surface, measured):
     given = {"points": points, "Phi": Phi, "moved": moved, "shape": np.array([surface.values[s] for s in kernel.shape])}
     given = {name: values.ravel().tolist() for name, values in given.items()}
     given |= {"noiseVariance": NOISE_VARIANCE, "hiddenVariance": HIDDEN_VARIANCE}
-    task = json.dumps({"sources": kernel.sources(), "given": given})
-    script = Path(__file__).with_name("run_map.mjs")
-    answer = json.loads(subprocess.check_output([node, script], input=task, text=True))
+    task = {"sources": kernel.sources(), "given": given}
+    answer = run_script(node, Path(__file__).with_name("run_map.mjs"), task)
     there = np.array([np.nan if value is None else value for value in answer["found"]])
     np.testing.assert_allclose(there, found.relative.ravel(), rtol=1e-9)
     assert answer["seconds"] < 1

@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from lab_settings import whole_model
-from points_settings import CASES, as_array, random_settings, run_in_node
+from lab_settings import as_array, run_in_node, whole_model
+from points_settings import CASES, random_settings
 
 from percept_obs.labs.points.lab import points_lab, run_of
 from percept_obs.labs.points.settings import PICTURES

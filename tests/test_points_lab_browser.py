@@ -15,7 +15,7 @@ from lab_browser import (
     usable,
     used_at_random,
 )
-from points_settings import as_array
+from lab_settings import as_array
 
 from percept_obs.labs.points.lab import points_lab, run_of
 from percept_obs.labs.points.settings import MOST_POINTS

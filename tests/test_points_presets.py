@@ -1,10 +1,8 @@
 """What the presets of the lab of many points promise in words is what their settings do."""
 
-import json
-import subprocess
-
 import numpy as np
 import pytest
+from javascript import run_script
 from lab_settings import FRONT
 
 from percept_obs.labs.points.lab import points_lab, recording_of, run_of
@@ -17,11 +15,7 @@ pytestmark = [pytest.mark.node, pytest.mark.slow]
 def acts(node, always_compiled):
     """The settings of every act, as Python accepts them."""
     lab = points_lab()
-    task = json.dumps(lab.model["standard"])
-    script = FRONT / "tests/points_presets.js"
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    found = json.loads(answer.stdout)
+    found = run_script(node, FRONT / "tests/points_presets.js", lab.model["standard"])
     return {name: [lab.check(settings) for settings in several] for name, several in found.items()}
 
 

@@ -1,20 +1,19 @@
 """The page and Python compute the same run of every choice of unknowns, and refuse the others in the same words."""
 
 import json
-import subprocess
 from itertools import combinations
 
 import numpy as np
 import pytest
 import sympy as sp
 from corollaries import corollary_of
-from lab_settings import FRONT, whole_model
+from javascript import run_script
+from lab_settings import FRONT, as_array, run_in_node, whole_model
 from structure_settings import (
     CASES,
     COROLLARIES,
     EVERY,
     assert_same_structure_runs,
-    structure_in_node,
     structure_runs_of,
 )
 
@@ -37,12 +36,8 @@ def lab():
 def answers(lab, node):
     """What the page's engine says of each case, with the settings as Python completed them."""
     settings = {name: structure_lab(**case).settings for name, case in CASES.items()}
-    found = structure_in_node(node, lab, list(settings.values()))
+    found = run_in_node(node, lab, list(settings.values()))
     return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}
-
-
-def as_array(numbers):
-    return np.array([np.nan if v is None else v for v in numbers], dtype=float)
 
 
 @pytest.mark.node
@@ -105,7 +100,7 @@ def test_every_choice_is_possible_with_its_corollary_or_refused_in_the_same_word
             for values in ([-0.22, -0.23, 0.1], [0.0, -0.23, 0.0]):
                 changes = {"unknown": list(unknown), "v_c": values, "duration": 0.1, "earlier": count % 2 == 0}
                 tasks.append(lab.check({**lab.model["opening"], **changes}))
-    for settings, answer in zip(tasks, structure_in_node(node, lab, tasks), strict=True):
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         reason = refusal_of(settings)
         assert answer["refusal"] == reason
         assert ("# is refused" in answer["code"]) == bool(reason)
@@ -167,11 +162,8 @@ def test_each_corollary_is_one_click_and_converges(case):
 @pytest.fixture(scope="module")
 def acts(lab, node):
     """The settings of every act of every preset, as Python accepts them."""
-    script = FRONT / "tests/structure_presets.js"
-    task = json.dumps(lab.model["standard"])
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stderr
-    return {name: [lab.check(act) for act in found] for name, found in json.loads(answer.stdout).items()}
+    acts = run_script(node, FRONT / "tests/structure_presets.js", lab.model["standard"])
+    return {name: [lab.check(act) for act in found] for name, found in acts.items()}
 
 
 def scatter(run, begin, end):
@@ -236,7 +228,7 @@ def test_chatter_shrinks_with_the_step_and_is_gone_without_switching(acts):
 @pytest.mark.slow
 def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
     forgotten, cured = acts["limit"]
-    answers = structure_in_node(node, lab, [forgotten, cured])
+    answers = run_in_node(node, lab, [forgotten, cured])
     (limit,) = answers[0]["limits"]
     assert limit["time"] == pytest.approx(34.4, abs=0.1)
     assert answers[1]["limits"] == []
