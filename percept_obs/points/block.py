@@ -1,4 +1,4 @@
-"""One point's images, freed of their division: the block that is repeated for every point."""
+"""Image of one point without a division: the block that is repeated for every point."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class NotLinear(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class PointBlock:
-    """One point's images, freed of their division: l(xi) (y - h(xi)) = -B(y) xi.
+    """Image of one point without a division: l(xi) (y - h(xi)) = -B(y) xi.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class PointBlock:
 
     @property
     def S(self) -> sp.ImmutableMatrix:
-        """What an instant tells of the point: B^T B."""
+        """Information of an image about the point: B^T B."""
         return (self.B.T * self.B).expand()
 
     @property
@@ -56,19 +56,16 @@ class PointBlock:
 
     @property
     def correction(self) -> sp.ImmutableMatrix:
-        """What the observer makes of the innovation: B^T (y l xi - N xi), which C^T and P^-1 take to the state."""
+        """Correction B^T (y l xi - N xi), which C^T and P^-1 take to the state."""
         return self.B.T * self.innovation
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
-        """Symbols that shape the surface, by name."""
+        """Parameters of the surface, by name."""
         return tuple(sorted(self.N.free_symbols | self.l.free_symbols, key=lambda symbol: symbol.name))
 
     def source(self, language: Printed) -> str:
-        """Text of a function that fills an array with the correction and S, given y, xi and the surface's parameters.
-
-        The loops over points call it, in every language.
-        """
+        """Text of a function of y, xi and the surface's parameters that fills an array with the correction and S."""
         return function_source((*self.y, *self.xi, *self.parameters), (*self.correction, *self.S), language)
 
     def eigenvalues(self) -> dict[sp.Expr, int]:
@@ -84,6 +81,10 @@ def point_block(surface: ImagingSurface) -> PointBlock:
     ------
     NotLinear
         If the distance, or the image times the distance, is not linear in the point, as on curved surfaces.
+
+    See Also
+    --------
+    PointsForm : All points of a state.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""States of bodies in a moving camera's frame: independent points, a rigid body, and what not to choose."""
+"""States of bodies in a moving camera's frame: independent points, a rigid body, and one with an unseen origin."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from percept_obs.system.surfaces import ImagingSurface, pinhole
 from percept_obs.validation import Coefficients, checked, limit
 
 MOST_POINTS = 200
-"""Points of a body: sympy places their blocks within a few seconds."""
+"""Most points of a body: sympy places their blocks within a few seconds."""
 
 
 @checked
 def independent_points(motion: Motion, points: int, surface: ImagingSurface | None = None) -> PointsForm:
-    """Points that share a known motion and nothing else: the state is x = (X_1, ..., X_p), with X_k' = A X_k + b.
+    """Form of points that share a known motion only: x = (X_1, ..., X_p), with X_k' = A X_k + b.
 
     Parameters
     ----------
@@ -41,6 +41,10 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     ValueError
         If there is no point, or the motion is not that of a point.
 
+    See Also
+    --------
+    rigid_body : Points that move together in an unknown shape.
+
     Examples
     --------
     >>> from percept_obs import affine
@@ -48,7 +52,7 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     >>> independent_points(affine(), 2).names
     ('X1_x', 'X1_y', 'X1_z', 'X2_x', 'X2_y', 'X2_z')
     """
-    _refuse(points)
+    _check_count(points)
     if motion.A.shape != (3, 3):
         raise ValueError(f"the motion has {motion.A.shape[0]} states; that of a single point has 3")
     A = _placed(points, {(k, k): motion.A for k in range(points)})
@@ -67,7 +71,7 @@ def rigid_body(
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
-    """A rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), its first point and the others' places from it.
+    """Form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), its first point and offsets from it.
 
     With the angular velocities w_c of the camera and w_b of the body and the velocities v_c of the camera and v_p of
     the body's first point, all in the world and written in the camera's axes::
@@ -96,6 +100,10 @@ functions of time, optional
     ValueError
         If there is no point, shapes do not match, values are not finite or times do not increase.
 
+    See Also
+    --------
+    independent_points, body_with_origin
+
     Notes
     -----
     Where instead the velocity is known of the body's point that is momentarily at the camera's centre, all points
@@ -107,9 +115,9 @@ functions of time, optional
     >>> rigid_body(2).names
     ('r_x', 'r_y', 'r_z', 'd2_x', 'd2_y', 'd2_z')
     """
-    given = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
-    _refuse(points)
-    motion = _body_motion("rigid body", points, given, times)
+    _check_count(points)
+    velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
+    motion = _body_motion("rigid body", points, velocities, times)
     others = range(1, points)
     return _form(motion, ["r", *(f"d{k + 1}" for k in others)], [[0], *([0, k] for k in others)], surface)
 
@@ -124,9 +132,9 @@ def body_with_origin(
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
-    """A rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
+    """Form of a rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
 
-    Shown for what it costs: moving the origin one way and all points' places the other changes no image while both
+    A warning example: moving the origin one way and all points' places the other changes no image while both
     turn alike, so that three directions of the state are never seen.  `rigid_body` has none of them.
 
     Parameters
@@ -146,33 +154,37 @@ def body_with_origin(
     UnseenDirection
         If the body does not turn, so that the directions are lost for good.
 
+    See Also
+    --------
+    rigid_body : Without unseen directions.
+
     Examples
     --------
     >>> from percept_obs.points import body_with_origin
     >>> body_with_origin(2).names
     ('o_x', 'o_y', 'o_z', 'd1_x', 'd1_y', 'd1_z', 'd2_x', 'd2_y', 'd2_z')
     """
-    given = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
-    _refuse(points)
-    motion = _body_motion("rigid body with an origin", points + 1, given, times)
+    _check_count(points)
+    velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
+    motion = _body_motion("rigid body with an origin", points + 1, velocities, times)
     others = range(1, points + 1)
     return _form(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
 
 
-def _body_motion(name: str, vectors: int, given: tuple[Any, ...], times: ArrayLike | None) -> Motion:
-    """The motion of one place and of vectors that turn with a body."""
+def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: ArrayLike | None) -> Motion:
+    """Motion of one position and of vectors that turn with a body."""
     w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
     symbols = (w_c, v_c, w_b, v_p)
-    if any(value is not None for value in given):
-        given = tuple(np.zeros(3) if value is None else value for value in given)
+    if any(value is not None for value in velocities):
+        velocities = tuple(np.zeros(3) if value is None else value for value in velocities)
     place, turning = cross(-w_c), cross(w_b - w_c)
     A = _placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
     v = _placed(vectors, {(0, 0): v_p - v_c}, columns=1)
-    return bound(name, A, v, list(zip(given, symbols, strict=True)), times)
+    return bound(name, A, v, list(zip(velocities, symbols, strict=True)), times)
 
 
 def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:
-    """Blocks of three rows at their places in a matrix that is 0 elsewhere."""
+    """Sparse matrix with blocks of three rows at given positions."""
     entries = {
         (3 * row + i, 3 * column + j): block[i, j]
         for (row, column), block in blocks.items()
@@ -184,15 +196,16 @@ def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], col
 
 
 def _form(motion: Motion, vectors: list[str], sums: list[list[int]], surface: ImagingSurface | None) -> PointsForm:
-    """The form of points that are sums of the state's vectors."""
+    """Form of points that are sums of the state's vectors."""
     C = np.zeros((len(sums), 3, len(vectors), 3))
-    for k, parts in enumerate(sums):
-        C[k, :, parts, :] = np.eye(3)
+    for k, terms in enumerate(sums):
+        C[k, :, terms, :] = np.eye(3)
     names = tuple(f"{vector}_{axis}" for vector in vectors for axis in "xyz")
     return PointsForm(motion, C.reshape(len(sums), 3, -1), surface or pinhole(), names)
 
 
-def _refuse(points: int) -> None:
+def _check_count(points: int) -> None:
+    """Raise ValueError unless a body may have so many points."""
     if points < 1:
         raise ValueError(f"a body has {points!r} points; it needs a whole number, at least 1")
     limit(points, "points of a body", "take fewer points", MOST_POINTS)

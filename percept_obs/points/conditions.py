@@ -11,7 +11,7 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.validation import checked
 
 TOLERANCE = 1e-6
-"""By which, relatively, an inequality may be missed and still counts as met."""
+"""Relative amount by which an inequality may be missed for rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,30 +42,31 @@ class Conditions:
 
     @property
     def printed_holds(self) -> bool:
-        """Whether (15) holds throughout."""
+        """True if (15) holds throughout."""
         return bool((self.printed <= TOLERANCE * self.scale).all())
 
     @property
     def weaker_holds(self) -> bool:
-        """Whether the weaker inequality holds throughout."""
+        """True if the weaker inequality holds throughout."""
         return bool((self.weaker <= TOLERANCE * self.scale).all())
 
     def verdict(self) -> str:
-        """What holds, in words; what does not, from when on."""
-        parts = []
+        """Say in words which inequalities hold, and since when others fail."""
+        found = []
         for name, values in (("(15)", self.printed), (f"the weaker one with epsilon = {self.epsilon:g}", self.weaker)):
             missed = self.time[values > TOLERANCE * self.scale]
             worst = f"by {values.max():.3g} at {self.time[values.argmax()]:.3g} s"
-            parts.append(
-                f"{name} fails first at {missed[0]:.3g} s, {worst}" if len(missed) else f"{name} holds throughout"
+            found.append(
+                f"{name} " + (f"fails first at {missed[0]:.3g} s, {worst}" if len(missed) else "holds throughout")
             )
-        lost, least = self.time[self.least <= 0], f"the smallest eigenvalue of P is {self.least.min():.3g}"
-        return "; ".join([*parts, f"P is not positive definite from {lost[0]:.3g} s on" if len(lost) else least])
+        lost = self.time[self.least <= 0]
+        least = f"the smallest eigenvalue of P is {self.least.min():.3g}"
+        return "; ".join([*found, f"P is not positive definite from {lost[0]:.3g} s on" if len(lost) else least])
 
 
 @checked
 def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Array, epsilon: float = 1.0) -> Conditions:
-    """The inequality (15) and the weaker sufficient one, apart.
+    """Evaluate the inequality (15) and the weaker sufficient one.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Arr
         NaN where a point is not seen.
     P : array of shape (T, n, n)
     epsilon : float
-        Of the weaker one, A^T P + P A + P' <= (2 - epsilon) S, above 0 and at most 2.
+        Constant of the weaker one, A^T P + P A + P' <= (2 - epsilon) S, above 0 and at most 2.
 
     Raises
     ------

@@ -1,11 +1,11 @@
-"""Many points of one linear state: what a camera's images say of it, derived for one point and repeated for all."""
+"""Many points of one linear state and their images, derived for one point and repeated for all."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -22,28 +22,18 @@ from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 from percept_obs.validation import Entries, checked, expression, matrix, numbers, warn
 
 DRAWS = 4
-"""Values that a motion's symbols are given at random, to find what no motion lets a camera see."""
-
+"""Random values of a motion's symbols, by which directions are found that no motion shows."""
 
 JUDGED = "the points' positions"
-"""What verdicts judge of several points; live labs use the same words."""
+"""Name of what verdicts judge of several points, also of live labs."""
 
 
 class UnseenDirection(UserWarning):
     """A direction of the state that no image of any point depends on, whatever the camera sees."""
 
 
-@dataclass(frozen=True, eq=False)
-class Layout:
-    """Where a motion's coefficients that are not 0 stand, and which distinct expression each of them is.
-
-    Parameters
-    ----------
-    rows, columns, which : integer arrays of the same length
-        Entry (rows, columns) is ``expressions[which]``.
-    expressions : tuple of expressions
-        In the motion's parameters.
-    """
+class Layout(NamedTuple):
+    """Entries of [A, v] that are not 0: entry (rows, columns) is ``expressions[which]``, in the motion's parameters."""
 
     rows: Indices
     columns: Indices
@@ -65,7 +55,7 @@ class PointsForm:
     surface : ImagingSurface
         The pinhole when left out.
     names : tuple of str
-        What the states are called; x1, x2, ... when left out.
+        Names of the states; x1, x2, ... when left out.
 
     Raises
     ------
@@ -78,6 +68,11 @@ class PointsForm:
     -----
     UnseenDirection
         If a direction of the state changes no image, whatever the motion's symbols are.
+
+    See Also
+    --------
+    luenberger : An observer of it.
+    percept_obs.points.rigid_body : The form of a body.
 
     Examples
     --------
@@ -113,11 +108,18 @@ class PointsForm:
             if not np.isfinite(self.blocks).all():
                 raise ValueError("C has entries that are not finite; remove or repair the NaN or infinite ones")
             if self.unseen.shape[1]:
-                warn(UnseenDirection(self._complaint()))
+                named = in_words(self.unseen, self.names)
+                many = "a direction" if len(named) == 1 else f"{len(named)} directions"
+                message = (
+                    f"no image shows {many} of the state, whatever the camera sees: {'; '.join(named)}.  No observer "
+                    "finds what no image shows: leave it out of the state, or let the camera see a point that moves "
+                    "with it"
+                )
+                warn(UnseenDirection(message))
 
     @property
     def name(self) -> str:
-        """What is seen, in words."""
+        """Number of points and surface, in words."""
         return f"{self.points} points on the {self.surface.name}"
 
     @property
@@ -132,21 +134,21 @@ class PointsForm:
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
-        """Symbols that shape the surface."""
+        """Parameters of the surface."""
         return self.surface.parameters
 
     @property
     def values(self) -> Mapping[sp.Symbol, float]:
-        """Numbers of the surface's symbols."""
+        """Values of the surface's parameters."""
         return self.surface.values
 
     @property
     def point_shape(self) -> tuple[int, ...]:
-        """There are p of what there is once a point."""
+        """Shape (p,) of values given once a point."""
         return (self.points,)
 
     def fits(self, other: object) -> bool:
-        """Whether an observer of this form can follow what was seen as the other: as many points, on the surface."""
+        """True if an observer of this form can follow recordings of the other: as many points, on the same surface."""
         return isinstance(other, PointsForm) and self.points == other.points and self.surface.fits(other.surface)
 
     @property
@@ -205,7 +207,7 @@ class PointsForm:
         unknown = np.asarray(~np.isfinite(states))
         places = np.einsum("kin,...n->...ki", self.blocks, np.where(unknown, 0.0, states), optimize=True)
         if unknown.any():
-            # a point is not known where a state is not that it consists of; the others are
+            # NaN only for the points that use an unknown state
             uses = (self.blocks != 0).any(axis=1)
             places[np.matmul(unknown, uses.T)] = np.nan
         return places
@@ -217,11 +219,11 @@ class PointsForm:
 
     @property
     def judged(self) -> str:
-        """Where the points are."""
+        """Name of the estimated quantity."""
         return JUDGED
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
-        """How far the worst point is from where it is, relative to its distance, shape (K,); see `View`."""
+        """Error of the worst point's position, relative to its distance, shape (K,); see `View`."""
         true, found = self.locate(truth), self.locate(estimate)
         off, distance = (np.linalg.norm(rows, axis=-1) for rows in (found - true, true))
         return np.asarray((off / distance).max(axis=-1))
@@ -260,10 +262,6 @@ class PointsForm:
         A = self._dense(self._evaluated(known))[:, :, :-1]
         return readonly(unobservable(A, self.blocks.reshape(-1, self.states)))
 
-    def describe(self, directions: Array) -> tuple[str, ...]:
-        """Directions of the state in words, one sum of states for each column of an array of shape (n, q)."""
-        return in_words(directions, self.names)
-
     @cached_property
     def state(self) -> tuple[sp.Symbol, ...]:
         """Symbols of the states."""
@@ -299,7 +297,7 @@ class PointsForm:
         return sp.ImmutableMatrix([e.subs(point, simultaneous=True) for point in seen for e in self.surface.image])
 
     def derivation(self) -> Derivation:
-        """From one point's image to the innovation of all of them, step by step."""
+        """Derivation of the innovation of all points from the image of one, step by step."""
         block, xi = self.block, sp.Matrix(POINT)
         formulas = {
             "The state moves:": rf"\dot x = A x + v,\quad n = {self.states}",
@@ -324,6 +322,7 @@ class PointsForm:
         )
 
     def _evaluated(self, known: Array) -> Array:
+        """Numbers of the layout's expressions for values of the motion's parameters, shape (T, u)."""
         expressions = self.layout.expressions
         if not expressions:
             return np.zeros((len(known), 0))
@@ -333,31 +332,18 @@ class PointsForm:
 
     @cached_property
     def _function(self) -> Callable[..., list[Array]]:
-        """The layout's expressions of the motion's parameters; a path asks for thousands of their values."""
+        """The layout's expressions as a function; a path calls it thousands of times."""
         return vectorised(self.motion.parameters, self.layout.expressions)
 
     def _dense(self, values: Array) -> Array:
+        """Matrices [A, v], shape (T, n, n + 1), from numbers of the layout's expressions."""
         together = np.zeros((len(values), self.states, self.states + 1))
         together[:, self.layout.rows, self.layout.columns] = values[:, self.layout.which]
         return together
 
-    def _complaint(self) -> str:
-        named = self.describe(self.unseen)
-        many = "a direction" if len(named) == 1 else f"{len(named)} directions"
-        return (
-            f"no image shows {many} of the state, whatever the camera sees: {'; '.join(named)}.  No observer finds "
-            "what no image shows: leave it out of the state, or let the camera see a point that moves with it"
-        )
-
 
 def points_form(recording: Recording) -> PointsForm:
-    """The form of what a recording shows.
-
-    Raises
-    ------
-    ValueError
-        If it does not show points of a state.
-    """
+    """Return the form of a recording; raise ValueError if it does not show points of a state."""
     if not isinstance(recording.view, PointsForm):
         raise ValueError(
             f"this needs a recording of points of a state, but it shows the {recording.view.name}; record a "

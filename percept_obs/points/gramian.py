@@ -1,4 +1,4 @@
-"""Condition (14): what the images of a window tell of the state, along a trajectory, and how fast errors then decay."""
+"""Condition (14): information in the images of a window about the state, and the decay of errors that it implies."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from percept_obs.observability.windows import Windows, check_window, window_inte
 from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.luenberger import LuenbergerObserver
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.recording import Recording
 from percept_obs.system.signal import slack_of
 from percept_obs.validation import checked
 
-LARGEST_TABLE = 2e7
-"""Numbers that the transition matrices of all samples may take; of more samples only some are used."""
+LARGEST_TABLE = 1e7
+"""Most entries of the transition matrices of all samples; of more samples, every so many are taken."""
 
 PARTS = 40
 """Intervals into which a window is divided for the bound on the decay."""
@@ -36,7 +37,7 @@ VERDICTS = MappingProxyType(
         "the scale too": "; the state itself is among them: the images do not tell its scale",
     }
 )
-"""What may be said of condition (14)."""
+"""Sentences about condition (14), also of live labs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ class Gramian(Windows):
 
 @checked
 def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """What the images of a window tell of the state: the integral in (14), Inaba et al. 2005.
+    """Information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     window : float
         Seconds.
     form : PointsForm, optional
-        What is believed of the motion; the recording's own when left out.
+        System with the believed motion; the recording's own when left out.
 
     Returns
     -------
@@ -95,6 +96,19 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     ------
     ValueError
         If the window is not positive or longer than the recording, or the form has another number of points.
+
+    See Also
+    --------
+    linear_gramian : Of the points with their distances.
+    decay_bound : Decay of errors that it guarantees.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record
+    >>> from percept_obs.points.gramian import gramian
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> gramian(record(moving_body(1), 5, Camera(0.1)), 2).holds
+    True
     """
     seen = points_form(recording)
     form = form or seen
@@ -106,7 +120,7 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
 
 @checked
 def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """What the points themselves, with their distances, would tell: the integral of Phi^T C^T C Phi.
+    """Information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
 
     The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
     with epsilon, this one is at least epsilon / (1 + sup |y|^2) (Proposition 3.3); the converse fails.
@@ -128,7 +142,7 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
 @checked
 @dataclass(frozen=True, eq=False)
 class DecayBound:
-    """What the proof of Theorem 3.4 guarantees of the error, window by window.
+    """Guarantee of the proof of Theorem 3.4 for the error, window by window.
 
     Parameters
     ----------
@@ -137,7 +151,7 @@ class DecayBound:
     seen : array of shape (T,)
         Smallest eigenvalue of the Gramian relative to P: rho^T G rho >= seen rho^T P rho.
     feedback : array of shape (T,)
-        Norm of the operator by which the observer's own corrections hide the error from the images.
+        Norm of the operator by which the observer's corrections hide the error from the images.
     window : float
         Seconds.
     """
@@ -154,14 +168,14 @@ class DecayBound:
 
     @property
     def rate(self) -> float:
-        """Rate in 1/s at which sqrt(V) decays at least, over all of the windows."""
+        """Least rate in 1/s at which sqrt(V) decays, over all windows."""
         with np.errstate(divide="ignore"):
             return float(-np.log(self.contraction).mean() / (2 * self.window))
 
 
 @checked
 def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
-    """A bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
+    """Bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
     With z = B C rho, (15) gives V(t) - V(t + T) >= 2 int |z|^2.  By (22), the error without corrections would have
     shown B C Phi rho(t) = z + K z, where K is the operator with the kernel B C Phi(s, tau) P^-1 C^T B^T.  So
@@ -187,7 +201,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     ValueError
         If there is no truth, P is computed or misses (15), or the window does not fit.
     """
-    form, matrix = observer.form, observer.P
+    form, P = observer.form, observer.P
     if not form.fits(recording.view):
         raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
@@ -195,10 +209,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     check_window(recording, window, holds_samples=True)
     time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
-    P_there = (
-        None if matrix.computed else np.broadcast_to(matrix.at(time[every]), (len(time[every]), *[form.states] * 2))
-    )
-    if P_there is None or not conditions(observer, time[every], images[every], P_there).printed_holds:
+    if P.computed or not conditions(observer, time[every], images[every], _over(P, time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
     begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
@@ -211,24 +222,30 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
-        P = matrix.at(at)
-        inverse = np.linalg.inv(np.broadcast_to(P, (len(at), *P.shape[1:])))
-        corrected = np.linalg.inv(Phi) @ inverse @ np.swapaxes(rows, 1, 2) * np.sqrt(shares)[:, None, None]
-        # what is corrected at one instant is missing from all later images
+        weights = _over(P, at)
+        corrected = (
+            np.linalg.inv(Phi) @ np.linalg.inv(weights) @ np.swapaxes(rows, 1, 2) * np.sqrt(shares)[:, None, None]
+        )
+        # a correction at one instant is missing from all later images
         size = rows.shape[1]
         operator = np.concatenate(list(shown)) @ np.concatenate(list(corrected), axis=1)
         later = np.kron(np.tri(len(at), k=-1) + np.eye(len(at)) / 2, np.ones((size, size)))
         G = np.einsum("tij,tik->jk", shown, shown)
-        half = np.linalg.inv(np.linalg.cholesky(P[0]))
+        half = np.linalg.inv(np.linalg.cholesky(weights[0]))
         seen[k] = np.linalg.eigvalsh(half @ G @ half.T)[0]
         hidden = operator * later
-        feedback[k] = np.sqrt(np.linalg.eigvalsh(hidden.T @ hidden)[-1])  # the norm, without a costly decomposition
+        feedback[k] = np.sqrt(np.linalg.eigvalsh(hidden.T @ hidden)[-1])  # the norm, faster than by an SVD
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
 
 
-@checked
+def _over(P: LyapunovMatrix, times: Array) -> Array:
+    """Values of a given P at each time, shape (T, n, n)."""
+    values = P.at(times)
+    return np.broadcast_to(values, (len(times), *values.shape[1:]))
+
+
 def true_images(recording: Recording) -> Array:
-    """The images without noise where the truth is known, shape (K, p, m); NaN while a point is not seen."""
+    """Images without noise where the truth is known, else the outputs, shape (K, p, m); NaN where not seen."""
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)

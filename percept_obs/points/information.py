@@ -1,4 +1,4 @@
-"""What the samples tell of many points at the end of a run, by least squares."""
+"""Information in the samples about many points at the end of a run, by least squares."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from percept_obs.recording import Recording
 from percept_obs.tracking.information import FINEST, ROUNDING, Fit
 
 LARGEST_TABLE = 4_000_000
-"""Entries at most of the table of transitions; of more samples every so many are taken."""
+"""Most entries of the table of transitions; of more samples, every so many are taken."""
 
 PASSES = 4
-"""How often the samples are weighted by the distances that were found before."""
+"""Passes of least squares, each weighted by the distances that the one before found."""
 
 
 def many_points(form: PointsForm, recording: Recording) -> Fit:
@@ -45,9 +45,9 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
                 break
             weight = 1 / np.where(seen, depth, 1.0)
         free = m * int(seen.sum()) - form.states
-        left = product[-1, -1] + 2 * x @ b + x @ M @ x
-        given = math.sqrt(recording.noise_variance or 0.0)
-        noise = max(math.sqrt(max(left, 0.0) / free), finest, given) if free > 0 else math.nan
+        residual = product[-1, -1] + 2 * x @ b + x @ M @ x
+        known_noise = math.sqrt(recording.noise_variance or 0.0)
+        noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
             return x, math.inf, np.full(m, noise)
         return x, _worst(form, x, values, vectors, there, noise), np.full(m, noise)
@@ -59,7 +59,7 @@ def _backwards(form: PointsForm, time: Array) -> Array:
     """Maps from the state at the first of decreasing times, and 1, to that at each of them, shape (T, n, n + 1)."""
     places = instants(time)
     A, v = form.coefficients(places)
-    A, v = (by_step(np.broadcast_to(part, (len(places), *part.shape[1:]))) for part in (A, v))
+    A, v = (by_step(np.broadcast_to(rows, (len(places), *rows.shape[1:]))) for rows in (A, v))
     found = [np.eye(form.states, form.states + 1)]
     for k, length in enumerate(np.diff(time)):
 

@@ -1,6 +1,6 @@
 """The loop over points: one text that numpy runs as it is and numba compiles once, for any number of points.
 
-What one point tells is printed from its block; here it is spread over the states, for every point and every step.
+The correction of one point is printed from its block; the loop spreads it over the states.
 """
 
 from __future__ import annotations
@@ -21,45 +21,30 @@ from percept_obs.points.block import PointBlock
 from percept_obs.points.form import PointsForm
 
 Law = tuple[bool, float, float, Array]
-"""Whether P is computed, and then P' = -A^T P - P A + information S - forgetting P + pull: these three."""
+"""True if P is computed; then the last three of P' = -A^T P - P A + information S - forgetting P + pull."""
 
 COUPLING, WEIGHTS, PLACES = numbers()
 
 STATE_WORK = 8
-"""What a step costs Python for each of its states, in steps of a point's observer."""
+"""Cost of a step in Python for each state, in steps of the observer of one point."""
 
 
 class Arrays(NamedTuple):
-    """A form as the loop takes it, in the order of its arguments: entries that are not 0, point by point for C.
+    """A form as arguments of the loop: its entries that are not 0."""
 
-    Parameters
-    ----------
-    rows, columns, which : integer arrays
-        As in `Layout`; column n is v.
-    begins : integer array of shape (p + 1,)
-        Where each point's entries of C begin.
-    axes, states : integer arrays
-        Row in C_k and state of each entry of C.
-    entries : array
-        Entries of C.
-    shape : array
-        Numbers of the block's parameters.
-    block : PointBlock
-    """
-
-    rows: Indices
+    rows: Indices  # of [A, v], as in `Layout`; column n is v
     columns: Indices
     which: Indices
-    begins: Indices
-    axes: Indices
-    states: Indices
+    begins: Indices  # of each point's entries of C, shape (p + 1,)
+    axes: Indices  # row in C_k of each entry of C
+    states: Indices  # column in C_k of each entry of C
     entries: Array
-    shape: Array
+    shape: Array  # numbers of the block's parameters
     block: PointBlock
 
 
 def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
-    """Some states and points of a form as the loop takes them; the states' rates must not need others."""
+    """Some states and points of a form as arguments of the loop; the states' rates must not need others."""
     n = form.states
     place = np.full(n + 1, -1)
     place[states], place[n] = np.arange(len(states)), len(states)
@@ -75,20 +60,20 @@ def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
 
 
 def combine_by_loops(target: Array, first: Array, factor: float, second: Array) -> None:
-    """Set the target to first + factor second, a copy if that is 0; numba would compile each such line anew."""
+    """Set the target to first + factor second.  For numba, which compiles loops in half the time of numpy's lines."""
     for i in range(len(target)):
         target[i] = first[i] + factor * second[i]
 
 
 def combine_by_numpy(target: Array, first: Array, factor: float, second: Array) -> None:
-    """The same with numpy, whose loops do not run in Python."""
+    """Set the target to first + factor second.  For Python, where loops are slow."""
     target[:] = first + factor * second
 
 
 def solve_by_loops(P: Array, right: Array) -> Array:
     """Solve P x = right by Cholesky's method; NaN where P is not positive definite.
 
-    LAPACK's takes numba twice as long to compile as all the rest.
+    For numba: LAPACK's takes twice as long to compile as all the rest.
     """
     n = len(right)
     L, x = np.zeros((n, n)), right.copy()
@@ -113,7 +98,7 @@ def solve_by_loops(P: Array, right: Array) -> Array:
 
 
 def solve_by_numpy(P: Array, right: Array) -> Array:
-    """The same with numpy, whose loops do not run in Python."""
+    """Solve P x = right; NaN where P is not positive definite.  For Python, where loops are slow."""
     try:
         np.linalg.cholesky(P)
     except np.linalg.LinAlgError:
@@ -121,15 +106,15 @@ def solve_by_numpy(P: Array, right: Array) -> Array:
     return np.asarray(np.linalg.solve(P, right))
 
 
-if TYPE_CHECKING:  # what the next functions call in their text, where `source` says which
+if TYPE_CHECKING:  # names in the text of the next functions, which `source` defines
     combine, solve = combine_by_numpy, solve_by_numpy
 
-    def point(given: Array, told: Array) -> Array:
-        """Fill an array with what a point tells, as in `PointBlock.source`."""
+    def point(inputs: Array, values: Array) -> Array:
+        """Fill an array with a point's correction and S, as in `PointBlock.source`."""
 
 
 def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
-    """Set the target to the start, moved along the rates of stages for shares of a length, if there are any."""
+    """Set the target to the start, moved along the rates of stages for shares of a length."""
     for j in range(len(shares)):
         if shares[j] != 0.0:
             combine(target, start, length * shares[j], rates[j])
@@ -154,25 +139,25 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
                 combine(dP[:, j], dP[:, j], -a, P[i])
                 combine(dP[j], dP[j], -a, P[i])
     correction, anything = np.zeros(n), False
-    given, told = np.zeros(m + 3 + len(shape)), np.zeros(12)
+    inputs, values = np.zeros(m + 3 + len(shape)), np.zeros(12)
     for j in range(len(shape)):
-        given[m + 3 + j] = shape[j]
+        inputs[m + 3 + j] = shape[j]
     for k in range(len(begins) - 1):
         seen = True
         for j in range(m):
-            given[j] = y[k, j]
+            inputs[j] = y[k, j]
             seen = seen and y[k, j] == y[k, j]
         if not seen:
             continue
         anything = True
-        given[m : m + 3] = 0.0
+        inputs[m : m + 3] = 0.0
         for e in range(begins[k], begins[k + 1]):
-            given[m + axes[e]] += entries[e] * x[states[e]]
-        point(given, told)
+            inputs[m + axes[e]] += entries[e] * x[states[e]]
+        point(inputs, values)
         for e in range(begins[k], begins[k + 1]):
-            correction[states[e]] += entries[e] * told[axes[e]]
+            correction[states[e]] += entries[e] * values[axes[e]]
             for f in range(begins[k], begins[k + 1] if computed else 0):
-                S = told[3 + 3 * axes[e] + axes[f]]
+                S = values[3 + 3 * axes[e] + axes[f]]
                 dP[states[e], states[f]] += information * entries[e] * entries[f] * S
     if anything and computed:
         combine(dx, dx, 1.0, solve(P, correction))
@@ -234,10 +219,9 @@ def source(block: PointBlock, language: Language) -> str:
             "import math\n\nimport numpy as np\n",
             f"EACH, LARGEST_SQUARED_STATE = {EACH}, {LARGEST_SQUARED_STATE!r}",
             f"COUPLING, WEIGHTS, PLACES = map(np.array, {[table.tolist() for table in numbers()]})",
-            *(getsource(part) for part in parts),
-            f"combine, solve = {', '.join(part.__name__ for part in parts)}",
             block.source("python"),
-            "point = evaluate",
+            *(getsource(part) for part in parts),
+            f"point, combine, solve = evaluate, {', '.join(part.__name__ for part in parts)}",
             *(getsource(part) for part in (move, rate, run)),
         ]
     )
@@ -250,7 +234,7 @@ def _python(block: PointBlock) -> Callable[..., tuple[int, Array]]:
 
 
 def _compiled(block: PointBlock) -> Callable[..., tuple[int, Array]]:
-    """The same in machine code."""
+    """The loop in machine code."""
     line, sheet, book, shelf = (f"float64[{':, ' * further}::1]" for further in range(4))
     form = f"Tuple(({'intp[::1], ' * 6}{line}, {line}))"
     law = f"Tuple((boolean, float64, float64, {sheet}))"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from percept_obs.observers.base import About
 from percept_obs.observers.parts import hats
 from percept_obs.points.form import PointsForm
-from percept_obs.points.lyapunov_matrix import LyapunovMatrix, lyapunov_matrix
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix, constant, scheduled
 from percept_obs.validation import checked
 
 ABOUT = About(
@@ -32,9 +32,8 @@ class LuenbergerObserver:
     Parameters
     ----------
     form : PointsForm
-        What it believes in.
+        System that it believes in.
     P : LyapunovMatrix
-        P.
 
     Examples
     --------
@@ -52,7 +51,7 @@ class LuenbergerObserver:
 
     @property
     def name(self) -> str:
-        """The observer's name."""
+        """Name of the observer."""
         return f"Luenberger, {self.P.name}"
 
     @cached_property
@@ -78,11 +77,11 @@ class LuenbergerObserver:
         """E^-1 (y - H(C xhat)) without a division: y_k l xi_k - N xi_k for each point, xi_k = C_k xhat."""
         form, block = self.form, self.form.block
         m, estimate = len(block.y), sp.ImmutableMatrix(self.estimate)
-        parts = []
+        rows = []
         for k, C in enumerate(form.C):
-            here = zip((*block.y, *block.xi), (*form.y[k * m : (k + 1) * m], *(C * estimate)), strict=True)
-            parts.append(block.innovation.xreplace(dict(here)))
-        return sp.ImmutableMatrix.vstack(*parts).expand()
+            values = (*form.y[k * m : (k + 1) * m], *(C * estimate))
+            rows.append(block.innovation.xreplace(dict(zip((*block.y, *block.xi), values, strict=True))))
+        return sp.ImmutableMatrix.vstack(*rows).expand()
 
     @cached_property
     def flow(self) -> sp.ImmutableMatrix:
@@ -158,6 +157,10 @@ def luenberger(
     ValueError
         If P is not symmetric positive definite or of another size.
 
+    See Also
+    --------
+    track : Let it follow a recording.
+
     Notes
     -----
     H. Inaba et al., Nonlinear observers for perspective time-varying linear systems with multiple observing points,
@@ -171,4 +174,6 @@ def luenberger(
     >>> luenberger(moving_body(2).form, riccati()).name
     'Luenberger, Riccati'
     """
-    return LuenbergerObserver(form, lyapunov_matrix(P).sized(form.states))
+    if not isinstance(P, LyapunovMatrix):
+        P = scheduled(P) if callable(P) else constant(P)
+    return LuenbergerObserver(form, P.sized(form.states))

@@ -1,4 +1,4 @@
-"""The free parameter P of the Luenberger-type observer: constant, scheduled, or computed while it runs."""
+"""Parameter P of the Luenberger-type observer: constant, scheduled, or computed while it runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DIFFERENCE = 1e-5
 @checked
 @dataclass(frozen=True, eq=False)
 class LyapunovMatrix:
-    """How P moves: given over time, or P' = -A^T P - P A + information S - forgetting (P - start) - decrease.
+    """P given over time, or computed by P' = -A^T P - P A + information S - forgetting (P - start) - decrease.
 
     Parameters
     ----------
@@ -56,17 +56,17 @@ class LyapunovMatrix:
 
     @property
     def computed(self) -> bool:
-        """Whether P is computed while the observer runs."""
+        """True if P is computed while the observer runs."""
         return self.schedule is None
 
     @property
     def constant(self) -> bool:
-        """Whether P is given and stays."""
+        """True if P is given and constant."""
         return self.schedule is not None and self.schedule.constant
 
     @property
     def couples(self) -> Flags:
-        """Which states P may couple, shape (n, n)."""
+        """Pairs of states that P may couple, shape (n, n)."""
         if self.schedule is None:
             return np.asarray((self.start != 0) | (self.decrease != 0))
         if callable(self.schedule.samples):
@@ -74,7 +74,7 @@ class LyapunovMatrix:
         return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
 
     def sized(self, states: int) -> LyapunovMatrix:
-        """The same for a number of states.
+        """Copy for a number of states, with matrices in place of numbers.
 
         Raises
         ------
@@ -113,7 +113,11 @@ class LyapunovMatrix:
 
 @checked
 def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
-    """P that stays: a symmetric positive definite array of shape (n, n), or a number times the identity.
+    """Constant P: a symmetric positive definite array of shape (n, n), or a number times the identity.
+
+    See Also
+    --------
+    scheduled, lyapunov, riccati
 
     Examples
     --------
@@ -126,7 +130,7 @@ def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
 
 @checked
 def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> LyapunovMatrix:
-    """P given over time.
+    """P as a function of time, or from samples.
 
     Parameters
     ----------
@@ -212,15 +216,8 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     return LyapunovMatrix("Riccati", start, information=1.0, forgetting=float(forgetting))
 
 
-@checked
-def lyapunov_matrix(P: Any) -> LyapunovMatrix:
-    """What `luenberger` takes for P: a LyapunovMatrix, a function of time, an array or a number."""
-    if isinstance(P, LyapunovMatrix):
-        return P
-    return scheduled(P) if callable(P) else constant(P)
-
-
 def _square(value: ArrayLike, states: int) -> Array:
+    """Matrix of shape (n, n) from n^2 entries, or from a number times the identity."""
     array = np.asarray(value, dtype=float)
     if array.size == 1:
         return float(array.ravel()[0]) * np.eye(states)
@@ -230,6 +227,7 @@ def _square(value: ArrayLike, states: int) -> Array:
 
 
 def _definite(matrix: Array, what: str, semi: bool = False) -> None:
+    """Raise ValueError unless a matrix is symmetric and positive (semi-)definite."""
     if not np.isfinite(matrix).all() or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max(initial=1e-300):
         raise ValueError(f"{what} must be a finite symmetric matrix")
     least = float(np.linalg.eigvalsh(matrix)[0])

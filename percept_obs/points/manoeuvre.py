@@ -1,4 +1,4 @@
-"""How a camera and a body move while points are seen: a manoeuvre that tells everything, and parts of it."""
+"""Motion of a camera and a body: a manoeuvre that shows every direction of the state, and shares of it."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Vectors = tuple[tuple[sp.Expr, ...], ...]
 TURNING = (sp.sin(3 * t / 10) / 5, 3 * sp.cos(2 * t / 5) / 10, sp.Rational(1, 2))
 """w(t) in rad/s, by which W = [w]x turns resting points in the camera's axes."""
 PATH = (3 * sp.sin(t) / 2, 6 * sp.cos(7 * t / 10) / 5, sp.Rational(5, 2) + sp.sin(t / 2) / 2)
-"""Where the input keeps a point that starts there, in metres."""
+"""Path in metres on which the input keeps a point that starts there."""
 SPIN = (sp.sin(t) / 2, 2 * sp.cos(t) / 5, sp.Rational(3, 10))
 """Angular velocity of the body in the world, in rad/s."""
 
 SHARES = sp.symbols("turning spin input v1:4", real=True)
-"""What a manoeuvre takes of each, and a constant velocity in m/s."""
+"""Shares of turning, spin and input, and a constant velocity in m/s."""
 
 
 @lru_cache(maxsize=1)
@@ -62,8 +62,8 @@ class Manoeuvre:
 
     @property
     def velocities(self) -> list[tuple[sp.Expr, ...]]:
-        """As `rigid_body` takes them: of the camera, angular and not, and the body's angular one, as functions of t."""
+        """Arguments of `rigid_body`: the camera's angular velocity and velocity, the body's angular velocity."""
         numbers = (self.turning, self.spin, self.input, *self.velocity)
-        # a whole number as one, so that what is 0 or 1 leaves no trace in the formulas
+        # whole numbers as integers, so that factors 0 and 1 drop out of the formulas
         shares = {symbol: int(x) if x == int(x) else x for symbol, x in zip(SHARES, numbers, strict=True)}
         return [tuple(entry.subs(shares) for entry in vector) for vector in velocities()]

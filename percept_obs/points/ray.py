@@ -1,4 +1,4 @@
-"""One point's error across and along its ray: why a constant P has a best size, and how fast it can be."""
+"""Error of one point across and along its ray: why a constant P has a best size, and the fastest decay."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class RayError:
     Parameters
     ----------
     gain : symbol
-        k, what corrects the error across the ray, in 1/s: (1 + |y|^2) / P.
+        k, the correction of the error across the ray, in 1/s: (1 + |y|^2) / P.
     turning : symbol
-        omega, how fast the ray turns against the known rotation, in rad/s.
+        omega, the rate in rad/s at which the ray turns against the known rotation.
     matrix : matrix of shape (2, 2)
         M.
     """
@@ -56,7 +56,7 @@ class RayError:
 
     @property
     def over_gain(self) -> sp.Expr:
-        """What the rate comes close to for a gain that is far too large."""
+        """Asymptotic rate for a gain that is far too large."""
         return sp.limit(-self.eigenvalues[1] * self.gain, self.gain, sp.oo) / self.gain
 
     def derivation(self) -> Derivation:
@@ -100,7 +100,7 @@ def ray_error() -> RayError:
 
 @checked
 def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
-    """How fast the input v turns the ray of each point, in rad/s: what of v_k lies across the ray, over the range.
+    """Rate in rad/s at which the input v turns the ray of each point: v_k across the ray, over the range.
 
     Parameters
     ----------

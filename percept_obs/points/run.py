@@ -1,4 +1,4 @@
-"""What a Luenberger-type observer estimated of a recording of many points."""
+"""Run of a Luenberger-type observer on a recording of many points."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array, Flags, Indices
 from percept_obs.points.conditions import Conditions, conditions
 from percept_obs.points.form import PointsForm
 from percept_obs.points.information import many_points
@@ -16,11 +16,8 @@ from percept_obs.tracking import Run
 from percept_obs.tracking.information import Fit
 from percept_obs.validation import checked
 
-Array = NDArray[np.float64]
-
-
 REMEDY = "choose a larger P or shorter steps, and look at conditions() if P is no longer positive definite"
-"""What to do about a run that diverged; live labs use the same words."""
+"""Advice for a run that diverged, also of live labs."""
 
 
 @checked
@@ -33,7 +30,7 @@ class PointsRun(Run):
     recording, observer, estimate, state, diverged_at, hold, resets, unobservable
         See `Run`; the estimate is the state of the observer.
     began : array of shape (K, p) of bool
-        Where a point was given a start.
+        True where a point was given a start.
     kept : integer array of shape (T,)
         Samples at which P was kept.
     P : array of shape (T, n, n)
@@ -49,8 +46,8 @@ class PointsRun(Run):
     [0.245, 0.117]
     """
 
-    began: NDArray[np.bool_]
-    kept: NDArray[np.intp]
+    began: Flags
+    kept: Indices
     P: Array
 
     @property
@@ -87,7 +84,7 @@ class PointsRun(Run):
 
     @property
     def remedy(self) -> str:
-        """What to do about it if it diverged."""
+        """Advice if it diverged."""
         return REMEDY
 
     @property
@@ -102,15 +99,15 @@ class PointsRun(Run):
         ValueError
             If fewer than two samples lie between the times, or the error is not finite and positive there.
         """
-        part = (self.time >= begin) & (self.time <= end)
-        size = self.deviation[part]
-        if part.sum() < 2 or not (np.isfinite(size) & (size > 0)).all():
+        inside = (self.time >= begin) & (self.time <= end)
+        size = self.deviation[inside]
+        if inside.sum() < 2 or not (np.isfinite(size) & (size > 0)).all():
             raise ValueError(
-                f"between {begin} and {end} s there are {part.sum()} samples, with errors from "
+                f"between {begin} and {end} s there are {inside.sum()} samples, with errors from "
                 f"{size.min(initial=0):.3g} to {size.max(initial=0):.3g}; an exponential needs two finite positive ones"
             )
-        return float(-np.polyfit(self.time[part], np.log(size), 1)[0])
+        return float(-np.polyfit(self.time[inside], np.log(size), 1)[0])
 
     def conditions(self, epsilon: float = 1.0) -> Conditions:
-        """The inequality (15) and the weaker sufficient one along the run, with epsilon above 0 and at most 2."""
+        """Evaluate the inequality (15) and the weaker sufficient one along the run; 0 < epsilon <= 2."""
         return conditions(self.observer, self.time[self.kept], self.recording.outputs[self.kept], self.P, epsilon)

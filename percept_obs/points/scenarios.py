@@ -17,7 +17,7 @@ OFFSET = (0.5, -0.3, 0.4)
 
 @checked
 def moving_body(points: int = 1) -> PointsScenario:
-    """A rigid body that stays in the view of a turning camera, for 60 s.
+    """Scenario of a rigid body that stays in the view of a turning camera, for 60 s.
 
     The camera moves as in `Manoeuvre`, whose path the first point follows.  The second one is at `OFFSET` from it;
     further ones are drawn at random, always the same, from a cube of 1 m around it.
@@ -32,7 +32,7 @@ def moving_body(points: int = 1) -> PointsScenario:
 
 @checked
 def lost_offset() -> PointsScenario:
-    """The same body, of which the camera sees the first point only: the second one's place is lost."""
+    """Scenario of two points of which the camera sees the first one only: the second one's offset is lost."""
     two = moving_body(2)
     form = PointsForm(two.form.motion, two.form.blocks[:1], names=two.form.names)
     return PointsScenario("the second point is not seen", form, two.state, 60.0)
@@ -40,6 +40,6 @@ def lost_offset() -> PointsScenario:
 
 @checked
 def along_the_line_of_sight() -> PointsScenario:
-    """A point that recedes along its ray: the images stand still, and its depth is lost."""
+    """Scenario of a point that recedes along its ray: the images stand still, and its depth is lost."""
     form = PointsForm(linear(np.zeros((3, 3)), [0.04, 0.02, 0.2]), np.eye(3), names=("X", "Y", "Z"))
     return PointsScenario("along the line of sight", form, (0.4, 0.2, 2.0), 60.0)

@@ -1,4 +1,4 @@
-"""A state in motion whose points a camera may see."""
+"""Scenarios of many points."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PointsScenario(Scene):
     duration : float
         In seconds.
     source : str
-        Where the set-up comes from.
+        Source of the set-up.
 
     Raises
     ------
@@ -88,7 +88,12 @@ class PointsScenario(Scene):
             A, v = form.coefficients(times[:1])
             path = constant_path(A[0], v[0], start, times)
         else:
-            path = varying_path(self._rate, start, times, () if signal.times is None else signal.times)
+
+            def rate(time: float, state: Array) -> Array:
+                A, v = form.coefficients(float(time))
+                return A[0] @ state + v[0]
+
+            path = varying_path(rate, start, times, () if signal.times is None else signal.times)
         bounded = np.isfinite(path).all(axis=1)
         if not bounded.all():
             when = times[np.argmin(bounded)]
@@ -96,7 +101,3 @@ class PointsScenario(Scene):
                 f"the state of {self.name!r} leaves every bound at {when:.4g} s; shorten the duration"
             )
         return path
-
-    def _rate(self, time: float, state: Array) -> Array:
-        A, v = self.form.coefficients(float(time))
-        return A[0] @ state + v[0]

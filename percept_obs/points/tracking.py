@@ -22,22 +22,22 @@ from percept_obs.tracking.grid import TimeGrid
 from percept_obs.validation import checked, numbers
 
 KEPT = 100
-"""Samples, about, at which P is kept and its conditions are looked at."""
+"""Approximate number of samples at which P is kept for its conditions."""
 
 
 @checked
 @dataclass(frozen=True)
 class FirstSight:
-    """A start for several points: at first sight each is put on its ray.
+    """Start of several points: at first sight each is put on its ray.
 
-    The states that no point seen before uses take the depth in, and P starts anew for these.
+    The states that no point seen before uses are set by the depth, and P starts anew for these.
 
     Parameters
     ----------
     depth : float
         In metres.
     absence : float
-        Seconds out of sight after which it is a first sight again.
+        Seconds out of sight after which a point begins anew.
 
     Raises
     ------
@@ -66,12 +66,12 @@ class FirstSight:
 @follow.register
 def _follow_points(
     observer: LuenbergerObserver,
-    along: TimeGrid,
+    grid: TimeGrid,
     start: FirstSight | Sequence[float] | None,
     believed: Motion | None,
     language: Language | None,
 ) -> PointsRun:
-    form, matrix, recording, time = observer.form, observer.P, along.recording, along.recording.time
+    form, recording, time = observer.form, grid.recording, grid.recording.time
     if believed is not None:
         raise DoesNotFit("this observer believes in the motion of its form; make it of a form with another motion")
     if not form.fits(recording.view):
@@ -89,32 +89,31 @@ def _follow_points(
     for sighting in recording.sightings(sight.absence) if sight else ():
         began[sighting.first, sighting.point] = True
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
-    coefficients, held = form.numbers(along.instants), along.held(filled=False)
-    held = np.broadcast_to(held, (len(held), EACH + 1, *held.shape[2:]))
-    spoken = choose(language, len(along.times) * form.states)
-    task = _Task(along, form, matrix, coefficients, held, began, sight, kept, spoken)
+    images = grid.held(filled=False)
+    images = np.broadcast_to(images, (len(images), EACH + 1, *images.shape[2:]))
+    language = choose(language, len(grid.times) * form.states)
+    task = _Task(observer, grid, form.numbers(grid.instants), images, began, sight, kept, language)
     state, P = np.full((len(time), form.states), np.nan), np.zeros((len(kept), form.states, form.states))
     ends = []
-    for states, points in _independent(form, matrix):
+    for states, points in _independent(form, observer.P):
         state[:, states], P[:, states[:, None], states], end = _follow(task, states, points, x[states])
         ends.append(end)
     diverged_at = min((end for end in ends if end is not None), default=None)
     if diverged_at is not None:
         state[time >= diverged_at] = np.nan
         P, kept = P[time[kept] < diverged_at], kept[time[kept] < diverged_at]
-    never = np.zeros(len(time), dtype=int)
-    return PointsRun(recording, observer, state, state, diverged_at, along.hold, np.empty(0), never, began, kept, P)
+    observable = np.zeros(len(time), dtype=int)
+    return PointsRun(recording, observer, state, state, diverged_at, grid.hold, np.empty(0), observable, began, kept, P)
 
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """What is to be followed, at which steps."""
+    """An observer and its tables, for all groups of states."""
 
-    along: TimeGrid
-    form: PointsForm
-    matrix: LyapunovMatrix
+    observer: LuenbergerObserver
+    grid: TimeGrid
     coefficients: Array
-    held: Array
+    images: Array
     began: Flags
     sight: FirstSight | None
     kept: Indices
@@ -122,7 +121,7 @@ class _Task:
 
 
 def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices, Indices]]:
-    """States, and the points that they make, that nothing couples with the others: neither A, nor C, nor P."""
+    """Groups of states, and their points, that neither A, nor C, nor P couples with each other."""
     from scipy.sparse.csgraph import connected_components
 
     layout, n = form.layout, form.states
@@ -137,43 +136,43 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices
 
 
 def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Array, Array, float | None]:
-    """Estimates at all samples, P at the kept ones, and when the estimate diverged."""
-    matrix, along = task.matrix, task.along
-    time, grid, index = along.recording.time, along.times, along.index
-    block = np.ix_(states, states)
+    """Estimates of a group at all samples, P at the kept ones, and the time at which the estimate diverged."""
+    matrix, grid, index = task.observer.P, task.grid, task.grid.index
+    time, block = grid.recording.time, np.ix_(states, states)
     P, n = matrix.start[block].copy(), len(states)
     pull = matrix.forgetting * P - matrix.decrease[block]
-    loop = arrays(task.form, states, points)
+    loop = arrays(task.observer.form, states, points)
     law = (matrix.computed, matrix.information, matrix.forgetting, pull)
     stops = np.union1d(task.kept, np.flatnonzero(task.began[:, points].any(axis=1)))
     inverses = np.zeros((1, 1, 1))
     state, at_kept = np.full((len(time), n), np.nan), np.full((len(task.kept), n, n), np.nan)
+    # the loop runs from stop to stop, where P is kept or points begin
     for first, last in zip(stops, [*stops[1:], None], strict=True):
-        if task.began[first, points].any():
-            x, P = _begin(task, int(first), states, points, x, P)
+        if task.sight is not None and task.began[first, points].any():
+            x, P = _begin(task, task.sight, int(first), states, points, x, P)
         at_kept[task.kept == first] = P if matrix.computed else matrix.at(time[first])[0][block]
         state[first] = x
         if last is None:
             break
-        part = slice(index[first], index[last])
-        rows = slice(EACH * part.start, EACH * part.stop + 1)
+        steps = slice(index[first], index[last])
+        rows = slice(EACH * steps.start, EACH * steps.stop + 1)
         if not matrix.computed and (first == stops[0] or not matrix.constant):
-            inverses = _inverses(matrix.at(along.instants[rows])[:, block[0], block[1]])
-        steps, images = along.steps[part], task.held[part][:, :, points]
+            inverses = _inverses(matrix.at(grid.instants[rows])[:, block[0], block[1]])
         known = task.coefficients if len(task.coefficients) == 1 else task.coefficients[rows]
-        path, P, diverged = advance(loop, law, x, P, steps, known, inverses, images, task.language)
+        images = task.images[steps][:, :, points]
+        path, P, diverged = advance(loop, law, x, P, grid.steps[steps], known, inverses, images, task.language)
         state[first : last + 1] = path[index[first : last + 1] - index[first]]
         x = path[-1]
         if diverged is not None:
-            return state, at_kept, float(grid[index[first] + diverged])
+            return state, at_kept, float(grid.times[index[first] + diverged])
     return state, at_kept, None
 
 
-def _begin(task: _Task, sample: int, states: Indices, points: Indices, x: Array, P: Array) -> tuple[Array, Array]:
-    """The estimate and P with the points that begin at a sample on their rays."""
-    recording, form, sight = task.along.recording, task.form, task.sight
-    if sight is None:
-        return x, P
+def _begin(
+    task: _Task, sight: FirstSight, sample: int, states: Indices, points: Indices, x: Array, P: Array
+) -> tuple[Array, Array]:
+    """Estimate and P with the points that begin at a sample put on their rays."""
+    recording, form = task.grid.recording, task.observer.form
     recent = recording.time[:sample] >= recording.time[sample] - sight.absence
     new = task.began[sample, points]
     others = recording.seen[:sample][recent][:, points].any(axis=0) & ~new
@@ -187,11 +186,12 @@ def _begin(task: _Task, sample: int, states: Indices, points: Indices, x: Array,
     x, P = x.copy(), P.copy()
     x[free] = np.linalg.lstsq(rows[:, free], goal.ravel() - rows[:, ~free] @ x[~free], rcond=None)[0]
     P[free] = P[:, free] = 0
-    P[np.ix_(free, free)] = task.matrix.start[np.ix_(states[free], states[free])]
+    P[np.ix_(free, free)] = task.observer.P.start[np.ix_(states[free], states[free])]
     return x, P
 
 
 def _inverses(P: Array) -> Array:
+    """Inverses of matrices; raise ValueError unless all are positive definite."""
     if not (np.isfinite(P).all() and (np.linalg.eigvalsh((P + np.swapaxes(P, 1, 2)) / 2) > 0).all()):
         raise ValueError("P is singular or not positive definite at some time; it must stay positive definite")
     return np.asarray(np.linalg.inv(P))

@@ -16,14 +16,14 @@ from percept_obs.validation import checked
 
 @checked
 def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Sequence[int] | None = None) -> Recording:
-    """All landmarks that the moving camera follows, as points of one state in its frame.
+    """Read all landmarks that the moving camera follows, as points of one state in its frame.
 
     Parameters
     ----------
     path : path, optional
-        See `find_utias`, also for what is raised.
+        See `find_utias`.
     landmarks : sequence of int, optional
-        Which of them; all that have a track when left out, in increasing order.
+        Numbers of the landmarks; all that have a track, in increasing order, when left out.
 
     Returns
     -------
