@@ -1,4 +1,4 @@
-"""Structure and motion from a scaled inverse depth: choices of what is known, and their canonical forms."""
+"""Structure and motion from a scaled inverse depth: choices of unknowns, and their canonical forms."""
 
 from percept_obs.structure.choice import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.structure.corollaries import COROLLARIES, Corollary

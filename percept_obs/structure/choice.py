@@ -1,4 +1,4 @@
-"""Structure and motion from a scaled inverse depth: which unknowns a choice of known ones leaves observable."""
+"""Structure and motion from a scaled inverse depth: choices of unknowns, and if they are observable."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from percept_obs.system.view import DISTANCE, OnePoint, View
 from percept_obs.validation import checked, numbers
 
 QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
-"""What may be unknown: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
+"""Names of possible unknowns: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
 
 
 class ImpossibleChoice(ValueError):
-    """These unknowns cannot be told apart, or what is said of them is contradictory."""
+    """The unknowns cannot be told apart, or the statements about them contradict each other."""
 
 
 @checked
 @dataclass(frozen=True)
 class StructureAndMotion(OnePoint):
-    """A choice of what is unknown among the scale, the camera's and the object's velocity.
+    """Choice of unknowns among the scale, the camera's and the object's velocity.
 
     The measured rate is linear in at most three unknowns theta, whatever the choice::
 
@@ -55,7 +55,11 @@ class StructureAndMotion(OnePoint):
     Raises
     ------
     ImpossibleChoice
-        If the unknowns cannot be told apart, or what is said of a quantity is contradictory.
+        If the unknowns cannot be told apart, or the statements about a quantity contradict each other.
+
+    See Also
+    --------
+    semigeneral : Two choices, one after the other.
 
     Notes
     -----
@@ -93,6 +97,7 @@ class StructureAndMotion(OnePoint):
             raise ImpossibleChoice(reason)
 
     def _contradiction(self) -> str:
+        """Statements about a quantity that contradict each other, in words; empty if there are none."""
         both = [name for name in self.unknown if name in (*self.zero, *self.earlier)]
         if both:
             return f"{', '.join(both)} cannot be unknown and known at once; take it out of one of the lists"
@@ -105,7 +110,7 @@ class StructureAndMotion(OnePoint):
         return ""
 
     def _ambiguity(self) -> str:
-        """Why the unknowns cannot be told apart; empty if they can."""
+        """Reason why the unknowns cannot be told apart; empty if they can."""
         if not self.unknown:
             return f"nothing is unknown; name one to three of {', '.join(QUANTITIES)}"
         if len(self.unknown) > len(OUTPUTS):
@@ -130,12 +135,12 @@ class StructureAndMotion(OnePoint):
     def known_velocity(self) -> tuple[sp.Expr, ...]:
         """Components of v_c - v_p along the axes on which both are known, those that are zero left out."""
         axes = zip(CAMERA, OBJECT, strict=True)
-        known = ((c - o).xreplace(self._absent) for c, o in axes if not {c.name, o.name} & set(self.unknown))
+        known = ((c - o).xreplace(self._zeros) for c, o in axes if not {c.name, o.name} & set(self.unknown))
         return tuple(filter(None, known))
 
     @property
     def theta(self) -> tuple[sp.Expr, ...]:
-        """What the hidden coordinates of the form stand for, in d_s and the velocities."""
+        """Hidden coordinates of the form in terms of d_s and the velocities."""
         scale = d_s if d_s.name in (*self.unknown, *self.earlier) else sp.S.One
         return tuple(d_s if name == d_s.name else scale * _symbol(name) for name in self.unknown)
 
@@ -147,7 +152,7 @@ class StructureAndMotion(OnePoint):
     def split(self, outputs: tuple[sp.Symbol, ...], rate: sp.ImmutableMatrix, view: View) -> CanonicalForm:
         """The canonical form of measured outputs whose rate is given in d_s and the velocities."""
         hidden = sp.symbols(f"theta1:{len(self.unknown) + 1}", real=True)
-        rate = rate.xreplace(self._absent).xreplace(self._in_theta(hidden))
+        rate = rate.xreplace(self._zeros).xreplace(self._in_theta(hidden))
         rate = sp.ImmutableMatrix([*rate, *sp.zeros(len(hidden), 1)])
         names, parameters = [symbol.name for symbol in outputs], (*self._known, *self.parameters)
         return partition((*outputs, *hidden), rate, names, parameters, view).canonical_form()
@@ -158,7 +163,7 @@ class StructureAndMotion(OnePoint):
         return tuple(s for s in (*ROTATION, *CAMERA, *OBJECT) if s.name not in (*self.unknown, *self.zero))
 
     def known_motion(self, motion: Motion) -> Motion:
-        """What is known of a rigid motion: the signals of its known parameters.
+        """Signals of the known parameters of a rigid motion.
 
         Parameters
         ----------
@@ -175,9 +180,9 @@ class StructureAndMotion(OnePoint):
         if motion.signal is None:
             raise ValueError("the motion has no numbers; build it with those that are known, rigid(w, v_c, v_p)")
         known = [motion.parameters.index(symbol) for symbol in self._known]
-        absent = [motion.parameters.index(symbol) for symbol in self._absent]
+        absent = [motion.parameters.index(symbol) for symbol in self._zeros]
 
-        def taken(rows: Array) -> Array:
+        def select(rows: Array) -> Array:
             if rows[..., absent].any():
                 raise ImpossibleChoice(
                     f"{', '.join(self.zero)} are said to be zero, but the motion has values up to "
@@ -187,9 +192,9 @@ class StructureAndMotion(OnePoint):
 
         known_over_time, samples = motion.signal.at, motion.signal.samples
         if callable(samples):
-            signal = Signal(OverTime(lambda times: taken(known_over_time(times))))
+            signal = Signal(OverTime(lambda times: select(known_over_time(times))))
         else:
-            signal = Signal(taken(samples), motion.signal.times)
+            signal = Signal(select(samples), motion.signal.times)
         return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
 
     def _in_theta(self, hidden: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:
@@ -199,7 +204,7 @@ class StructureAndMotion(OnePoint):
         return {_symbol(n): theta if n == d_s.name else theta / scale for n, theta in by_name.items()}
 
     @property
-    def _absent(self) -> dict[sp.Symbol, sp.Expr]:
+    def _zeros(self) -> dict[sp.Symbol, sp.Expr]:
         return dict.fromkeys(map(_symbol, self.zero), sp.S.Zero)
 
     @property
@@ -210,18 +215,18 @@ class StructureAndMotion(OnePoint):
         """
         hidden = sp.ImmutableMatrix(self.form.x2)
         difference = sp.ImmutableMatrix([d_s * (o - c) for c, o in zip(CAMERA, OBJECT, strict=True)])
-        moved = difference.xreplace(self._absent).xreplace(self._in_theta(tuple(hidden))).expand()
+        moved = difference.xreplace(self._zeros).xreplace(self._in_theta(tuple(hidden))).expand()
         return moved.jacobian(hidden), moved.xreplace(dict.fromkeys(hidden, sp.S.Zero))
 
     @cached_property
     def determinant(self) -> sp.Expr:
-        """What must not vanish: det Omega_g, factored; with fewer unknowns than outputs det(Omega_g^T Omega_g)."""
+        """Determinant of Omega_g, factored; with fewer unknowns than outputs, of Omega_g^T Omega_g."""
         w = self.form.w
         return sp.factor(w.T.det() if w.is_square else (w * w.T).det())
 
     @property
     def condition(self) -> sp.Basic:
-        """The observability condition; it holds where the determinant is not zero, for d_s > 0."""
+        """Observability condition; it holds where the determinant is not zero, for d_s > 0."""
         finite = sp.Ne(ybar3, 0)
         if d_s.name not in self.unknown:
             return finite
@@ -229,7 +234,7 @@ class StructureAndMotion(OnePoint):
 
     @property
     def zero_set(self) -> str:
-        """Where the unknowns are not observable, in words."""
+        """Places where the unknowns are not observable, in words."""
         far = "where ybar3 = 0: the point is infinitely far"
         if d_s.name not in self.unknown:
             return far
@@ -237,7 +242,7 @@ class StructureAndMotion(OnePoint):
         return f"{far}; and where {stands_still}: no known velocity is left that the scale could be compared with"
 
     def sensitivity(self) -> sp.ImmutableMatrix:
-        """What errors of ybar3 and of its rate do to theta, to first order.
+        """Sensitivity of theta to errors of ybar3 and of its rate, to first order.
 
         Returns
         -------
@@ -259,7 +264,7 @@ class StructureAndMotion(OnePoint):
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
     def quantities(self, theta: ArrayLike) -> dict[str, Array]:
-        """The unknown quantities by name, from values of theta.
+        """Unknown quantities by name, from values of theta.
 
         Parameters
         ----------
@@ -289,13 +294,13 @@ class StructureAndMotion(OnePoint):
 
     @property
     def judged(self) -> str:
-        """What is unknown; with the scale, the distance."""
+        """Names of the unknowns; for the scale, the distance."""
         return ", ".join(DISTANCE if name == d_s.name else name for name in self.unknown)
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """Largest relative error of the unknowns, shape (K,); see `View`.
 
-        That of a velocity is relative to the greatest speed of the point against the camera.
+        Errors of velocities are relative to the greatest speed of the point relative to the camera.
         """
         error = np.where(np.isfinite(estimate).all(axis=-1), 0.0, np.nan)
         if d_s.name in self.unknown:
@@ -309,7 +314,7 @@ class StructureAndMotion(OnePoint):
         return error
 
     def _greatest_speed(self, truth: Array, known: Array) -> float:
-        """Of the point against the camera, |v_p - v_c|, in m/s."""
+        """Greatest speed of the point relative to the camera, |v_p - v_c|, in m/s."""
         theta = truth[:, len(OUTPUTS) :]
         scale = [self.values[symbol] for symbol in self.parameters]
         columns = np.broadcast_to(known, (len(theta), known.shape[1])).T
@@ -319,18 +324,18 @@ class StructureAndMotion(OnePoint):
 
     @cached_property
     def _scaled_velocity(self) -> list[sp.Expr]:
-        """Of the point against the camera, times d_s."""
+        """Velocity of the point relative to the camera, times d_s."""
         M, m = self.translation
         return list(M * sp.ImmutableMatrix(self.form.x2) + m)
 
     @property
     def name(self) -> str:
-        """What is unknown, in words."""
+        """Name of the view and of the unknowns."""
         return f"scaled pinhole with {', '.join(self.unknown)} unknown"
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Measured outputs and then theta."""
+        """Symbols of measured outputs and theta."""
         return self.form.coordinates
 
     @property

@@ -1,4 +1,4 @@
-"""What noise does to each observer of structure and motion."""
+"""Observers of structure and motion side by side under noise."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @checked
 def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
-    """Observers of structure and motion on one recording, each in the coordinates that suit it.
+    """Set up all observers of structure and motion for one recording, each in the coordinates that suit it.
 
     The filters doubt each unknown with a process noise of 1 per second and know the variance of the noise.
 
@@ -82,14 +82,14 @@ def scale_spread(
     windows: Sequence[tuple[float, float]] = ((9.0, 10.0),),
     seed: int = 0,
 ) -> pd.DataFrame:
-    """How far d_s scatters in case IV.A of the experiment, for every competitor and every ratio of noise.
+    """Scatter of d_s in case IV.A of the experiment, for every observer and every ratio of noise.
 
     Parameters
     ----------
     decibels : sequence of floats
         Signal-to-noise ratios of the pixels of the simulations' camera, as `SignalToNoise` defines them.
     depth : DepthSource
-        Where ybar3 comes from; exact when left out.
+        Source of ybar3; exact when left out.
     windows : sequence of pairs of floats
         Times in seconds between which the scatter is taken.
     seed : int

@@ -1,4 +1,4 @@
-"""The cases that Chwa (2019) states, as choices of what is known."""
+"""Corollaries of Chwa (2019), as choices of known and unknown quantities."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from percept_obs.validation import checked
 @checked
 @dataclass(frozen=True)
 class Corollary:
-    """A case that the paper states (Chwa 2019, sections IV to VI, pp. 6-9).
+    """Corollary of the paper (Chwa 2019, sections IV to VI, pp. 6-9).
 
     Parameters
     ----------
     number : int
     section : str
     camera, object : str
-        Its cell of Table 1: how the camera and the object move.
+        Motions of the camera and the object, its cell of Table 1.
     unknown, zero, earlier : tuples of str
         As in `StructureAndMotion`, with the axes i, j, k for 1, 2, 3.
 
@@ -40,7 +40,7 @@ class Corollary:
     earlier: tuple[str, ...] = ()
 
     def choice(self, axes: str = "123", scale: float | None = None) -> StructureAndMotion:
-        """The case with the axes i, j, k in the given order, "123" in the paper's section VII.
+        """Choice of the corollary with the axes i, j, k in the given order, "123" in the paper's section VII.
 
         Raises
         ------
@@ -49,7 +49,7 @@ class Corollary:
         """
         if sorted(axes) != ["1", "2", "3"]:
             raise ValueError(f"the axes {axes!r} must be 1, 2 and 3 in some order")
-        order = str.maketrans("ijk", axes)  # of which d_s has none
+        order = str.maketrans("ijk", axes)
         unknown, zero, earlier = (
             tuple(name.translate(order) for name in group) for group in (self.unknown, self.zero, self.earlier)
         )

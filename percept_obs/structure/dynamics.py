@@ -1,4 +1,4 @@
-"""The dynamics of the scaled inverse depth, and the symbols in which they and all choices are written."""
+"""Dynamics of the scaled inverse depth, and the symbols of all choices."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ScaledDynamics:
 
 @lru_cache(maxsize=1)
 def scaled_dynamics() -> ScaledDynamics:
-    """The dynamics of the scaled inverse depth, derived from a rigid motion seen by a pinhole.
+    """Derive the dynamics of the scaled inverse depth from a rigid motion seen by a pinhole.
 
     Examples
     --------

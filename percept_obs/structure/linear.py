@@ -1,4 +1,4 @@
-"""The linear view of structure and motion: scaled positions, on which a Kalman filter needs no linearisation."""
+"""Linear view of structure and motion: scaled positions, for which a Kalman filter needs no linearisation."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ class LinearView(OnePoint):
 
     @property
     def name(self) -> str:
-        """What is unknown, in words."""
+        """Name of the view and of the unknowns."""
         return f"linear view of the {self.choice.name}"
 
     @property
     def coordinates(self) -> tuple[sp.Symbol, ...]:
-        """Scaled position and then theta."""
+        """Symbols of scaled position and theta."""
         return self.form.coordinates
 
     @property
@@ -85,7 +85,7 @@ class LinearView(OnePoint):
         return self.choice.values
 
     def fits(self, other: object) -> bool:
-        """Whether what is derived for this choice holds for the other."""
+        """True if formulas derived for this view hold for the other."""
         return isinstance(other, LinearView) and self.choice.fits(other.choice)
 
     def inverse(self, coordinates: ArrayLike) -> Array:
@@ -98,11 +98,11 @@ class LinearView(OnePoint):
 
     @property
     def judged(self) -> str:
-        """As of the choice."""
+        """Names of the unknowns, as of the choice."""
         return self.choice.judged
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
-        """As of the choice."""
+        """Largest relative error of the unknowns, shape (K,), as of the choice."""
         return self.choice.relative_error(self._ybar(truth), self._ybar(estimate), known)
 
     @staticmethod

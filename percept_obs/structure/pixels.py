@@ -1,4 +1,4 @@
-"""Pixels of Chwa's cameras: noise as a ratio of powers, and what several image points tell together."""
+"""Pixels of Chwa's cameras: noise as a ratio of powers, homographies, and the apparent size of an object."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class SignalToNoise:
 
 @checked
 def homography(reference: ArrayLike, images: ArrayLike) -> Array:
-    """Homographies that carry the image of a planar patch in a reference picture to its image in others.
+    """Homographies from the image of a planar patch in a reference picture to its image in others.
 
     With the motion X = R X* + t of points on the plane n . X* = d they are H = R + t n^T / d.  They are found by the
     direct linear transform, on coordinates shifted and scaled to their centre and spread, up to a factor that makes
@@ -69,6 +69,10 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     ValueError
         If there are fewer than four points, shapes differ, values are not finite, or the points lie on a line.
 
+    See Also
+    --------
+    percept_obs.structure.PatchDepth : The scaled inverse depth from it.
+
     Notes
     -----
     R. Hartley, A. Zisserman, Multiple View Geometry in Computer Vision (2004), section 4.1; Y. Ma, S. Soatto,
@@ -85,13 +89,13 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
         raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
     to_reference, to_images = _normalising(reference), _normalising(images)
-    p = _carried(to_images, images)
-    m = np.broadcast_to(_carried(to_reference, reference), p.shape)
-    if np.linalg.svd(_equations(m, m), compute_uv=False)[..., -2].min(initial=np.inf) < 1e-9:
+    p = _homogeneous(images) @ np.swapaxes(to_images, -1, -2)
+    m = np.broadcast_to(_homogeneous(reference) @ to_reference.T, p.shape)
+    if np.linalg.svd(_equations(m, m), compute_uv=False)[..., 7].min(initial=np.inf) < 1e-9:
         raise ValueError(
             "the points of the reference picture do not determine a map; take four of which no three lie on a line"
         )
-    solution = np.linalg.svd(_equations(m, p), full_matrices=False)[2][..., -1, :]
+    solution = np.linalg.svd(_equations(m, p))[2][..., -1, :]
     H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
     H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
     depths = H[..., 2, :] @ _homogeneous(reference).T
@@ -110,28 +114,20 @@ def apparent_size(images: ArrayLike) -> Array:
 
 
 def _equations(m: Array, p: Array) -> Array:
-    """The rows of the direct linear transform from points m to p, shape (..., 2 n + 1, 9)."""
+    """Rows of the direct linear transform from points m to p, shape (..., 2 n, 9)."""
     zero = np.zeros_like(m)
-    return np.concatenate(
-        [
-            np.concatenate([m, zero, -p[..., :1] * m], axis=-1),
-            np.concatenate([zero, m, -p[..., 1:2] * m], axis=-1),
-            np.zeros((*p.shape[:-2], 1, 9)),  # so that four points, with eight equations, have nine rows as well
-        ],
-        axis=-2,
-    )
+    first = np.concatenate([m, zero, -p[..., :1] * m], axis=-1)
+    second = np.concatenate([zero, m, -p[..., 1:2] * m], axis=-1)
+    return np.concatenate([first, second], axis=-2)
 
 
 def _homogeneous(points: Array) -> Array:
+    """Points (y1, y2, 1)."""
     return np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1)
 
 
-def _carried(transform: Array, points: Array) -> Array:
-    return _homogeneous(points) @ np.swapaxes(transform, -1, -2)
-
-
 def _normalising(points: Array) -> Array:
-    """The similarity that puts the points' centre at 0 and their root mean square distance to it at sqrt(2)."""
+    """Similarity after which the points' centre is 0 and their root mean square distance to it sqrt(2)."""
     centre, scale = points.mean(axis=-2), np.sqrt(2) / apparent_size(points)
     transform = np.zeros((*points.shape[:-2], 3, 3))
     transform[..., 0, 0] = transform[..., 1, 1] = scale

@@ -29,7 +29,7 @@ _CHWA_EXPERIMENT = {
 
 @checked
 def chwa2019_experiment(section: str) -> StructureScenario:
-    """A case of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
+    """Scenario of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ def chwa2019_experiment(section: str) -> StructureScenario:
 
 
 def _circling(time: float) -> list[float]:
-    """A camera's velocity that varies at up to 1 rad/s and keeps moving away along its axis."""
+    """Velocity in m/s of a camera that circles at up to 1 rad/s and moves away along its axis."""
     return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 - 0.1 * math.sin(time)]
 
 
 def _wandering(components: int) -> Callable[[float], list[float]]:
-    """An object's velocity that varies at up to 1 rad/s, in the first so many components."""
+    """Velocity in m/s of an object, varying at up to 1 rad/s in its first components."""
 
     def velocity(time: float) -> list[float]:
         whole = [0.2 * math.sin(0.7 * time), 0.2 * math.cos(time), 0.1 * math.sin(0.5 * time)]
@@ -75,7 +75,7 @@ _CHWA_SIMULATION = {
 
 @checked
 def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL) -> StructureScenario:
-    """A case of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
+    """Scenario of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
 
     The paper states y(0) = (0.4, 0.4, 0.2) and d_s = 4, and no velocities.  Here they vary at up to 1 rad/s where they
     need not be constant, keep the point in view, and fulfil the case's observability condition at all times.
@@ -107,7 +107,7 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
 
 @checked
 def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenario:
-    """An object that stands still and then moves, with both stages in one motion (Chwa 2019, section IV).
+    """Scenario of an object that stands still and then moves, both stages in one motion (Chwa 2019, section IV).
 
     Parameters
     ----------
@@ -133,8 +133,8 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     stages = [_stated(set_up, cases)[section] for section in ("IV.A", "IV.B")]
     still, moving = (chwa2019_simulation if set_up == "simulation" else chwa2019_experiment)("IV.A"), stages[1]
 
-    def at(time: float, part: int) -> Any:
-        velocity = stages[time > moves_at][part]
+    def at(time: float, column: int) -> Any:
+        velocity = stages[time > moves_at][column]
         return velocity(time - moves_at) if callable(velocity) else velocity
 
     motion = rigid(_STILL, lambda time: at(time, 1), lambda time: at(time, 2))
@@ -144,7 +144,7 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
 
 @checked
 def chwa2019_crossing() -> StructureScenario:
-    """Corollary 3 with a camera that turns back along its axis, so that v_c3 crosses 0 at 2.1 s and every 3.1 s."""
+    """Scenario of corollary 3 with a camera that turns back along its axis: v_c3 crosses 0 at 2.1 s and every 3.1 s."""
 
     def camera(time: float) -> list[float]:
         return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 * math.sin(time + 1.0)]
@@ -154,6 +154,7 @@ def chwa2019_crossing() -> StructureScenario:
 
 
 def _stated(section: str, cases: dict[str, Any]) -> Any:
+    """Case of a table; raise ValueError if there is none."""
     if section not in cases:
         raise ValueError(f"there is no case (section or set-up) {section!r}; there are {', '.join(cases)}")
     return cases[section]
@@ -162,7 +163,7 @@ def _stated(section: str, cases: dict[str, Any]) -> Any:
 def _structure(
     name: str, ybar: tuple[float, ...], scale: float, number: int, velocities: tuple[Any, ...], source: str
 ) -> StructureScenario:
-    """A point that starts at the given (y1, y2, ybar3), in the case of a corollary."""
+    """Scenario of a point that starts at the given (y1, y2, ybar3), in the case of a corollary."""
     depth = 1 / (scale * ybar[2])
     position, choice = (ybar[0] * depth, ybar[1] * depth, depth), COROLLARIES[number - 1].choice()
     return StructureScenario(name, rigid(*velocities), position, 10.0, pinhole(), source, scale=scale, choice=choice)

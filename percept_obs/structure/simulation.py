@@ -1,4 +1,4 @@
-"""Simulated pictures of an object, from which image coordinates and a scaled inverse depth are measured."""
+"""Simulated pictures of an object, and the image coordinates and scaled inverse depth measured from them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
 
 class DepthSource(Protocol):
-    """Where the scaled inverse depth comes from.
+    """Source of the scaled inverse depth.
 
     Examples
     --------
@@ -38,7 +38,7 @@ class DepthSource(Protocol):
 
     @property
     def offsets(self) -> Array:
-        """The object's points minus the tracked one at time 0, shape (n, 3), in metres; the tracked one comes first."""
+        """Offsets of the object's points from the tracked one at time 0, shape (n, 3), in metres; zero first."""
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """Scaled inverse depths, shape (K,).
@@ -48,7 +48,7 @@ class DepthSource(Protocol):
         images : array of shape (K, n, 2)
             Measured image coordinates of the object's points.
         exact : array of shape (K,)
-            What would be measured without errors.
+            Scaled inverse depths without errors.
         time : array of shape (K,)
             Seconds.
         generator : numpy Generator
@@ -58,13 +58,13 @@ class DepthSource(Protocol):
 @checked
 @dataclass(frozen=True)
 class GivenDepth:
-    """A scaled inverse depth that is given, with errors of one's choice: ybar3 + bias + drift t + noise.
+    """Scaled inverse depth that is given with errors: ybar3 + bias + drift t + noise.
 
     Parameters
     ----------
     noise : Uniform or Gaussian
     bias : float
-        In the unit of ybar3.  A constant factor would be no error: it changes what d_s is.
+        In the unit of ybar3.  A constant factor would be no error: it only changes d_s.
     drift : float
         Per second.
 
@@ -88,7 +88,7 @@ class GivenDepth:
 
     @property
     def offsets(self) -> Array:
-        """The tracked point alone."""
+        """Offset of the tracked point alone."""
         return np.zeros((1, 3))
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
@@ -99,7 +99,7 @@ class GivenDepth:
 @checked
 @dataclass(frozen=True, eq=False)
 class PatchDepth:
-    """The scaled inverse depth from the homography between the first picture of a planar patch and each other.
+    """Scaled inverse depth from the homography between the first picture of a planar patch and each other.
 
     With H scaled as in `homography` and the point's first image m*, the depth has become (H m*)_3 times the first, so
     that ybar3 is its first value over (H m*)_3.  Noise in the first picture becomes a constant factor of d_s.
@@ -134,7 +134,7 @@ class PatchDepth:
 
 @checked
 def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:
-    """Points of a square grid around a tracked one, as offsets from it.
+    """Offsets of the points of a square grid from the tracked one in its centre.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
 @checked
 @dataclass(frozen=True, eq=False)
 class StructureScenario(Scenario):
-    """A point of an object in rigid motion, its scale, and what is known of them.
+    """Scenario of a point of an object in rigid motion, with its scale and a choice of unknowns.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ class StructureScenario(Scenario):
     scale : float
         The true d_s in 1/m, so that ybar3 = y3 / d_s is measured.
     choice : StructureAndMotion
-        What is unknown.  If it knows d_s, it is given the true one.
+        Choice of unknowns.  If it knows d_s, it is given the true one.
 
     Raises
     ------
@@ -226,7 +226,7 @@ class StructureScenario(Scenario):
 
     @property
     def known_motion(self) -> Motion:
-        """What the choice knows of the motion."""
+        """Known part of the motion, by the choice."""
         return self.choice.known_motion(self.motion)
 
     @property
@@ -248,7 +248,7 @@ EXACT_DEPTH = GivenDepth()
 @checked
 @dataclass(frozen=True)
 class ScaledDepthCamera(Camera):
-    """A camera that measures (y1, y2, ybar3) of an object's tracked point from its pictures.
+    """Camera that measures (y1, y2, ybar3) of an object's tracked point from its pictures.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ class ScaledDepthCamera(Camera):
     depth: DepthSource = EXACT_DEPTH
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
-        """See `Camera`; the noise of the pixels is drawn first, then the depth source's, then the lost pictures.
+        """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
 
         Raises
         ------
@@ -303,18 +303,19 @@ class ScaledDepthCamera(Camera):
 
 
 def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
-    """Positions of the object's points, shape (K, n, 3): offsets turn with the rotation, in which they are linear."""
+    """Positions of the object's points, shape (K, n, 3): the offsets turn with the body."""
     tracked = scenario.points(time)
     if not offsets.any():
         return tracked[:, None]
-    beside = np.asarray(scenario.position) + np.eye(3)
-    turned = [replace(scenario, position=point).points(time) - tracked for point in beside.tolist()]
+    # the motion is affine in the position, so that unit offsets show how all offsets turn
+    unit = np.asarray(scenario.position) + np.eye(3)
+    turned = [replace(scenario, position=point).points(time) - tracked for point in unit.tolist()]
     return tracked[:, None] + offsets @ np.stack(turned, axis=1)
 
 
 @checked
 def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, scale: float | None = None) -> Recording:
-    """The same samples, with another choice of what is known.
+    """Recording of the same samples with another choice of unknowns.
 
     Parameters
     ----------
@@ -323,9 +324,20 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     choice : StructureAndMotion
         With a number for d_s if it is known.
     motion : Motion
-        From `rigid`; what is unknown in it is not used unless the truth is asked for.
+        From `rigid`; its unknown parameters are not used unless the truth is asked for.
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
+
+    Raises
+    ------
+    ValueError
+        If the scale is not positive.
+    ImpossibleChoice
+        If a velocity that is said to be zero is not.
+
+    See Also
+    --------
+    linear_view : In scaled positions.
 
     Examples
     --------
@@ -349,7 +361,7 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
 
 @checked
 def linear_view(recording: Recording) -> Recording:
-    """The same recording in scaled positions, for the Kalman filter.
+    """Recording in scaled positions, for the Kalman filter.
 
     Parameters
     ----------
@@ -360,6 +372,10 @@ def linear_view(recording: Recording) -> Recording:
     ------
     ValueError
         If it is of something else.
+
+    See Also
+    --------
+    seen_as : With other unknowns.
 
     Examples
     --------

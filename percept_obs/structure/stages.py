@@ -1,4 +1,4 @@
-"""Structure and motion of an object that first stands still and then moves, in two stages."""
+"""Two stages: structure of an object that stands still, then its motion."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 @checked
 @dataclass(frozen=True, eq=False)
 class SemigeneralRun:
-    """What two observers found, one after the other.
+    """Runs of two observers, one after the other.
 
     Parameters
     ----------
     static, moving : Run
-        Of the time in which the object stands still, and of that in which it moves.
+        Runs while the object stands still, and while it moves.
     found : mapping of names to floats
-        What the first stage handed on: d_s in 1/m and camera velocities in m/s.
+        Results of the first stage for the second: d_s in 1/m and camera velocities in m/s.
     """
 
     static: Run
@@ -68,17 +68,16 @@ def semigeneral(
     recording : Recording
         Of (y1, y2, ybar3), through both stages.
     motion : Motion
-        From `rigid`.  Known are its angular velocity and what `choice` knows of the camera's velocity; the rest is not
-        used unless the truth is asked for, or the camera's velocity is given.
+        From `rigid`.  Known are its angular velocity and the components of the camera's velocity that `choice` knows;
+        the rest is not used unless the truth is asked for, or the camera's velocity is given.
     moves_at : float
         When the object starts to move, in seconds.
     choice : StructureAndMotion, optional
-        What is unknown in the first stage; that of corollary 1 with v_c1 known when left out.
+        Unknowns of the first stage; those of corollary 1 with v_c1 known when left out.
     make : function of a form
         The observer of both stages.
     camera : "kept" or "given"
-        Whether the camera keeps the velocity that the first stage found, or its velocity in the second stage is given
-        anew by `motion`.
+        "kept" if the camera keeps the velocity that the first stage found; "given" if `motion` gives it anew.
     average : float
         Seconds before `moves_at` over which the first stage's estimates are averaged to be handed on; 0 for the last
         ones alone.
@@ -92,6 +91,10 @@ def semigeneral(
     ValueError
         If `moves_at` leaves one of the stages without two samples, `camera` is neither word, or the first stage has no
         estimate of a positive d_s to hand on.
+
+    See Also
+    --------
+    StructureAndMotion : One stage.
 
     Notes
     -----
@@ -130,11 +133,13 @@ def semigeneral(
 
 
 def _with_velocities(motion: Motion, found: dict[str, float]) -> Motion:
-    """The motion with the camera's velocities that were found."""
+    """Motion with some parameters replaced by constants."""
+    names = [symbol.name for symbol in motion.parameters]
 
     def known(times: Array) -> Array:
-        given = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters)))
-        columns = (found.get(symbol.name, column) for symbol, column in zip(motion.parameters, given.T, strict=True))
-        return np.stack([np.broadcast_to(column, len(times)) for column in columns], axis=-1)
+        rows = np.broadcast_to(motion.known(times), (len(times), len(names))).copy()
+        for name in set(names) & set(found):
+            rows[:, names.index(name)] = found[name]
+        return rows
 
     return replace(motion, signal=Signal(OverTime(known)))
