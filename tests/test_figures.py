@@ -30,7 +30,7 @@ from percept_obs import (
     track,
     windowed,
 )
-from percept_obs.figures import axis
+from percept_obs.figures import curves, look
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.tracking.verdict import TOLERANCE
 
@@ -175,7 +175,7 @@ def test_signals_draws_the_innovation_where_there_is_no_truth(runs):
 
 def test_bold_errors_are_root_mean_squares():
     values = np.array([3.0, 4.0, np.nan, 0.0, 1e200])
-    root = figures.curves._root_mean_square(values, 3)
+    root = curves._root_mean_square(values, 3)
     np.testing.assert_allclose(root, [np.sqrt(12.5), np.sqrt(12.5), np.nan, 1e200 / np.sqrt(2), 1e200 / np.sqrt(2)])
 
 
@@ -225,7 +225,7 @@ def test_labels_have_symbols_letters_and_units(runs):
 def bands(ax):
     """Times, lower and upper ends of the bands of two claimed standard deviations, clipped at the top of the axes."""
     for collection in ax.collections:
-        if collection.get_label() in (figures.curves.CLAIM, "_claim"):
+        if collection.get_label() in (curves.CLAIM, "_claim"):
             ends = np.vstack([path.vertices for path in collection.get_paths()])
             time = np.unique(ends[:, 0])
             yield time, *(np.array([pick(ends[ends[:, 0] == t, 1]) for t in time]) for pick in (np.min, np.max))
@@ -255,7 +255,7 @@ def test_compare_draws_the_band_of_those_that_claim_one(runs):
     (_, low, high), again = bands(figure.axes[0])
     np.testing.assert_allclose((high - low) / 4, np.sqrt(run.covariance[:, 2, 2]))
     np.testing.assert_array_equal(again[2], high)
-    assert sum(name == figures.curves.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
+    assert sum(name == curves.CLAIM for name in figure.axes[0].get_legend_handles_labels()[1]) == 1
     assert figure.text.count("The band of two claimed standard deviations") == 2
     assert figure.text.index("extended Kalman") < figure.text.index("The band of")
 
@@ -472,16 +472,15 @@ def test_compare_draws_the_truth_once_and_every_estimate(runs):
 
 
 def test_curves_differ_in_line_marker_and_colour():
-    looks = [figures.look.style(number) for number in range(4)]
+    looks = [look.style(number) for number in range(4)]
     for key in ("linestyle", "marker", "color"):
         assert len({str(look[key]) for look in looks}) == 4
-    every = [figures.look.style(number) for number in range(28)]
+    every = [look.style(number) for number in range(28)]
     assert len({(str(look["linestyle"]), look["marker"]) for look in every}) == 28  # without any colour
 
 
 def test_colours_are_those_of_okabe_and_ito():
     palette = {"#000000", "#e69f00", "#56b4e9", "#009e73", "#0072b2", "#d55e00", "#cc79a7"}
-    look = figures.look
     assert {to_hex(c) for c in (look.BLACK, look.SKY, *look.COLOURS)} <= palette
 
 
@@ -681,5 +680,5 @@ def test_an_image_of_one_output_alone_is_refused(runs):
 
 
 def test_an_axis_around_what_stays_shows_what_comes_near_it():
-    low, high = axis.limits([0.375] * 3, [0.25, 0.7, 40])
+    low, high = curves.limits([0.375] * 3, [0.25, 0.7, 40])
     assert low < 0.25 < 0.7 < high < 1

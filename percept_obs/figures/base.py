@@ -8,11 +8,11 @@ import inspect
 import io
 import os
 import sys
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 import matplotlib.figure
@@ -21,8 +21,11 @@ from matplotlib.axes import Axes
 
 from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
+from percept_obs.recording import Recording
+from percept_obs.tracking.run import Run
 
 P = ParamSpec("P")
+T = TypeVar("T")
 Drawing = Generator[str, None, Sequence[Axes]]
 """Sentences about what is being drawn, empty ones where there is nothing to say, and in the end the axes."""
 
@@ -193,3 +196,63 @@ def legend_above(ax: Axes, centred: bool = False, fitting: int = 80) -> None:
     for handle in legend.get_lines():
         if handle.get_marker() == ".":
             handle.set(markersize=8, alpha=1)
+
+
+def require(data: Any, kinds: type | tuple[type, ...], source: str) -> None:
+    """Refuse what is of none of the kinds; the source says what makes one."""
+    names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+    if not isinstance(data, kinds):
+        raise ValueError(f"{' or '.join(map(_with_article, names))} is needed, not {data!r}; {source} makes one")
+
+
+def require_several(data: T | Iterable[T], kind: type[T], source: str) -> list[T]:
+    """One or several of a kind as a list; the source says what makes one."""
+    found: list[Any] = list(data) if isinstance(data, Iterable) else [data]
+    if not found or not all(isinstance(each, kind) for each in found):
+        raise ValueError(f"{_with_article(kind.__name__)} or several are needed, not {data!r}; {source} makes one")
+    return found
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'AEIO' else 'a'} {name}"
+
+
+def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:
+    """A recording, and what an observer made of it if there is a run."""
+    require(data, (Run, Recording), "track() or record()")
+    return (data.recording, data) if isinstance(data, Run) else (data, None)
+
+
+def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
+    """Runs as a list, whose times, surfaces and truths are the same."""
+    found = require_several(runs, Run, "track()")
+    first = found[0].recording
+    for number, run in enumerate(found[1:], 2):
+        other = run.recording
+        same = {
+            "surfaces": other.view.fits(first.view),
+            "times": np.array_equal(other.time, first.time),
+            "truths": equal(other.truth, first.truth),
+        }
+        differing = [what for what, alike in same.items() if not alike]
+        if differing:
+            raise ValueError(
+                f"run {number} followed another point than run 1: their {' and '.join(differing)} differ; draw runs on "
+                "one recording, or one figure for each"
+            )
+    return found
+
+
+def equal(one: Any, other: Any) -> bool:
+    """Whether two arrays are the same, or both are missing."""
+    return one is other if one is None or other is None else np.array_equal(one, other)
+
+
+def labels_for(labels: Sequence[str] | None, otherwise: Sequence[str]) -> list[str]:
+    """The labels if they are given, one for each of the others, or else these, numbered if they repeat."""
+    if labels is None:
+        repeated = len(set(otherwise)) < len(otherwise)
+        return [f"{name} [{k}]" if repeated else name for k, name in enumerate(otherwise, 1)]
+    if isinstance(labels, str) or len(labels) != len(otherwise):
+        raise ValueError(f"labels= is {labels!r}; a list of {len(otherwise)} is needed, one for each curve")
+    return list(labels)

@@ -1,4 +1,4 @@
-"""Curves over time: estimates, errors with their root mean square, and the bands that an observer claims."""
+"""Axes and curves: limits that hold what matters, errors with their root mean square, bands that an observer claims."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,14 +6,79 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike
 
-from percept_obs.figures import given
+from percept_obs.figures import base, describe, look
 from percept_obs.figures.base import Array
-from percept_obs.figures.look import BOUND, GREY
 from percept_obs.observability.bound import Bound
 from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_interval
 from percept_obs.tracking.run import Run
+
+ROUND_OFF = 1e-16
+"""Below it, what should be positive is round-off; no logarithmic axis goes further down."""
+
+NARROWEST = 0.4
+"""Least ratio of the sides of a picture in space or in the image."""
+
+
+def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
+    """Ends of an axis that holds all firm values, and those loose ones that are at most some spans away from them."""
+    firm, loose = describe.finite(firm), describe.finite(loose)
+    low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
+    constant = high - low <= 1e-3 * abs(high)
+    size = max(abs(high) / 2 if constant else high - low, 1e-12)
+    near = loose[(loose >= low - reach * size) & (loose <= high + reach * size)]
+    low, high = near.min(initial=low), near.max(initial=high)
+    margin = 0.06 * max(high - low, size)
+    return low - margin, high + margin
+
+
+def linear(ax: Axes, firm: Array, loose: Array, what: str, reach: float = 2.0) -> str:
+    """Let the axis follow the firm values, and say how many of the loose ones it leaves out."""
+    ends = limits(firm, loose, reach)
+    ax.set_ylim(*ends)
+    return _left_out(loose, ends, what)
+
+
+def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str = "") -> str:
+    """A logarithmic axis without the spikes: towards zero where an error changes its sign, and before divergence."""
+    seen = describe.finite(values)
+    seen = seen[seen > 0]
+    low, high = np.percentile(seen, [3, 99.9], method="lower") if seen.size else (ROUND_OFF, 1.0)
+    bottom = max(10.0 ** np.floor(np.log10(low)), ROUND_OFF)
+    ax.set_ylim(bottom, max(10 * bottom, min(2 * high, highest)))  # first: there may be nothing to scale
+    ax.set_yscale("log")
+    ax.minorticks_off()
+    if ticks:
+        ax.yaxis.set_major_formatter(ticks)
+    return _left_out(values, (-np.inf, ax.get_ylim()[1]), what)
+
+
+def _left_out(values: Array, ends: tuple[float, float], what: str) -> str:
+    """Say how many values are not on the axis."""
+    seen = describe.finite(values)
+    outside = seen[(seen < ends[0]) | (seen > ends[1])]
+    return f"Outside the axis: {outside.size} of {what}, {describe.span(outside)}." if outside.size else ""
+
+
+def not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
+    """Limits, the nearer ones drawn apart until no side is much shorter than another."""
+    longest = max(high - low for low, high in ends)
+    missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
+    return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
+
+
+def complete(rows: Array) -> Array:
+    """The rows without a gap."""
+    return rows[np.isfinite(rows).all(axis=1)]
+
+
+def bulk(values: Array) -> Array:
+    """The values without the smallest and the largest twentieth, which may be a transient."""
+    seen = np.sort(describe.finite(values))
+    return seen[len(seen) // 20 : len(seen) - len(seen) // 20]
+
 
 SMOOTHING = 160
 """Noisy errors are averaged over the duration divided by this."""
@@ -22,34 +87,34 @@ CLAIM = r"$\pm 2\sigma$ claimed"
 """Name of the band that an observer's covariance claims."""
 
 
-def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
     """Curves with sparse markers, none of which lies on another."""
     step = max(1, len(time) // 8)
-    for number, (curve, name, look) in enumerate(zip(curves, labels, looks, strict=True)):
+    for number, (curve, name, style) in enumerate(zip(curves, labels, styles, strict=True)):
         every = (step * number // len(curves), step)
-        ax.plot(time, curve, label=name, linewidth=1.5, markersize=5, markevery=every, **look)
+        ax.plot(time, curve, label=name, linewidth=1.5, markersize=5, markevery=every, **style)
     ax.set_xlim(time[0], time[-1])
 
 
-def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], looks: Sequence[dict[str, Any]]) -> None:
+def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
     """Every error faintly, and over it the root mean square of its neighbourhood."""
     width = 2 * (len(time) // (2 * SMOOTHING)) + 1
     if width > 1:
-        for error, look in zip(errors, looks, strict=True):
-            ax.plot(time, error, color=look["color"], linewidth=0.5, alpha=0.25)
+        for error, style in zip(errors, styles, strict=True):
+            ax.plot(time, error, color=style["color"], linewidth=0.5, alpha=0.25)
         errors = np.array([_root_mean_square(error, width) for error in errors])
         note = f"bold: root mean square over {(time[-1] - time[0]) * width / len(time):.1g} s"
-        ax.set_title(note, loc="right", fontsize="small", color=GREY)
-    draw(ax, time, errors, labels, looks)
+        ax.set_title(note, loc="right", fontsize="small", color=look.GREY)
+    draw(ax, time, errors, labels, styles)
 
 
 def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) -> str:
     """Draw the least standard deviation of a coordinate under its errors, and say it."""
-    given.one(bound, Bound, "cramer_rao(recording, system)")
-    if not given.equal(bound.recording.truth, recording.truth):
+    base.require(bound, Bound, "cramer_rao(recording, system)")
+    if not base.equal(bound.recording.truth, recording.truth):
         raise ValueError("the bound is along another truth than the runs; draw runs on the recording of the bound")
     least = bound.of(coordinate)
-    ax.plot(bound.elapsed, least, label="Cramer-Rao bound", **BOUND)
+    ax.plot(bound.elapsed, least, label="Cramer-Rao bound", **look.BOUND)
     return (
         "No unbiased observer's root mean square error lies below the Cramer-Rao bound, a grey line from "
         f"{least[0]:.3g} to {least[-1]:.3g}, {', '.join(bound.form.measured)} measured."

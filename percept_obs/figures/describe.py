@@ -1,4 +1,4 @@
-"""What is seen, in words: how an axis and a sentence name a coordinate, and what happened to a run."""
+"""Names and sentences for what a figure shows: coordinates, spans of values, the verdict on a run."""
 
 import numpy as np
 import sympy as sp

@@ -1,0 +1,473 @@
+"""Figures of runs over time, of the scene in metres, and of a camera's velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from percept_obs.figures import base, curves, describe, look
+from percept_obs.figures.base import Array, Drawing, canvas, figure, legend_above, rows
+from percept_obs.observability.bound import Bound
+from percept_obs.recording import Recording
+from percept_obs.recording.poses import CameraPath
+from percept_obs.studies.consistency import claimed_distance
+from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
+
+RESIDUALS: tuple[dict[str, Any], ...] = (
+    {"color": look.BLUE, "linestyle": "-"},
+    {"color": look.GREEN, "linestyle": "-."},
+    {"color": look.VERMILLION, "linestyle": "--"},
+    {"color": look.PURPLE, "linestyle": ":"},
+    {"color": look.ORANGE, "linestyle": (0, (5, 1, 1, 1, 1, 1))},
+)
+"""Looks of the errors of one run."""
+
+JUDGED: dict[str, Any] = {"color": look.BLACK, "linestyle": "-"}
+"""Look of the error that the verdict judges."""
+
+
+@figure("it is no run, the number of axes is wrong, or the tolerance is not positive")
+def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOLERANCE) -> Drawing:
+    """Outputs, estimates and errors of a run over time.
+
+    One row a coordinate, with samples as dots, the truth solid and the estimate dashed, in a band of two claimed
+    standard deviations to either side if the observer claims a covariance; in the last row the absolute errors or, if
+    the recording has no truth, the absolute innovations.  The black line is the relative error that the verdict judges,
+    and the dotted one its tolerance.  Ticks along the top mark resets.
+
+    Parameters
+    ----------
+    run : Run
+    tolerance : float
+        Bound on the relative error, see `Run.outcome`.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.signals(run).text.split(". ")[1])
+    Converged: the relative error of the distance stays within 10 % after 1.91 s
+    """
+    base.require(run, Run, "track()")
+    names = [symbol.name for symbol in run.view.coordinates]
+    known = run.recording.truth is not None
+    what = "error" if known else "innovation"
+    *upper, last = rows(axes, [1.1] * len(names) + [1.6], [*names, f"the {what}"])
+    yield (
+        f"Outputs and estimates of the {run.observer.name} observer over {describe.times(run)}, with "
+        f"{', '.join(run.measured)} measured and {', '.join(run.observer.form.hidden)} hidden."
+    )
+    yield describe.story(run, tolerance)
+    for column, ax in enumerate(upper):
+        yield _coordinate(ax, run, column)
+    residuals = np.abs(run.error if known else run.innovation).T
+    names = names if known else list(run.measured)
+    looks = [RESIDUALS[number % len(RESIDUALS)] for number in range(len(residuals))]
+    labels = [describe.letter(name) for name in names]
+    if known:  # the tolerance is one of the relative error
+        relative = np.where(np.isfinite(run.relative_error), run.relative_error, np.nan)
+        residuals, names = np.vstack([residuals, relative]), [*names, f"{run.view.judged}, relative"]
+        looks, labels = [*looks, JUDGED], [*labels, names[-1]]
+    curves.draw_errors(last, run.elapsed, residuals, labels, looks)
+    if known:
+        last.axhline(tolerance, color=look.GREY, linewidth=1, linestyle=(0, (2, 2)))
+    last.set_ylabel(f"|{what}|")
+    yield curves.log(last, residuals, f"the {what}s")
+    yield _levels(run, residuals, names, what)
+    legend_above(last)
+    for ax in (*upper, last):
+        _mark_resets_and_divergence(ax, run)
+    legend_above(upper[0])
+    _say_where_it_diverged(last, run)
+    return [*upper, last]
+
+
+def _coordinate(ax: Axes, run: Run, column: int) -> str:
+    """Draw samples, truth and estimate of one coordinate, and say what they are."""
+    recording = run.recording
+    name = recording.view.coordinates[column].name
+    estimate = run.estimate[:, column]
+    firm, kind = curves.bulk(estimate), "estimated"
+    if name in run.measured:
+        firm, kind = recording.outputs[:, recording.names.index(name)], "measured"
+        ax.plot(run.elapsed, firm, **look.dots(firm))
+    if recording.truth is not None:
+        firm, kind = recording.truth[:, column], "true"
+        ax.plot(run.elapsed, firm, **look.TRUTH)
+    ax.plot(run.elapsed, estimate, **look.ESTIMATE)
+    ax.set_ylabel(describe.label(name, recording.view))
+    return describe.joined(
+        f"The {kind} {describe.coordinate(name, recording.view)} is {describe.span(firm)}.",
+        curves.linear(ax, firm, estimate, f"the estimates of {name}"),
+        curves.draw_claim_of_coordinate(ax, run, column, look.ESTIMATE["color"]),
+    )
+
+
+def _levels(run: Run, residuals: Array, names: Sequence[str], what: str) -> str:
+    """Root mean square over the last half, where there is no gap in it."""
+    late = {name: describe.finite(each[len(run.elapsed) // 2 :]) for name, each in zip(names, residuals, strict=True)}
+    levels = [f"{np.sqrt(np.mean(each**2)):.2g} ({name})" for name, each in late.items() if each.size]
+    over = f"; root mean square over the last half: {', '.join(levels)}" if levels else ""
+    return f"Below them the absolute {what}s on a logarithmic axis{over}."
+
+
+def _mark_resets_and_divergence(ax: Axes, run: Run) -> None:
+    ax.set_xlim(run.elapsed[0], run.elapsed[-1])
+    if len(run.resets):
+        top = ax.get_xaxis_transform()
+        ax.vlines(
+            run.resets - run.time[0],
+            1,
+            1.05,
+            transform=top,
+            color=look.PURPLE,
+            linewidth=1,
+            clip_on=False,
+            label="reset",
+        )
+    if run.diverged_at is not None:
+        diverged = run.diverged_at - run.time[0]
+        ax.axvspan(diverged, run.elapsed[-1], color=look.PALE, zorder=0)
+        ax.axvline(diverged, color=look.GREY, linewidth=1)
+
+
+def _say_where_it_diverged(ax: Axes, run: Run) -> None:
+    if run.diverged_at is None:
+        return
+    diverged = run.diverged_at - run.time[0]
+    aside, ha = (6, "left") if diverged < run.elapsed[-1] / 2 else (-6, "right")
+    place: dict[str, Any] = {
+        "xycoords": ax.get_xaxis_transform(),
+        "textcoords": "offset points",
+        "ha": ha,
+        "va": "center",
+    }
+    ax.annotate(f"diverged at {diverged:.3g} s", (diverged, 0.5), (aside, 0), **place)
+
+
+@figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
+def runs_over_time(
+    runs: Run | Sequence[Run],
+    labels: Sequence[str] | None = None,
+    coordinate: str | None = None,
+    axes: Sequence[Axes] | None = None,
+    tolerance: float = TOLERANCE,
+    bound: Bound | None = None,
+) -> Drawing:
+    """One coordinate as several observers estimate it, and their errors.
+
+    Around the estimates of an observer that claims a covariance there is a band of two standard deviations to either
+    side.
+
+    Parameters
+    ----------
+    runs : Run or sequence of Run
+        On one recording, or on several of the same point, such as with and without noise.
+    coordinate : str, optional
+        Such as "y1"; the inverse distance when left out.
+    tolerance : float
+        Bound on the relative error of the distance, for the verdicts.
+    bound : Bound, optional
+        From `cramer_rao` on the same truth: the least standard deviation, drawn under the errors.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.runs_over_time(run).text.split(": ", 2)[2])
+    Converged: the relative error of the distance stays within 10 % after 1.91 s.
+    """
+    runs = base.runs_of_one_point(runs)
+    labels = base.labels_for(labels, _descriptions(runs))
+    recording, view = runs[0].recording, runs[0].recording.view
+    if recording.truth is None:
+        raise ValueError(
+            "the recording has no truth to compare with; distance(runs) and signals(run) draw runs without one"
+        )
+    names = [symbol.name for symbol in view.coordinates]
+    coordinate = coordinate or names[-1]
+    if coordinate not in names:
+        raise ValueError(f"there is no coordinate {coordinate!r}; there are {', '.join(names)}")
+    column, said = names.index(coordinate), describe.coordinate(coordinate, view)
+    upper, lower = rows(axes, [2.2, 2.0], ["the estimates", "the errors"])
+    truth = recording.truth[:, column]
+    estimates = np.array([run.estimate[:, column] for run in runs])
+    errors = np.abs(truth - estimates)
+    looks = [look.style(number) for number in range(len(runs))]
+    upper.plot(recording.elapsed, truth, **look.TRUTH)
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
+    curves.draw_errors(lower, recording.elapsed, errors, labels, looks)
+    least = curves.draw_bound(lower, recording, bound, coordinate) if bound is not None else ""
+    upper.set_ylabel(describe.label(coordinate, view))
+    lower.set_ylabel(f"|error of {describe.letter(coordinate)}|")
+    outside = curves.linear(upper, truth, estimates, f"the estimates of {said}")
+    yield (
+        f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {_counted(runs)}, "
+        "and below them the absolute errors on a logarithmic axis."
+    )
+    for name, run, each in zip(labels, runs, looks, strict=True):
+        claim = curves.draw_claim_of_coordinate(upper, run, column, each["color"])
+        yield describe.joined(f"{name}:", describe.story(run, tolerance), claim)
+    yield outside
+    yield curves.log(lower, errors, "the errors")
+    yield least
+    legend_above(upper)
+    if least:
+        lower.legend(*(part[-1:] for part in lower.get_legend_handles_labels()), loc="upper right", frameon=False)
+    return [upper, lower]
+
+
+@figure("runs, labels or axes do not fit each other, or there is no such reference")
+def distance(
+    runs: Run | Sequence[Run],
+    labels: Sequence[str] | None = None,
+    reference: str | None = None,
+    axes: Sequence[Axes] | None = None,
+) -> Drawing:
+    """Depth or range in metres, and its relative error.
+
+    Whatever else measured the distance, the recording's `distances`, is drawn as dots.  For an observer that claims a
+    covariance there is a band of all distances whose inverse lies within two standard deviations of the estimate;
+    where these reach zero, the band has no upper end.  Without any reference there are no errors, and one row.
+
+    Parameters
+    ----------
+    runs : Run or sequence of Run
+        On one recording, or on several of the same point.
+    reference : str, optional
+        What the errors are relative to: "truth", or the name of one of the recording's `distances`.  The truth when
+        left out or, if the recording has none, the first of the distances.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.distance(run).text.split(". ")[1])
+    By the truth it is from 1.04 to 7.04 m
+    """
+    runs = base.runs_of_one_point(runs)
+    labels = base.labels_for(labels, _descriptions(runs))
+    recording = runs[0].recording
+    word, symbol = describe.depth_or_range(recording.view)
+    estimates = np.array([np.where(np.isfinite(run.distance), run.distance, np.nan) for run in runs])
+    known = _known_distances(recording)
+    reference = reference or next(iter(known), None)
+    if reference is not None and reference not in known:
+        raise ValueError(f"there is no reference {reference!r}; there are {', '.join(known) or 'none'}")
+    parts = [f"the {word}", *(["its relative error"] if reference else [])]
+    upper, *lower = rows(axes, [2.2, 1.8][: len(parts)], parts)
+    for name, values in known.items():
+        upper.plot(recording.elapsed, values, **(look.TRUTH if name == "truth" else look.dots(values, label=name)))
+    looks = [look.style(number) for number in range(len(runs))]
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
+    if np.isnan(estimates).all():
+        upper.text(0.5, 0.5, "no estimate in front of the camera", ha="center", transform=upper.transAxes)
+    upper.set_ylabel(f"{word} ${symbol}$ (m)")
+    firm = known[reference] if reference else curves.bulk(estimates)
+    errors = 100 * np.abs(estimates / firm - 1) if reference else np.full_like(estimates, np.nan)
+    outside = curves.linear(upper, firm, estimates, f"the estimated {word}", reach=0.5)
+    yield f"Estimated {word} in metres over {describe.times(runs[0])}, {_counted(runs)}."
+    for name, values in known.items():
+        yield f"By the {name} it is {describe.span(values)} m."
+    for name, run, error, each in zip(labels, runs, errors, looks, strict=True):
+        yield describe.joined(f"{name}:", _distance_story(run, error), _draw_claim(upper, run, each["color"]))
+    yield outside
+    legend_above(upper)
+    for ax in lower:
+        curves.draw_errors(ax, recording.elapsed, errors, labels, looks)
+        ax.set_ylabel("relative error (%)")
+        yield f"Below, the errors relative to the {reference}, in per cent on a logarithmic axis."
+        yield curves.log(ax, errors, "the relative errors", highest=1000, ticks="{x:g}")
+    return [upper, *lower]
+
+
+def _known_distances(recording: Recording) -> dict[str, Array]:
+    """The true distance, if there is one, and what else measured it."""
+    truth = {} if recording.truth is None else {"truth": recording.distance}
+    return {**truth, **recording.distances}
+
+
+def _draw_claim(ax: Axes, run: Run, colour: str) -> str:
+    """Draw the interval that the observer claims for the distance, and say it; nothing if it claims none."""
+    if run.observer.covariance is None or not isinstance(run.recording.view, ImagingSurface):
+        return ""
+    low, high = claimed_distance(run)
+    told = curves.draw_claim(ax, run, low, high, _known_distances(run.recording).get("truth"), colour)
+    unbounded = int(np.isposinf(high).sum())
+    reason = "it has no upper end, as the interval of the inverse distance reaches zero"
+    return describe.joined(told, f"In {unbounded} of {len(high)} samples {reason}." if unbounded else "")
+
+
+def _counted(runs: Sequence[Run]) -> str:
+    return "1 run" if len(runs) == 1 else f"{len(runs)} runs"
+
+
+def _descriptions(runs: Sequence[Run]) -> list[str]:
+    """What tells the runs apart: observers, measured outputs and differing gains."""
+    kinds = [f"{run.observer.name} ({', '.join(run.measured)})" for run in runs]
+    gains = [{gain.name: gain.value for gain in run.observer.gains} for run in runs]
+    found = []
+    for kind, own in zip(kinds, gains, strict=True):
+        others = [other for other, same in zip(gains, kinds, strict=True) if same == kind]
+        differing = [f"{name} {value:g}" for name, value in own.items() if any(o.get(name) != value for o in others)]
+        found.append(", ".join([kind, *differing]))
+    return found
+
+
+def _with_divergence(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
+    """Labels that say when a curve ends, and why."""
+    ends = ["" if run.diverged_at is None else f", diverged at {run.diverged_at:.3g} s" for run in runs]
+    return [f"{name}{end}" for name, end in zip(labels, ends, strict=True)]
+
+
+def _distance_story(run: Run, error: Array) -> str:
+    later = describe.finite(error[len(error) // 2 :])
+    behind = int((~np.isfinite(run.distance)).sum())
+    return describe.joined(
+        describe.story(run),
+        f"Over the last half its median relative error is {np.median(later):.2g} %." if later.size else "",
+        f"{behind} of {len(run.elapsed)} estimates are not in front of the camera: gaps." if behind else "",
+    )
+
+
+_CORNERS = [(1, 0.75, 2), (-1, 0.75, 2), (-1, -0.75, 2), (1, -0.75, 2)]
+_EDGES = [edge for corner in _CORNERS for edge in ((0, 0, 0), corner)]
+CAMERA = np.array([*_EDGES, *_CORNERS]) / 2
+"""Edges of a pyramid of height 1 that opens along Z, in one stroke."""
+
+
+@figure("no place is known, `far` is not more than 1, or the axes are flat")
+def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Drawing:
+    """The point's path in metres, with the camera at the origin and Z forward.
+
+    Parameters
+    ----------
+    data : Run or Recording
+        A recording alone must have its truth.
+    far : float
+        Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
+        Without the truth, the median of the estimated distances stands for it.
+
+    Examples
+    --------
+    >>> from percept_obs import figures, record, scenarios
+    >>> print(figures.scene(record(scenarios.ma2005_eq35(), 20)).text.split(". ")[-1])
+    The point ends at X, Y, Z = (3.78, 10.1, 7.04) m.
+    """
+    recording, run = base.recording_and_run(data)
+    if recording.points is None and run is None:
+        raise ValueError("the recording has no truth, so no place is known; draw the run of an observer on it")
+    if not far > 1:
+        raise ValueError(f"far is {far}; it must be more than 1")
+    if ax is not None and ax.name != "3d":
+        raise ValueError("the axes are flat; make them with figure.add_subplot(projection='3d')")
+    ax = canvas(ax, 5.6, projection="3d")
+    truth = np.empty((0, 3)) if recording.points is None else recording.points
+    estimate = np.empty((0, 3)) if run is None else _believable(run, far)
+    path = curves.complete(truth if len(truth) else estimate)
+    camera = 0.1 * np.abs(path).max(initial=1e-3) * CAMERA
+    _draw_in_space(ax, truth, **look.TRUTH)
+    _draw_in_space(ax, estimate, **look.ESTIMATE | {"linewidth": 0.9, "zorder": 1})
+    _draw_in_space(ax, camera, color=look.BLUE, linewidth=1, label="camera")
+    if len(path):
+        _draw_in_space(ax, np.array([(0, 0, 0), path[-1]]), color=look.GREY, linestyle=":", label="viewing ray")
+    _draw_in_space(ax, path[:1], color=look.BLACK, **look.START)
+    _draw_in_space(ax, path[-1:], color=look.BLACK, **look.END)
+    _set_equal_scales(ax, curves.complete(np.vstack([camera, truth, estimate])))
+    legend_above(ax, centred=True, fitting=66)
+    yield "Scene in metres, with the camera at the origin and Z forward."
+    yield _approach(recording.elapsed, truth) if len(truth) else ""
+    yield f"The point ends at X, Y, Z = {describe.place(path[-1])} m." if len(path) else "No place is known."
+    yield "" if run is None else f"Estimate of the {run.observer.name} observer, dashed. {describe.story(run)}"
+    if missing := len(estimate) - len(curves.complete(estimate)):
+        why = f"not in front of the camera or over {far:g} times as far away"
+        yield f"Left out: {missing} of {len(estimate)} estimates, {why}."
+    return [ax]
+
+
+def _draw_in_space(ax: Axes, points: Array, **looks: Any) -> None:
+    """Z to the right, X into the picture and Y upwards, which is right-handed."""
+    if len(points):
+        ax.plot(*points.T[[2, 0, 1]], **looks)
+
+
+def _set_equal_scales(ax: Any, points: Array) -> None:
+    """One scale for the three directions, and few numbers along them."""
+    x, y, z = curves.not_a_strip(*(curves.limits(column) for column in points.T[[2, 0, 1]]))
+    ax.set(xlim=x, ylim=y, zlim=z)
+    for set_label, name in ((ax.set_xlabel, "Z"), (ax.set_ylabel, "X"), (ax.set_zlabel, "Y")):
+        set_label(f"${name}$ (m)", labelpad=12)
+    ax.set_box_aspect(np.ptp([x, y, z], axis=1), zoom=0.76)
+    ax.locator_params(nbins=4)
+    ax.computed_zorder = False  # the truth stays above a noisy estimate
+
+
+def _believable(run: Run, far: float) -> Array:
+    """Estimated places, NaN where they are not in front of the camera or too far away."""
+    seen = describe.finite(run.distance)
+    usual = np.median(seen) if seen.size else 0.0
+    expected = usual if run.recording.truth is None else run.recording.distance
+    return np.where((run.distance < far * expected)[:, None], run.points, np.nan)
+
+
+def _approach(time: Array, points: Array) -> str:
+    ranges = np.linalg.norm(points, axis=1)
+    k = int(np.argmin(ranges))
+    extents = ", ".join(f"{name} {describe.span(column)}" for name, column in zip("XYZ", points.T, strict=True))
+    return f"The true path: {extents} m; closest to the camera at {time[k]:.3g} s, within {ranges[k]:.3g} m."
+
+
+_TRUTH = "truth"
+"""The label of the path that the others are compared with."""
+
+
+@figure("there are no paths, their times differ, or the axis is none of 0, 1 and 2")
+def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None = None) -> Drawing:
+    """Velocity along one of the camera's own axes, as several derivatives of the same poses have it.
+
+    Parameters
+    ----------
+    paths : mapping of labels to CameraPath
+        From `Poses.path`; one that is labelled "truth" is drawn solid, and the others are compared with it.
+    axis : int
+        0, 1 and 2 are x to the right, y down and z forward.
+
+    Examples
+    --------
+    >>> from percept_obs import Neighbours, Quadratic, figures, read_tum
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> poses = read_tum(worked_folder() / "poses.txt")
+    >>> paths = {"narrow": poses.path(Quadratic(0.1)), "neighbours": poses.path(Neighbours())}
+    >>> print(figures.velocities(paths).text.split(". ")[1])
+    narrow: from -0.226 to 0.226
+    """
+    if not paths or not all(isinstance(path, CameraPath) for path in paths.values()):
+        raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path(derivative) makes one")
+    time = next(iter(paths.values())).time
+    if not all(np.array_equal(path.time, time) for path in paths.values()):
+        raise ValueError("the paths have different times; draw derivatives of the same poses")
+    if axis not in (0, 1, 2):
+        raise ValueError(f"the axis is {axis!r}; it must be 0, 1 or 2")
+    ax = canvas(ax, 2.6)
+    elapsed, name = time - time[0], "xyz"[axis]
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel(f"velocity along {name} (m/s)")
+    ax.set_xlim(elapsed[0], elapsed[-1])
+    yield f"Velocity of the camera along its {name} axis in m/s, over {elapsed[-1]:.3g} s."
+    others = {label: path.velocity[:, axis] for label, path in paths.items() if label != _TRUTH}
+    true = paths[_TRUTH].velocity[:, axis] if _TRUTH in paths else None
+    for number, (label, values) in enumerate(others.items()):
+        style = {key: value for key, value in look.style(number).items() if key != "marker"}
+        ax.plot(elapsed, values, label=label, linewidth=1.3, **style)
+        off = "" if true is None else f", off by {np.sqrt(np.mean((values - true) ** 2)):.2g} m/s, root mean square"
+        yield f"{label}: {describe.span(values)}{off}."
+    if true is not None:
+        ax.plot(elapsed, true, **look.TRUTH)
+        yield f"The truth: {describe.span(true)}."
+    legend_above(ax)
+    return [ax]

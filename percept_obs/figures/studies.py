@@ -1,0 +1,342 @@
+"""Figures of studies: comparison, chatter, settings, believed motion, trust and diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from percept_obs.studies.comparison import summary
+
+if TYPE_CHECKING:
+    import pandas as pd
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from percept_obs.figures import base, curves, describe, look
+from percept_obs.figures.base import Drawing, canvas, canvases, figure, legend_above
+from percept_obs.studies.chatter import Effort
+from percept_obs.studies.diagnosis import Diagnosis
+from percept_obs.studies.sensitivity import SHARE, Sensitivity
+from percept_obs.studies.trust import TrustOverTime
+
+PANELS = {"settling_time": "settling time (s)", "rms": "rms error of 1/distance (1/m)"}
+
+_RUN: dict[str, Any] = {"color": look.SKY, "linestyle": "", "marker": "|", "markersize": 12}
+_SPREAD: dict[str, Any] = {"color": look.BLACK, "linewidth": 1.6, "marker": "|", "markersize": 6}
+_MEDIAN: dict[str, Any] = {"color": look.BLACK, "linestyle": "", "marker": "o", "markersize": 5}
+_NONE: dict[str, Any] = {"color": look.VERMILLION, "linestyle": "", "marker": "X", "markersize": 8}
+_KEY = {
+    "a run": _RUN,
+    "median": _MEDIAN,
+    "16 to 84 % of the runs": _SPREAD,
+    "none: half of the runs fail, or more": _NONE,
+}
+
+
+@figure("the table is empty or not from `compare`, or there are not two axes")
+def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawing:
+    """Settling time and root mean square error of every observer: each run, the median, and 16 to 84 % of the runs.
+
+    A run that does not settle has no settling time, and one that diverged has no error: what they lack stands at the
+    right edge, and how many they are beside the observer's name.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `percept_obs.studies.comparison.compare`.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
+    >>> from percept_obs.studies.comparison import compare
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [observer])
+    >>> print(figures.comparison(table).text.split(". ")[0])
+    Settling time and rms error of every observer, on logarithmic axes
+    """
+    if not len(table) or not {"observer", *PANELS} <= set(table.columns):
+        raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")
+    found = summary(table)
+    pair = canvases(axes, ["settling time", "error"], 1.3 + 0.42 * len(found), ncols=2, sharey=True)
+    for ax, (column, title) in zip(pair, PANELS.items(), strict=True):
+        _draw_runs(ax, table, found, column)
+        ax.set_xlabel(title)
+        ax.set_yticks(range(len(found)), [f"{label}\n{_counts(row)}" for label, row in found.iterrows()])
+        ax.set_ylim(len(found) - 0.5, -0.5)
+    whole: Any = pair[0].get_figure(root=True)
+    whole.legend(
+        handles=[Line2D([], [], label=name, **looks) for name, looks in _KEY.items()],
+        loc="outside upper center" if whole.get_layout_engine() else "upper center",
+        ncols=2,
+        frameon=False,
+    )
+    yield "Settling time and rms error of every observer, on logarithmic axes."
+    for label, row in found.iterrows():
+        yield f"{label}: {_counts(row)}; {_medians(row)}."
+    return pair
+
+
+def _draw_runs(ax: Axes, table: pd.DataFrame, found: pd.DataFrame, column: str) -> None:
+    ax.grid(False, axis="y")
+    ax.set_xscale("log")
+    seen = describe.finite(table[column])
+    seen = seen[seen > 0]
+    low, high = (seen.min(), seen.max()) if seen.size else (0.1, 1.0)
+    margin = max((high / low) ** 0.08, 1.2)
+    edge = high * margin
+    ax.set_xlim(low / margin, edge * margin**0.7)
+    for place, (label, row) in enumerate(found.iterrows()):
+        # what is 0 has no logarithm, and what is infinite no place
+        own = np.clip(describe.finite(table.loc[table["observer"] == label, column]), low, edge)
+        low_end, middle, high_end = (np.clip(row[column + end], low, edge) for end in ("_low", "", "_high"))
+        ax.plot(own, np.full_like(own, place), **_RUN)
+        ax.plot([low_end, high_end], [place, place], **_SPREAD)
+        ax.plot(middle, place, **(_MEDIAN if np.isfinite(row[column]) else _NONE))
+
+
+def _counts(row: pd.Series) -> str:
+    """How many runs failed, were reset or diverged."""
+    counts = [f"{row['failed']:.0f} of {row['runs']:.0f} fail"]
+    counts += [f"{row[name]:.0f} {how}" for name, how in (("reset", "reset"), ("diverged", "diverge")) if row[name]]
+    return ", ".join(counts)
+
+
+def _medians(row: pd.Series) -> str:
+    """Medians and quantiles, in describe."""
+    told = []
+    for column, what, unit in (("settling_time", "settling time", "s"), ("rms", "rms error", "1/m")):
+        values = (row[column + end] for end in ("", "_low", "_high"))
+        middle, low, high = (f"{value:.2g} {unit}" if np.isfinite(value) else "none" for value in values)
+        told.append(f"{what} {middle} in the median, {low} to {high} for 16 to 84 % of the runs")
+    return "; ".join(told)
+
+
+@figure("there is nothing to draw on one of the sides, or there are not two axes")
+def chatter(
+    errors: Mapping[str, pd.DataFrame], efforts: Mapping[str, Effort], axes: Sequence[Axes] | None = None
+) -> Drawing:
+    """Errors over the step of integration on the left, steps of adaptive solvers over time on the right.
+
+    Parameters
+    ----------
+    errors : mapping of labels to tables
+        From `percept_obs.studies.chatter.chatter`; the last coordinate, the inverse distance, is drawn.
+    efforts : mapping of labels to Effort
+        From `percept_obs.studies.chatter.effort`.  Curves with the same label look the same on both sides.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, smo
+    >>> from percept_obs.studies.chatter import chatter, effort
+    >>> scene, observer = scenarios.ma2005_eq35(), smo(PerspectiveSystem(affine(), pinhole()))
+    >>> errors = chatter(record(scene, 1), observer, [0.01, 0.005])
+    >>> len(figures.chatter({"smo": errors}, {"smo": effort(scene, observer, 0.2)}).axes)
+    2
+    """
+    if not errors or not efforts:
+        raise ValueError(f"there are {len(errors)} tables and {len(efforts)} efforts; at least one of each is needed")
+    left, right = canvases(axes, ["errors", "steps"], 3.6, ncols=2)
+    looks = {label: look.style(number) for number, label in enumerate({**errors, **efforts})}
+    yield "Left, rms error over the step of integration; right, steps of adaptive solvers; logarithmic axes."
+    for label, table in errors.items():
+        inverse = table.columns[-1]
+        left.plot(table["step"], table[inverse], label=label, **looks[label])
+        told = [f"{row['step']:.2g} s {row[inverse]:.2g}" for _, row in table.iterrows()]
+        yield f"{label}: error at a step of {', '.join(told)}."
+    left.set(xscale="log", yscale="log")
+    left.set(xlabel="step of integration (s)", ylabel=f"rms error of {describe.letter(inverse)} (1/m)")
+    for label, one in efforts.items():
+        name = "_" + label if label in errors else label
+        right.plot(one.time[1:], one.steps, linewidth=1.2, label=name, **looks[label] | {"marker": ""})
+        how = "arrived at" if one.finished else "gave up at"
+        yield (
+            f"{label}: {one.method} {how} {one.time[-1]:.2g} s after {one.evaluations[-1]} evaluations; its steps "
+            f"were {one.steps.min():.2g} to {one.steps.max():.2g} s long."
+        )
+    right.set(yscale="log", xlabel="time (s)", ylabel="step that the solver took (s)")
+    legend_above(left, fitting=40)
+    if set(efforts) - set(errors):
+        legend_above(right, fitting=40)
+    return [left, right]
+
+
+@figure("the values do not have exactly two dimensions of several settings")
+def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
+    """A number over two settings; grey where it is infinite or there is none.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+        With two dimensions, such as ``ensemble(...).settling_time.isel(seed=0)``; the first one goes up.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from percept_obs import figures
+    >>> errors = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], {"gain": [5, 10], "noise": [0.0, 0.1]}, name="error")
+    >>> print(figures.settings_map(errors).text.split(". ")[-1])
+    Largest: 4 at noise 0.1 and gain 10.
+    """
+    values = values.squeeze()
+    if values.ndim != 2:
+        raise ValueError(f"a map needs two dimensions; there are {values.ndim}: {', '.join(values.dims) or 'none'}")
+    up, right = values.dims
+    ax = canvas(ax, 3.6)
+    numbers = np.where(np.isfinite(values.values), values.values, np.nan)
+    known = np.isfinite(numbers)
+    ax.set_facecolor(look.LIGHT)
+    drawn = ax.pcolormesh(values[right], values[up], numbers, shading="nearest", cmap="viridis")
+    ax.grid(visible=False)
+    ax.set(xlabel=_with_unit(values[right]), ylabel=_with_unit(values[up]))
+    whole: Any = ax.get_figure(root=True)
+    whole.colorbar(drawn, ax=ax, label=_with_unit(values))
+    yield f"{_with_unit(values)} over {_with_unit(values[right])} and, upwards, {_with_unit(values[up])}."
+    if not known.any():
+        yield "There is no finite value."
+        return [ax]
+    for word, place in (("Least", np.nanargmin(numbers)), ("Largest", np.nanargmax(numbers))):
+        row, column = np.unravel_index(place, numbers.shape)
+        at = f"{right} {values[right].values[column]:.3g} and {up} {values[up].values[row]:.3g}"
+        yield f"{word}: {numbers[row, column]:.3g} at {at}."
+    yield f"Finite at {100 * known.mean():.0f} % of the places; grey elsewhere." if not known.all() else ""
+    return [ax]
+
+
+def _with_unit(values: Any) -> str:
+    """A name with its unit."""
+    unit = values.attrs.get("units", "1")
+    return str(values.name) if unit == "1" else f"{values.name} ({unit})"
+
+
+@figure("it is something else, or fewer than one entry is asked for")
+def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | None = None) -> Drawing:
+    """By how much the distance moves when one entry of the motion is off, for those entries that matter most.
+
+    Parameters
+    ----------
+    found : Sensitivity
+    most : int
+        How many entries to draw.
+    share : float
+        By which share of the motion's size an entry is off: of all of A, or of all of b.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
+    >>> from percept_obs.studies.sensitivity import sensitivity
+    >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> found = sensitivity(record(scenarios.ma2005_eq35(), 10), observer)
+    >>> print(figures.entries(found, most=1).text.split(". ")[1])
+    a32: 9.4 % in the median of the last half
+    """
+    base.require(found, Sensitivity, "studies.sensitivity.sensitivity()")
+    if most < 1:
+        raise ValueError(f"the {most} most important entries were asked for; draw one at least")
+    ax = canvas(ax, 3.2)
+    ranking, changes = found.ranking(share), 100 * found.distance_change(share)
+    drawn = list(ranking)[:most]
+    shown = np.array([changes[:, found.entries.index(name)] for name in drawn])
+    labels = [describe.letter(name) for name in drawn]
+    curves.draw(ax, found.run.elapsed, shown, labels, [look.style(number) for number in range(len(drawn))])
+    ax.set(xlabel="time (s)", ylabel=f"{describe.depth_or_range(found.run.view)[0]} moves by (%)")
+    size = f"{100 * share:g} % of the motion's size"
+    yield f"By how much the estimated distance moves when one entry of the motion is off by {size}, for {len(drawn)}."
+    yield "; ".join(f"{name}: {100 * ranking[name]:.2g} % in the median of the last half" for name in drawn) + "."
+    others = list(ranking)[most:]
+    yield f"Less than these: {', '.join(others)}." if others else ""
+    late = shown[:, len(found.run.time) // 10 :]
+    yield curves.linear(ax, curves.bulk(late), shown, "the changes", reach=0.5)
+    legend_above(ax)
+    return [ax]
+
+
+@figure("it is something else")
+def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
+    """The estimated distance with what the samples told of it, shaded where they hardly told anything.
+
+    Parameters
+    ----------
+    found : TrustOverTime
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
+    >>> from percept_obs.studies.trust import trust_over_time
+    >>> recording = record(scenarios.ma2005_eq35(), 5, Camera(0.05))
+    >>> run = track(recording, ibo(PerspectiveSystem(affine(), pinhole())))
+    >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
+    Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
+    """
+    base.require(found, TrustOverTime, "studies.trust.trust_over_time(run)")
+    ax, run = canvas(ax, 3.2), found.run
+    word, symbol = describe.depth_or_range(run.view)
+    _shade(ax, found)
+    told, spread = found.told, 2 * found.deviation
+    there = np.isfinite(told) & (spread < 1)
+    ends = told[there] * spread[there] / np.array([1 + spread[there], 1 - spread[there]])
+    name = r"what the samples tell, $\pm 2\sigma$"
+    ax.errorbar(found.time[there], told[there], ends, color=look.BLUE, linestyle="", marker=".", capsize=2, label=name)
+    estimate = np.where(np.isfinite(run.distance), run.distance, np.nan)
+    ax.plot(run.elapsed, estimate, **look.ESTIMATE)
+    if run.recording.truth is not None:
+        ax.plot(run.elapsed, run.recording.distance, **look.TRUTH)
+    ax.set_xlim(run.elapsed[0], run.elapsed[-1])
+    ax.set(xlabel="time (s)", ylabel=f"{word} ${symbol}$ (m)")
+    over = describe.times(run)
+    yield f"Estimated {word} in metres over {over}, with what the samples tell at {len(found.time)} times."
+    yield found.sentence
+    firm = told[there & (spread < 0.5)]
+    yield curves.linear(ax, firm if firm.size else curves.bulk(estimate), estimate, f"the estimated {word}", reach=1.0)
+    legend_above(ax)
+    return [ax]
+
+
+def _shade(ax: Axes, found: TrustOverTime) -> None:
+    """Shade the seconds in which the samples told nothing."""
+    time = found.run.elapsed
+    ends = zip(found.time, found.unexcited, strict=True)
+    told_nothing = np.any([(time >= end - length) & (time <= end) & (length > 0) for end, length in ends], axis=0)
+    band: dict[str, Any] = {"color": look.ORANGE, "alpha": 0.3, "linewidth": 0, "label": "hardly excited"}
+    if told_nothing.any():
+        ax.fill_between(time, 0, 1, where=told_nothing, transform=ax.get_xaxis_transform(), **band)
+
+
+@figure("it is something else, or nothing was found that has values to scan")
+def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
+    """What is left of the samples for each value of what was found first, such as each time offset.
+
+    Parameters
+    ----------
+    found : Diagnosis
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> from percept_obs import Camera, Gaussian, Scenario, diagnose, figures, pinhole, record, rigid
+    >>> def motion(late=0):
+    ...     return rigid(lambda t: [0.3 * np.sin(2 * t - 2 * late), 0.3 * np.cos(t - late), 0], [1, 0, 0], [0, 0, 0])
+    >>> scene = Scenario("mine", motion(), (0.2, 0.1, 5), 4, pinhole())
+    >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
+    >>> print(figures.scan(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[1])
+    time offset. It looks as if the images are 0.099 s early against the motion
+    """
+    base.require(found, Diagnosis, "diagnose(recordings)")
+    if not found.findings or len(found.findings[0].tried) < 2:
+        raise ValueError(f"{found.named} has no values that could be drawn")
+    first = found.findings[0]
+    ax = canvas(ax, 2.8)
+    ax.plot(first.tried, 1000 * np.array(first.left), color=look.BLUE, marker="o", label="undone by so much")
+    ax.axhline(1000 * found.left, color=look.VERMILLION, linestyle="--", label="as the recordings are")
+    if np.isfinite(first.value):
+        ax.axvline(first.value, color=look.BLACK, linewidth=1, linestyle=":", label="best")
+    ax.set(xlabel=first.key, ylabel="left of the samples (1/1000)")
+    ax.set_ylim(bottom=0)
+    yield f"What is left of the samples for {len(first.tried)} values, {describe.span(first.tried)}, of: {first.key}."
+    yield found.sentence
+    legend_above(ax)
+    return [ax]
