@@ -35,7 +35,7 @@ HIDDEN_VARIANCE = next(gain.value for gain in extended_kalman.gains if gain.name
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Bound:
-    """The least covariance of any unbiased observer, at the samples of a recording.
+    """Least covariance of any unbiased observer at the samples of a recording, from `cramer_rao`.
 
     Parameters
     ----------
@@ -49,14 +49,6 @@ class Bound:
         Covariance at each sample without any samples but those that the start needs.
     information : array of shape (K, n, n)
         Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, cramer_rao, pinhole, record, scenarios
-    >>> recording = record(scenarios.ma2005_eq35(), 4, Camera(0.1, Gaussian(0.01)))
-    >>> found = cramer_rao(recording, PerspectiveSystem(affine(), pinhole()))
-    >>> found.of("y3")[[0, -1]].round(4).tolist()
-    [1.0, 0.0017]
     """
 
     form: PartitionedSystem

@@ -17,17 +17,9 @@ MOST_TERMS = 6
 
 
 def unobservable(A: Array, C: Array) -> Array:
-    """Unobservable subspace: the largest one that C maps to 0 and every A maps into itself.
+    """Unobservable subspace: the largest one that C maps to 0 and every A maps into itself; orthonormal columns.
 
-    Parameters
-    ----------
-    A : array of shape (K, n, n)
-    C : array of shape (q, n)
-
-    Returns
-    -------
-    array of shape (n, number of directions)
-        Orthonormal columns.
+    A has the shape (K, n, n), C the shape (q, n).
     """
     from scipy.linalg import null_space
 
@@ -44,18 +36,9 @@ def unobservable(A: Array, C: Array) -> Array:
 
 
 def in_words(directions: Array, names: Sequence[str]) -> tuple[str, ...]:
-    """Name directions as sums of states, such as "r_x - d2_x".
+    """Name linearly independent directions, shape (n, q), as sums of states, such as "r_x - d2_x".
 
-    Parameters
-    ----------
-    directions : array of shape (n, q)
-        Linearly independent columns.
-    names : sequence of n str
-
-    Returns
-    -------
-    tuple of q str
-        They span the same space, each by as few states as elimination gets it to; of many states the first are named.
+    The sums span the same space, each with as few states as elimination leaves; of many states the first are named.
     """
     return tuple(_sum(row, names) for row in _reduced(directions.T))
 

@@ -35,16 +35,6 @@ class ErrorGramian(Windows):
     """How much the outputs of a window change with the coordinates at its beginning.
 
     `time` holds the windows' beginnings; states are the form's coordinates, in its order.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, pinhole, record, scenarios
-    >>> from percept_obs.observability import error_gramian
-    >>> found = error_gramian(record(scenarios.planar(), 3), PerspectiveSystem(affine(), pinhole()), window=1)
-    >>> found.names, found.matrices.shape[1:]
-    (('y1', 'y2', 'y3'), (3, 3))
-    >>> print(f"{found.smallest.min():.1e}")
-    1.4e-01
     """
 
 

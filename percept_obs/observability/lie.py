@@ -25,7 +25,7 @@ NEGLIGIBLE = 1e-8
 @checked
 @dataclass(frozen=True, eq=False)
 class Codistribution:
-    """Differentials of the outputs h and of their Lie derivatives L_f h, L_f^2 h, ..., a block of rows for each order.
+    """Differentials of the outputs h and of L_f h, L_f^2 h, ..., a block of rows for each order; see `lie_derivatives`.
 
     Parameters
     ----------
@@ -34,13 +34,6 @@ class Codistribution:
         Order by order, from 0 on; columns in the order of the form's coordinates.
     derivatives : tuple of tuples of symbols
         The first, second, ... time derivatives of the form's parameters, if the motion varies; none if not.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, lie_derivatives, pinhole
-    >>> found = lie_derivatives(PerspectiveSystem(affine(), pinhole()).measure("y1"))
-    >>> found.rank, found.matrix.shape
-    (3, (3, 3))
     """
 
     form: PartitionedSystem
@@ -66,13 +59,7 @@ class Codistribution:
         return self.lost_at(self._random_values)
 
     def ranks_at(self, values: Mapping[sp.Symbol, float]) -> tuple[int, ...]:
-        """Rank with the orders up to 0, up to 1, and so on.
-
-        Parameters
-        ----------
-        values : mapping of symbols to floats
-            Of coordinates, parameters and their derivatives.
-        """
+        """Rank with the orders up to 0, 1, ..., at values of coordinates, parameters and their derivatives."""
         return tuple(self._at(values).ranks[0].tolist())
 
     def lost_at(self, values: Mapping[sp.Symbol, float]) -> Array:
@@ -124,7 +111,7 @@ class Codistribution:
 
 @dataclass(frozen=True, eq=False)
 class LieRanks:
-    """Ranks of the Lie derivatives' differentials along a trajectory.
+    """Ranks of the Lie derivatives' differentials along a trajectory, from `lie_ranks`.
 
     Parameters
     ----------
@@ -133,14 +120,6 @@ class LieRanks:
         Seconds.
     rows : array of shape (K, q, n)
         The differentials, each scaled to the length 1.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
-    >>> from percept_obs.observability import lie_ranks
-    >>> found = lie_ranks(record(scenarios.planar(), 3, Camera(1.0)), PerspectiveSystem(affine(), pinhole()))
-    >>> found.ranks.tolist(), found.holds
-    ([[2, 3, 3], [2, 3, 3], [2, 3, 3], [2, 3, 3]], True)
     """
 
     form: PartitionedSystem

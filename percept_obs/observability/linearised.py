@@ -80,17 +80,7 @@ def matching_form(system: System, recording: Recording) -> PartitionedSystem:
 def linearised(
     form: PartitionedSystem, recording: Recording, doubt: Doubt = 0.0, longest: float = LONGEST_STEP
 ) -> Linearised:
-    """Linearise a form along the truth of a recording that fits it, by its own flow from sample to sample.
-
-    Parameters
-    ----------
-    form, recording
-        As from `matching_form`.
-    doubt : float or mapping of names to floats
-        See `cramer_rao`.
-    longest : float
-        Longest step in seconds.
-    """
+    """Linearise a form along the truth of a recording that it fits, with steps up to the longest one in seconds."""
     n, lengths = len(form.coordinates), np.diff(recording.time)
     count = max(1, int(np.ceil(lengths.max() / longest - 1e-4)))
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")

@@ -49,13 +49,6 @@ class MapKernel:
         The relative standard deviation of the distance.
     shape : tuple of symbols
         Parameters of the surface, such as a plane's normal vector.
-
-    Examples
-    --------
-    >>> from percept_obs import pinhole
-    >>> from percept_obs.observability import map_kernel
-    >>> sorted(map_kernel(pinhole(), ("y1",)).sources())
-    ['begin', 'finish', 'gather']
     """
 
     begin: Expressions
@@ -114,7 +107,7 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class BoundMap:
-    """The bound over the image.
+    """Cramer-Rao bound over the image, from `bound_map`.
 
     Parameters
     ----------
@@ -126,16 +119,6 @@ class BoundMap:
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
         Time after which the bound holds, and distance of the points at the beginning.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, bound_map, pinhole
-    >>> sideways = PerspectiveSystem(affine([[0.0] * 3] * 3, [0.5, 0, 0]), pinhole())
-    >>> found = bound_map(sideways, resolution=11)
-    >>> found.relative.shape
-    (11, 11)
-    >>> print(f"{found.at(0, 0):.2f}")
-    0.02
     """
 
     system: PerspectiveSystem

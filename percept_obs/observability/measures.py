@@ -69,14 +69,6 @@ class Measure:
         Directions that are not seen there, in words.
     said : str
         The value in words.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
-    >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
-    >>> measure = found.measures[0]
-    >>> measure.name, measure.holds
-    ('instant', True)
     """
 
     name: str
@@ -97,7 +89,7 @@ class Measure:
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Observability:
-    """Measures of observability along a trajectory.
+    """Measures of observability along a trajectory, from `how_observable`.
 
     Parameters
     ----------
@@ -109,13 +101,6 @@ class Observability:
     error, empirical : ErrorGramian
         Of the linearised error system, and by perturbed runs.
     bound : Bound
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
-    >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
-    >>> [measure.name for measure in found.measures if measure.holds]
-    ['instant', 'excitation', 'Lie rank', 'error Gramian', 'empirical Gramian', 'bound']
     """
 
     form: PartitionedSystem

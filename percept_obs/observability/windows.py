@@ -191,24 +191,10 @@ def check_window(recording: Recording, window: float, holds_samples: bool = Fals
 
 
 def window_integrals(time: Array, S: Array, Phi: Array, window: float) -> tuple[Indices, Array]:
-    """Integrals of Phi^T S Phi over all windows that begin at a sample, without inverting a transition.
+    """Samples at which windows begin, shape (T,), and integrals of Phi^T S Phi over these windows, shape (T, n, n).
 
-    Parameters
-    ----------
-    time : array of shape (K,)
-        Seconds.
-    S : array of shape (K, n, n)
-        Information of each sample.
-    Phi : array of shape (K - 1, n, n)
-        Transitions from each sample to the next.
-    window : float
-        Seconds.
-
-    Returns
-    -------
-    begins : array of shape (T,)
-        Samples at which the windows begin.
-    matrices : array of shape (T, n, n)
+    S, shape (K, n, n), is the information of each sample, and Phi, shape (K - 1, n, n), the transition from each
+    sample to the next.  No transition is inverted.
     """
     h = np.diff(time)[:, None, None]
     G = h / 2 * (S[:-1] + _seen_through(Phi, S[1:]))

@@ -66,23 +66,9 @@ class Conditions:
 
 @checked
 def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Array, epsilon: float = 1.0) -> Conditions:
-    """Evaluate the inequality (15) and the weaker sufficient one.
+    """Evaluate (15) and the weaker A^T P + P A + P' <= (2 - epsilon) S, 0 < epsilon <= 2, at some times.
 
-    Parameters
-    ----------
-    observer : LuenbergerObserver
-    time : array of shape (T,)
-        Seconds.
-    outputs : array of shape (T, p, m)
-        NaN where a point is not seen.
-    P : array of shape (T, n, n)
-    epsilon : float
-        Constant of the weaker one, A^T P + P A + P' <= (2 - epsilon) S, above 0 and at most 2.
-
-    Raises
-    ------
-    ValueError
-        If epsilon is out of its range.
+    Outputs have the shape (T, p, m), NaN where a point is not seen, and P the shape (T, n, n).
     """
     if not 0 < epsilon <= 2:
         raise ValueError(f"epsilon is {epsilon}; it must be above 0 and at most 2")

@@ -258,38 +258,12 @@ def advance(
     outputs: Array,
     language: Language,
 ) -> tuple[Array, Array, int | None]:
-    """Run the loop.
+    """Run the loop over N steps; return the path, P at the end, and the first row of the path that is not finite.
 
-    Parameters
-    ----------
-    form : Arrays
-    law : (computed, information, forgetting, pull)
-    start : array of shape (n,)
-    P : array of shape (n, n)
-        At the start, where it is computed.
-    steps : array of shape (N,)
-        In seconds.
-    coefficients : array of shape (N EACH + 1, u) or (1, u)
-        Numbers of the form's expressions at the instants of all steps.
-    inverses : array of shape (N EACH + 1, n, n) or (1, n, n)
-        Inverse of P at the same times, where P is given.
-    outputs : array of shape (N, EACH + 1, p, m)
-        Images as they are held at the instants of each step; NaN where a point is not seen.
-    language : "python" or "numba"
-
-    Returns
-    -------
-    path : array of shape (N + 1, n)
-        NaN from where the estimate was no longer finite on.
-    P : array of shape (n, n)
-        At the end.
-    diverged : int or None
-        The first row of the path that is not finite.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If numba is asked for and is not installed.
+    With P computed it starts at the given one; else its inverses are given.  Coefficients, shape (N EACH + 1, u) or
+    (1, u), and inverses, shape (N EACH + 1, n, n) or (1, n, n), belong to the instants of all steps.  The outputs,
+    shape (N, EACH + 1, p, m), are NaN where a point is not seen.  The path, shape (N + 1, n), is NaN from where the
+    estimate was no longer finite on.
     """
     path = np.full((len(steps) + 1, len(start)), np.nan)
     tables = (start, P, steps, coefficients, inverses, outputs)

@@ -26,33 +26,14 @@ NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
 
 class DepthSource(Protocol):
-    """Source of the scaled inverse depth.
-
-    Examples
-    --------
-    >>> from percept_obs.structure import DepthSource, GivenDepth
-    >>> source: DepthSource = GivenDepth(bias=0.01)
-    >>> source.offsets.tolist()
-    [[0.0, 0.0, 0.0]]
-    """
+    """Source of the scaled inverse depth, such as `GivenDepth` or `PatchDepth`."""
 
     @property
     def offsets(self) -> Array:
         """Offsets of the object's points from the tracked one at time 0, shape (n, 3), in metres; zero first."""
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
-        """Scaled inverse depths, shape (K,).
-
-        Parameters
-        ----------
-        images : array of shape (K, n, 2)
-            Measured image coordinates of the object's points.
-        exact : array of shape (K,)
-            Scaled inverse depths without errors.
-        time : array of shape (K,)
-            Seconds.
-        generator : numpy Generator
-        """
+        """Scaled inverse depths, shape (K,), from images of shape (K, n, 2), exact depths and times in seconds."""
 
 
 @checked

@@ -67,10 +67,7 @@ class TimeGrid:
     def held(self, filled: bool) -> Array:
         """Outputs at the instants of every step, shape (N, EACH + 1, ...), or (N, 1, ...) if they last for the step.
 
-        Parameters
-        ----------
-        filled : bool
-            True to bridge lost samples by their neighbours; otherwise they are NaN.
+        Lost samples are bridged by their neighbours if filled, else NaN.
         """
         recording, time = self.recording, self.recording.time
         outputs = _bridged(recording, self.hold) if filled else recording.outputs

@@ -95,13 +95,7 @@ their relative deviation, and the noise of each output."""
 def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
     """Information from the shortest window at the end that suffices, each one tried twice as long as the last.
 
-    Parameters
-    ----------
-    fit : function of the index of a sample and of initial guesses
-    elapsed : array of shape (K,)
-        Seconds since the first sample.
-    guess : array of shape (n,)
-        Initial coordinates at the last sample, such as an observer's; NaN where there are none.
+    The guess has the coordinates at the last sample, such as an observer's; NaN where there are none.
     """
     guesses = [guess] if np.isfinite(guess).all() else []
     count, length, unexcited = len(elapsed), min(FEWEST, len(elapsed)), 0.0

@@ -159,18 +159,9 @@ class Trust:
 
 
 def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:
-    """Outcome of a run, from its error over time.
+    """Outcome of a run of a length in seconds, from its error at some seconds after the first sample, shapes (K,).
 
-    Parameters
-    ----------
-    elapsed : array of shape (K,)
-        Seconds since the first sample, at the samples whose error is known; at least one.
-    error : array of shape (K,)
-        Not negative; infinite behind the camera, NaN without an estimate.
-    tolerance : float
-        Positive.
-    length : float
-        Length of the run in seconds.
+    The error is infinite behind the camera and NaN without an estimate.
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance is {tolerance}; it must be positive")
