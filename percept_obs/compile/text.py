@@ -52,17 +52,17 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
 
 
 class _Printer(PythonCodePrinter):
-    """Arithmetic as Python and JavaScript share it, with the words of one of them."""
+    """Arithmetic as Python and JavaScript share it, with the names of one of them."""
 
-    def __init__(self, words: Mapping[str, str]) -> None:
+    def __init__(self, notation: Mapping[str, str]) -> None:
         super().__init__({"fully_qualified_modules": False})
-        self.words = words
+        self.notation = notation
 
     def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
         base, exponent = expr.base, expr.exp
         factors = [self.parenthesize(base, PRECEDENCE["Pow"])] * int(abs(exponent))
         if not exponent.is_Integer:
-            factors.append(f"{self.words['math']}.sqrt({self._print(base)})")
+            factors.append(f"{self.notation['math']}.sqrt({self._print(base)})")
             if len(factors) == 1:
                 return factors[0] if exponent > 0 else f"(1.0/{factors[0]})"
         product = "*".join(factors)
@@ -84,11 +84,11 @@ class _Printer(PythonCodePrinter):
 
     def _print_Function(self, expr: sp.Function) -> str:
         name = expr.func.__name__
-        called = self.words.get(name, f"{self.words['math']}.{name}")
+        called = self.notation.get(name, f"{self.notation['math']}.{name}")
         return f"{called}({', '.join(map(self._print, expr.args))})"
 
     def _print_Abs(self, expr: sp.Abs) -> str:
-        return f"{self.words['abs']}({self._print(expr.args[0])})"
+        return f"{self.notation['abs']}({self._print(expr.args[0])})"
 
     def _print_sign(self, expr: sp.sign) -> str:
         inner = self._print(expr.args[0])
@@ -104,13 +104,13 @@ class _Printer(PythonCodePrinter):
         return text
 
     def _choice(self, condition: str, then: str, otherwise: str) -> str:
-        return self.words["choice"].format(condition, then, otherwise)
+        return self.notation["choice"].format(condition, then, otherwise)
 
     def _print_And(self, expr: sp.And) -> str:
-        return "(" + f" {self.words['and']} ".join(map(self._print, expr.args)) + ")"
+        return "(" + f" {self.notation['and']} ".join(map(self._print, expr.args)) + ")"
 
     def _print_Or(self, expr: sp.Or) -> str:
-        return "(" + f" {self.words['or']} ".join(map(self._print, expr.args)) + ")"
+        return "(" + f" {self.notation['or']} ".join(map(self._print, expr.args)) + ")"
 
     def _print_Relational(self, expr: sp.Rel) -> str:
         return f"({self._print(expr.lhs)} {expr.rel_op} {self._print(expr.rhs)})"
@@ -120,7 +120,7 @@ for _function in FUNCTIONS:
     setattr(_Printer, f"_print_{_function.__name__}", _Printer._print_Function)
 
 
-_WORDS = {
+_NOTATIONS = {
     "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
     "batch": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
     | {"exp": "exp", "tanh": "tanh"},
@@ -132,10 +132,10 @@ class Text:
     """Lines of a program in Python, in Python for a batch, where choices are no branches, or in JavaScript."""
 
     def __init__(self, language: Notation) -> None:
-        if language not in _WORDS:
+        if language not in _NOTATIONS:
             raise ValueError(f"the language {language!r} is neither 'python' nor 'javascript'")
         self.python = language != "javascript"
-        self.print = _Printer(_WORDS[language]).doprint
+        self.print = _Printer(_NOTATIONS[language]).doprint
         self.lines: list[str] = []
         self.depth = 0
         self.assigned: dict[str, None] = {}

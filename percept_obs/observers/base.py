@@ -1,4 +1,4 @@
-"""What every observer is: equations, gains, a start, and an estimate."""
+"""Observers: equations, gains, a start, and an estimate."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 
 @dataclass(frozen=True)
 class About:
-    """What is known about an observer.
+    """Title, source and claim of an observer.
 
     Parameters
     ----------
     title : str
-        Its name in full.
+        Full name.
     source : str
-        Where it comes from.
+        Author and year, and equations.
     needs : str
-        What must be measured.
+        Outputs that must be measured.
     claim : str
-        What is claimed of its convergence, and under which condition.
+        Claim about its convergence, and the condition for it.
 
     Examples
     --------
@@ -52,14 +52,14 @@ class About:
 
 @dataclass(frozen=True)
 class FastestRate:
-    """How fast the fastest part of an observer is, so that one can tell beforehand whether a step resolves it.
+    """Decay rate of the fastest part of an observer, which an integration step must resolve.
 
     Parameters
     ----------
     rate : expression
         Decay rate in 1/s, from the gains and `elapsed`.
     remedy : str
-        What to do if the step is too long, besides shortening it.
+        Advice if the step is too long, besides shortening it.
     """
 
     rate: sp.Expr
@@ -69,31 +69,30 @@ class FastestRate:
 @checked
 @dataclass(frozen=True)
 class Observer:
-    """An observer of a system with measured and hidden coordinates, as equations.
+    """Observer of a system with measured and hidden coordinates, as equations.
 
     Parameters
     ----------
     name : str
     form : PartitionedSystem
-        What is observed; a canonical form where the observer needs one.
+        The system; a canonical form where the observer needs one.
     equations : Equations
         Flow, measurement update, reset condition and reset of the observer's state.
     estimate : tuple of expressions
         Estimates of ``form.coordinates``, from the state, the measured outputs, the parameters and the gains.
     gains : tuple of Gain
     start : tuple of expressions
-        The state at the first sample, from that sample, the estimates asked for (`hats`), whether these are the sample
-        itself (`first_seen`), parameters and gains.
+        The state at the first sample, from that sample, the wanted estimates (`hats`), flags of those that are the
+        sample itself (`first_seen`), parameters and gains.
     covariance : matrix of expressions, optional
         Covariance of the estimate, from the state, if the observer claims one.
     about : About, optional
-        What is known about the observer.
     constant_motion : bool
-        Whether the equations hold for a motion with constant coefficients only.
+        True if the equations hold for a motion with constant coefficients only.
     unobservable : tuple of Unobservable
-        Where the hidden coordinates have no estimate; of several that hold, the first tells the reason.
+        Where the hidden coordinates have no estimate; of several that hold, the first gives the reason.
     fastest : FastestRate, optional
-        What limits the integration step, if it is known.
+        Limit of the integration step, if it is known.
 
     Examples
     --------
@@ -118,7 +117,7 @@ class Observer:
     fastest: FastestRate | None = None
 
     def with_gains(self, **values: float) -> Observer:
-        """The same observer with other gains; nothing is compiled again.
+        """Observer with other gains; nothing is compiled again.
 
         Raises
         ------
@@ -132,12 +131,12 @@ class Observer:
         return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
 
     def in_units(self, length: float = 1.0, time: float = 1.0) -> Observer:
-        """The same observer with its gains' numbers taken to count in other units.
+        """Observer with its gains' numbers converted from other units.
 
         Parameters
         ----------
         length, time : float
-            The units in metres and in seconds, such as 30.0 where a point at 30 m stands for one at 1 m.
+            Units in metres and in seconds, such as 30.0 where a point at 30 m stands for one at 1 m.
 
         Raises
         ------
@@ -151,9 +150,7 @@ class Observer:
         >>> next(gain.value for gain in observer.in_units(length=10.0).gains if gain.name == "lyapunov")
         -0.005
         """
-        for name, unit in (("length", length), ("time", time)):
-            if not 0 < unit < math.inf:
-                raise ValueError(f"the unit of {name} is {unit}; it must be positive and finite")
+        positive(**{"the unit of length": length, "the unit of time": time})
         scaled = {g.name: g.value * length ** g.powers["m"] * time ** g.powers["s"] for g in self.gains}
         return self.with_gains(**scaled)
 
@@ -205,15 +202,15 @@ class Observer:
     def initial_state(
         self,
         outputs: Mapping[str, float],
-        given: Mapping[str, float],
+        start: Mapping[str, float],
         parameters: Mapping[sp.Symbol, float] | None = None,
     ) -> Array:
-        """The state at the first sample.
+        """State at the first sample.
 
         Parameters
         ----------
         outputs : mapping of names of measured outputs to their first samples
-        given : mapping of coordinate names to estimates; left out, the first samples and 0 for hidden coordinates
+        start : mapping of coordinate names to estimates; left out, the first samples and 0 for hidden coordinates
         parameters : mapping of the form's parameters to their values at the first sample, where the start needs them
 
         Raises
@@ -221,12 +218,12 @@ class Observer:
         ValueError
             If a name is unknown, a value is not finite, or a parameter is missing.
         """
-        return state_at_start(self, outputs, given, (parameters or {}).items())
+        return state_at_start(self, outputs, start, (parameters or {}).items())
 
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
     ) -> Callable[[float, Sequence[float]], list[float]]:
-        """The flow as a function of time and state, for scipy's solvers; resets are left to the caller.
+        """Flow as a function of time and state, for scipy's solvers; resets are left to the caller.
 
         Parameters
         ----------
@@ -249,33 +246,32 @@ class Observer:
             outputs = ", ".join(map(str, self.equations.measured))
             raise ValueError(f"the {self.name} observer uses {outputs}; pass measured=, a function of time")
         flow = right_hand_side(self.equations, {**self.form.values, **self.gain_values, **motion.values})
-        if motion.signal is not None and motion.signal.constant:
-            return lambda t, state: flow(state, measured(t) if measured else (), ())
-        return lambda t, state: flow(state, measured(t) if measured else (), motion.known(t)[0])
+        constant = motion.signal is not None and motion.signal.constant
+        return lambda t, state: flow(state, measured(t) if measured else (), () if constant else motion.known(t)[0])
 
     def _repr_latex_(self) -> str:
-        """The equations without the terms that the present gains put out."""
-        out = {symbol: sp.S.Zero for symbol, value in self.gain_values.items() if value == 0}
-        return self.equations.xreplace(out)._repr_latex_()
+        """Equations without the terms that gains of 0 remove."""
+        removed = {symbol: sp.S.Zero for symbol, value in self.gain_values.items() if value == 0}
+        return self.equations.xreplace(removed)._repr_latex_()
 
 
 def state_at_start(
     observer: Observer,
     outputs: Mapping[str, float],
-    given: Mapping[str, float],
+    start: Mapping[str, float],
     parameters: Iterable[tuple[sp.Symbol, float]],
 ) -> Array:
-    """What `Observer.initial_state` gives, of values whose kinds have been looked at; few starts need parameters."""
+    """`Observer.initial_state` without a check of the arguments' kinds."""
     form = observer.form
     names = [symbol.name for symbol in form.coordinates]
-    wrong = [name for name, value in given.items() if name not in names or not math.isfinite(value)]
+    wrong = [name for name, value in start.items() if name not in names or not math.isfinite(value)]
     if wrong:
         raise ValueError(f"the start has no finite value for {', '.join(wrong)}; give estimates of {', '.join(names)}")
     unseen = [name for name in form.measured if not math.isfinite(outputs.get(name, math.nan))]
     if unseen:
         raise ValueError(f"the outputs have no finite value for {', '.join(unseen)}; give one for each measured output")
-    asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(given)
-    values = [*map(asked.__getitem__, names), *(float(name not in given) for name in form.measured)]
+    asked = dict.fromkeys(names, 0.0) | dict(outputs) | dict(start)
+    values = [*map(asked.__getitem__, names), *(float(name not in start) for name in form.measured)]
     known, others = _symbols_of_start(observer.start, form.coordinates, form.x1)
     if others:
         found = {symbol: outputs[symbol.name] for symbol in form.x1} | observer.gain_values | dict(parameters)
@@ -288,7 +284,7 @@ def state_at_start(
 
 @lru_cache(maxsize=512)
 def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> tuple[Symbols, Symbols]:
-    """Symbols of the estimates asked for, of what is a first sample, and of what else the start uses; and the last."""
+    """All symbols of a start (wanted estimates, flags of first samples, others), and the others alone."""
     own = (*hats(coordinates), *first_seen(x1))
     others = tuple(sorted(sp.Tuple(*start).free_symbols - set(own), key=str))
     return (*own, *others), others
@@ -296,7 +292,7 @@ def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> 
 
 @checked
 def with_point(observer: Observer) -> Observer:
-    """Observer and observed point as one system without inputs: the state is (x1, x2, observer's state).
+    """Join observer and observed point to a system without inputs, with the state (x1, x2, observer's state).
 
     Examples
     --------
@@ -307,14 +303,7 @@ def with_point(observer: Observer) -> Observer:
     """
     form, eq = observer.form, observer.equations
     point = (*form.x1, *form.x2)
-    together = Equations(
-        (*point, *eq.state),
-        (*form.rate, *eq.flow),
-        (),
-        eq.parameters,
-        eq.gains,
-        (),
-        eq.reset_condition,
-        (*point, *eq.reset) if eq.reset else (),
-    )
+    reset = (*point, *eq.reset) if eq.reset else ()
+    flow = (*form.rate, *eq.flow)
+    together = replace(eq, state=(*point, *eq.state), flow=flow, measured=(), update=(), reset=reset)
     return replace(observer, name=f"{observer.name} with its point", equations=together)

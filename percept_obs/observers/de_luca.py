@@ -25,7 +25,7 @@ HIDDEN_GAIN = Gain(
     claim="local and exponential, if w is persistently exciting",
     gains=(MEASURED_GAIN, HIDDEN_GAIN),
     candidates=grid(measured_gain=(2, 3.5, 6, 10, 17), hidden_gain=(60, 120, 250, 500, 1000)),
-    offered_for_structure=True,
+    for_structure=True,
 )
 def de_luca(form: CanonicalForm) -> Derived:
     """Depth observer of De Luca, Oriolo and Robuffo Giordano.

@@ -35,7 +35,7 @@ NEVER = "it is a variance, and a start known exactly is never corrected"
         for doubt in (0, 1e-4, 1e-3)
     ),
     any_form=True,
-    offered_for_structure=True,
+    for_structure=True,
 )
 def extended_kalman(form: PartitionedSystem) -> Derived:
     """Extended Kalman filter (EKF), for any measured outputs; it needs no canonical form.

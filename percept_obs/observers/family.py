@@ -1,4 +1,4 @@
-"""A family of observers: all that is known of it, in one value that makes an observer of a form."""
+"""Families: each makes observers of one kind, and holds their title, gains and needs."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -21,25 +21,25 @@ from percept_obs.validation import WrongKind, refuse_kind, set_fields
 
 @dataclass(frozen=True)
 class Option:
-    """What shapes an observer's equations, besides the form and the gains: a keyword and its default."""
+    """Keyword that shapes an observer's equations, besides the form and the gains, and its default."""
 
     name: str
     value: Any
     meaning: str
-    offered: tuple[str, ...] = ()
+    choices: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Two lines of a docstring."""
-        kind = " or ".join(f'"{value}"' for value in self.offered) or type(self.value).__name__
+        kind = " or ".join(f'"{value}"' for value in self.choices) or type(self.value).__name__
         return f"{self.name} : {kind}\n    {self.meaning}.  Default {self.value!r}."
 
 
 @dataclass(frozen=True)
 class Derived:
-    """What an observer's file derives from a form: parts of its `Equations` and of the `Observer`.
+    """Parts of `Equations` and `Observer` that the function of a family derives from a form.
 
-    `start` is the state where that consists of estimates, and `estimate` are the `hats`, unless they are given;
-    `estimate` and `covariance` are in the order (x1, x2); `gains` are those of the family that the equations have.
+    By default `start` is the state, `estimate` the `hats` and `gains` those of the family; `estimate` and `covariance`
+    are in the order (x1, x2).
     """
 
     state: Symbols
@@ -56,32 +56,32 @@ class Derived:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Family:
-    """What makes observers of one kind: called with a form, options and gains, it gives an `Observer`.
+    """Maker of observers of one kind: called with a form, options and gains, it returns an `Observer`.
 
     Made by `family`, the decorator of the function that derives the equations; its docstring gets lines on the gains.
 
     Parameters
     ----------
     derive : function of a form and the options
-        Gives what is `Derived` from the form.
+        Returns a `Derived`.
     about : About
     name : str
-        What its observers are called, in short.
+        Short name of its observers.
     gains : tuple of Gain
         With their default values.
     options : tuple of Option
     candidates : tuple of mappings of gains' names to values
-        Worth trying on a camera that a hand carries at 0.1 to 0.5 m/s past points some metres away.
+        Gains to try on a camera that a hand carries at 0.1 to 0.5 m/s past points some metres away.
     any_form : bool
-        Whether it needs no canonical form.
+        True if it needs no canonical form.
     objection_of : function of a form, optional
-        What it needs besides: the error that is raised for this form, or None if it exists.
+        Further needs: the error to raise for this form, or None if there is an observer.
     constant_motion : bool
-        Whether the equations hold for a motion with constant coefficients only.
+        True if the equations hold for a motion with constant coefficients only.
     stays_at_truth : bool
-        Whether it stays at the truth if it is started there, without noise: whether it copies the system.
-    offered_for_structure : bool
-        Whether the lab of structure and motion offers it; integral sliding modes stand there in three ways.
+        True if it copies the system: started at the truth, without noise, it stays there.
+    for_structure : bool
+        True if the lab of structure and motion lists it; it lists integral sliding modes in three ways.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class Family:
     objection_of: Callable[[CanonicalForm], ValueError | None] | None = None
     constant_motion: bool = False
     stays_at_truth: bool = True
-    offered_for_structure: bool = False
+    for_structure: bool = False
 
     def __post_init__(self) -> None:
         names = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
@@ -111,16 +111,16 @@ class Family:
 
     @property
     def key(self) -> str:
-        """Name of the function in Python, by which tables and settings know it."""
+        """Name of the function in Python, which tables and settings use."""
         return self.derive.__name__
 
     @property
     def switches(self) -> tuple[str, ...]:
-        """Ways in which it switches, its own first; none if it does not switch."""
-        return next((option.offered for option in self.options if option.name == "switch"), ())
+        """Names of its ways to switch, its own first; none if it does not switch."""
+        return next((option.choices for option in self.options if option.name == "switch"), ())
 
     def objection(self, form: PartitionedSystem) -> ValueError | None:
-        """The error that making an observer of this form raises; None if there is one."""
+        """Error that a call with this form raises; None if there is an observer of it."""
         if self.any_form:
             return None
         if form.culprits:
@@ -128,13 +128,18 @@ class Family:
         return self.objection_of(form.canonical_form()) if self.objection_of else None
 
     def refusal(self, form: PartitionedSystem) -> str:
-        """Why there is no such observer of this form; empty if there is one."""
+        """Reason why there is no observer of this form; empty if there is one."""
         return str(self.objection(form) or "")
 
     def __call__(self, form: PartitionedSystem | PerspectiveSystem, *options: Any, **chosen: Any) -> Observer:
-        """An observer of this form; raises what is told by `objection`, or by its options and gains.
+        """Make an observer of this form.
 
         A `PerspectiveSystem` stands for its form with all image coordinates measured.
+
+        Raises
+        ------
+        ValueError
+            The `objection`, or if an option or a gain is refused.
         """
         refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
         if isinstance(form, PerspectiveSystem):
@@ -178,9 +183,7 @@ class Family:
         head, mark, notes = text.partition("\n\nNotes\n-----\n")
         form = f"form : PartitionedSystem, or PerspectiveSystem\n    What is observed; needed: {self.about.needs}."
         parameters = "\n".join(map(str, (form, *self.options, *self.gains)))
-        errors = (
-            "ValueError\n    If `refusal` tells why there is none of this form, or a gain or an option makes no sense."
-        )
+        errors = "ValueError\n    If `refusal` has a reason against this form, or a gain or an option is refused."
         if not self.any_form:
             errors = f"NotAffine\n    If there is no canonical form.\n{errors}"
         sections = {"Parameters": parameters, "Returns": "Observer", "Raises": errors}
@@ -192,5 +195,5 @@ class Family:
 
 
 def family(*, title: str, source: str, needs: str, claim: str, **others: Any) -> Callable[..., Family]:
-    """Make a `Family` of the function that derives its equations, with what is known `About` it and the `others`."""
+    """Decorator that makes a `Family` of the function that derives the equations; see there for the others."""
     return partial(Family, about=About(title, source, needs, claim), **others)

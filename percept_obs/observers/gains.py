@@ -1,4 +1,4 @@
-"""Constants of an observer that a user may choose, and grids of them."""
+"""Gains: constants of an observer that a user may choose, and grids of them."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from percept_obs.validation import refuse_kind, set_fields
 
 @dataclass(frozen=True)
 class Gain:
-    """A constant of an observer that a user may choose.
+    """Constant of an observer that a user may choose.
 
     Parameters
     ----------
@@ -27,11 +27,11 @@ class Gain:
     unit : str
         Such as "1/s", for image coordinates without a unit and hidden ones in 1/m; "1" for a number.
     meaning : str
-        What it does, in a few words.
+        Its effect, in a few words.
     condition : sympy relation
-        What the value must fulfil.
+        Condition on the value.
     reason : str
-        Why it must.
+        Reason for the condition.
 
     Raises
     ------

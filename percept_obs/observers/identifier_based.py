@@ -37,7 +37,7 @@ G, A, P = sp.symbols("G A P", real=True)
         for gain in (2, 3.5, 6, 10, 17)
         for feedback in (60, 120, 250, 500, 1000)
     ),
-    offered_for_structure=True,
+    for_structure=True,
 )
 def identifier_based(form: CanonicalForm) -> Derived:
     """Identifier-based observer (IBO).

@@ -17,7 +17,7 @@ class NotIntegrable(ValueError):
 
 
 def not_integrable(form: CanonicalForm) -> NotIntegrable | None:
-    """What is said where w has no potential, as can happen on curved surfaces with several outputs."""
+    """Return an error if w has no potential, as on some curved surfaces with several outputs."""
     for (j, y), (k, z) in combinations(enumerate(form.x1), 2):
         if any(sp.expand(row[j].diff(z) - row[k].diff(y)) != 0 for row in form.w.tolist()):
             return NotIntegrable(
@@ -65,7 +65,7 @@ def immersion_and_invariance(form: CanonicalForm) -> Derived:
     >>> observer.estimate
     (y1, lambda*(a12*y1 - a32*y1**2/2) + xi1, lambda*(b1*y1 - b3*y1**2/2) + xi2)
     """
-    # beta, along the straight line from zero to the outputs
+    # beta is the integral of lambda w along the straight line from zero to the outputs
     share = sp.Symbol("s", real=True)
     on_line = form.w.subs({y: share * y for y in form.x1}, simultaneous=True).expand() * sp.ImmutableMatrix(form.x1)
     beta = lam * on_line.applyfunc(lambda entry: sp.integrate(entry.expand(), (share, 0, 1)))

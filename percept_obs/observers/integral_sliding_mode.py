@@ -168,7 +168,7 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
 def tolerable_amplification(
     observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
 ) -> float:
-    """A value for the gain `largest_amplification` at which noise cannot make a spike that looks like an estimate.
+    """Value for the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
 
     White noise of standard deviation sigma on the samples passes into ghat with the factor k1 + 2 gamma c, and from
     there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.
@@ -201,13 +201,13 @@ def tolerable_amplification(
 
 
 def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch) -> sp.Expr:
-    """The rate u of v for one output, (13), with the estimated rate k1 se - v of the surface."""
+    """Rate u of v for one output, (13), with the estimated rate k1 se - v of the surface."""
     sech2 = 1 - sp.tanh(c * se) ** 2
     return gamma * sech2 * (c * estimated_rate - b * se) - (gamma**2 * c * sech2 + k2) * sgn(s, delta) - se
 
 
 def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobservable:
-    """What is unobservable at the start, from bounds on what it still does to ghat - g = gamma tanh(c e) - se'.
+    """Unobservable part at the start, from bounds on its rest in ghat - g = gamma tanh(c e) - se'.
 
     On the surface e' = -gamma tanh(c e) + se', so that sinh(a |e|) shrinks at least like exp(-gamma a t); and se'
     begins with the rate g, of which ghat is the estimate, and shrinks at least like exp(-(k1 + gamma a) t).
@@ -218,7 +218,7 @@ def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobserv
 
 
 def _fastest(switch: str) -> FastestRate | None:
-    """Rate at se = 0 at which se decays on the ideal surface, and s in the boundary layer; a sign has none."""
+    """Decay rate, at se = 0, of se on the ideal surface, or of s in the boundary layer; None for a sign."""
     slope = a + b * elapsed
     if switch == IDEAL:
         return FastestRate(k1 + gamma * slope, "take smaller gains, or keep the slope with sharpening=0")

@@ -1,4 +1,4 @@
-"""Hidden coordinates from an estimate of what they do to the measured ones, and where they do not follow from it."""
+"""Inversion: hidden coordinates from an estimate of w^T x2, and where they do not follow from it."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ AMPLIFICATION_GAIN = Gain(c_max, "largest_amplification", 1e5, 10, 1e7, "s/m", A
 
 @dataclass(frozen=True)
 class Unobservable:
-    """Where an observer does not estimate the hidden coordinates, although it runs on.
+    """Condition under which an observer has no estimate of the hidden coordinates, although it runs on.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Unobservable:
         On the state, the measured outputs, the parameters, the gains, and the `elapsed` time and the
         `first_innovation`.
     reason : str
-        What is missing there.
+        Reason for a verdict.
     """
 
     condition: Boolean
@@ -37,17 +37,17 @@ elapsed = sp.Symbol("t", real=True)
 
 
 def first_innovation(form: PartitionedSystem) -> sp.ImmutableMatrix:
-    """Symbols of what the measured outputs were off their estimates at the first sample, shape (n1, 1)."""
+    """Symbols of the innovation at the first sample, shape (n1, 1)."""
     return sp.ImmutableMatrix([sp.Symbol(f"e0_{output.name}", real=True) for output in form.x1])
 
 
 def needs_more_outputs(form: CanonicalForm) -> NeedsMoreOutputs | None:
-    """What an observer says that inverts w^T x2, if that never determines x2."""
+    """Return the error of an observer that inverts w^T x2, if that never determines x2."""
     return None if form.determines_hidden else NeedsMoreOutputs(form)
 
 
 def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.ImmutableMatrix, Unobservable]:
-    """Hidden coordinates from an estimate of w^T x2, and where they do not follow from it.
+    """Invert an estimate of w^T x2.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutabl
     Returns
     -------
     matrix of shape (n2, 1)
+        The hidden coordinates.
     Unobservable
-        Where what turns the rate into hidden coordinates has a Frobenius norm of c_max or more, so that it would
-        amplify an error of the rate by up to this norm.
+        Where the inverse has a Frobenius norm of c_max or more, by which it may amplify an error of the rate.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutabl
         If w^T x2 never determines x2.
     """
     numerator, determinant = form.cramer
-    # both sides times the determinant squared, so that nothing is divided by zero
+    # both sides are multiplied by the determinant squared, so that nothing is divided by zero
     too_large = sp.Ge(sum(entry**2 for entry in numerator), (c_max * determinant) ** 2)
     reason = f"{', '.join(form.hidden)} nearly drop out of what is seen"
     return numerator * rate / determinant, Unobservable(too_large, reason)
@@ -77,9 +77,9 @@ def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutabl
 def start_left_over(
     form: CanonicalForm, rate: sp.ImmutableMatrix, left: sp.ImmutableMatrix, shrunk: sp.Expr
 ) -> Unobservable:
-    """Where what is left of the start in an estimate of w^T x2 may be half of the hidden coordinates that follow.
+    """Condition under which the start may still make up half of the hidden coordinates.
 
-    It compares what the inversion makes of both, so that the same rest is of no account where the hidden coordinates
+    It compares the inverses of both, so that the same rest of the start does not matter where the hidden coordinates
     follow easily, and hides them where they hardly do.
 
     Parameters
@@ -88,9 +88,9 @@ def start_left_over(
     rate : matrix of shape (n1, 1)
         The estimate of w^T x2.
     left : matrix of shape (n1, 1)
-        Bounds on what is left in it.
+        Bounds on the rest of the start in it.
     shrunk : expression
-        The factor by which that has shrunk; below 1 / c_max no inversion makes it what it was again.
+        Factor by which that has shrunk; below 1 / c_max no inversion brings it back.
 
     Returns
     -------

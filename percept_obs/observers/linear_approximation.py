@@ -18,7 +18,7 @@ WEIGHT, DIVIDES = "it is a weight", "the gain divides by it"
 
 
 def not_quadratic(form: CanonicalForm) -> ValueError | None:
-    """What is said where the hidden rate is not quadratic in the hidden coordinates."""
+    """Return an error if the hidden rate is not quadratic in the hidden coordinates."""
     jacobian = form.g.jacobian(form.x2).expand()
     if any(sp.expand(entry.diff(a, b)) != 0 for entry in jacobian for a in form.x2 for b in form.x2):
         return ValueError("the hidden rate is not quadratic in the hidden coordinates; use the extended Kalman filter")

@@ -1,4 +1,4 @@
-"""Parts that observers' equations are made of: estimates, innovation, output injection, bias of noise, a bound."""
+"""Parts of observers' equations: estimates, innovation, output injection, bias of noise, a bound."""
 
 import re
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
 
 
 def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols that are 1 where the start of a measured output is its first sample itself, and 0 where it is given."""
+    """Symbols that are 1 where a measured output starts from its first sample, and 0 where the user sets its start."""
     return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in x1)
 
 
@@ -44,7 +44,7 @@ def output_injection(
     hidden_gain: sp.Expr,
     bias: sp.ImmutableMatrix | None = None,
 ) -> Expressions:
-    """The flow of a copy of the system into which a correction of the outputs is fed back.
+    """Flow of a copy of the system with feedback of a correction.
 
     With the correction c, the gains L1, L2 and the bias b of w c::
 
@@ -79,7 +79,7 @@ def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
     """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
 
-    Ma 2005, (12), p. 65.  A state that is not part of the estimate stays.
+    Ma 2005, (12), p. 65.  Other states stay.
     """
     squared = sum(hat**2 for hat in estimate)
     shrink = M / sp.sqrt(squared)
@@ -88,7 +88,7 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
 
 @checked
 def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """What white noise on the outputs adds to the mean of ``w(x1) correction(x1)``.
+    """Bias of ``w(x1) correction(x1)`` by white noise on the outputs.
 
     The same sample n enters both factors: with the variance sigma^2 in each output,
     E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
@@ -99,7 +99,7 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     ----------
     form : CanonicalForm
     correction : matrix of shape (n1, 1)
-        What the observer multiplies by w, in terms of the measured outputs.
+        Factor of w in the observer, in terms of the measured outputs.
 
     Returns
     -------
@@ -115,6 +115,6 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     [-a32*sigma^2*(a11 - 2*a31*y1 - a33)],
     [ -b3*sigma^2*(a11 - 2*a31*y1 - a33)]])
     """
-    # a sign's derivative is taken as 0: the noise moves it at single instants only
+    # the derivative of a sign is 0 but at single instants
     smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}
     return sigma2 * sum((form.w.diff(x) * smooth[x] for x in form.x1), sp.zeros(len(form.x2), 1))

@@ -1,4 +1,4 @@
-"""What stands for the sign of an innovation where an observer switches."""
+"""Functions that replace the sign of an innovation where an observer switches."""
 
 from collections.abc import Callable
 from types import MappingProxyType
@@ -21,12 +21,12 @@ SWITCHES: MappingProxyType[str, Switch] = MappingProxyType(
 
 
 def switch_option(own: str, meaning: str) -> Option:
-    """The choice among these ways to switch, and the observer's own, which comes first."""
+    """Option of an observer to switch in one of these ways, or in its own, which comes first."""
     return Option("switch", own, meaning, tuple(dict.fromkeys((own, *SWITCHES))))
 
 
 def switch_named(name: str) -> Switch:
-    """The way to switch with this name.
+    """Way to switch with this name.
 
     Raises
     ------

@@ -165,8 +165,8 @@ def rigid(
     [-w2,  w1,   0]])
     """
     w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
-    given = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
-    return bound("rigid", cross(w), v_p - v_c, given, times)
+    coefficients = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
+    return bound("rigid", cross(w), v_p - v_c, coefficients, times)
 
 
 def cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -237,7 +237,7 @@ def linear(
 
 
 def bound(
-    name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, given: list[Coefficient], times: ArrayLike | None
+    name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, coefficients: list[Coefficient], times: ArrayLike | None
 ) -> Motion:
     """Motion with values for its symbols.
 
@@ -246,7 +246,7 @@ def bound(
     name : str
     A, b : sympy matrices
         In the symbols of the blocks.
-    given : list of (value, block of symbols)
+    coefficients : list of (value, block of symbols)
         Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
     times : array of shape (K,), optional
         Times in seconds of sampled values.
@@ -256,28 +256,28 @@ def bound(
     ValueError
         If only some values are None, shapes do not match, values are not finite or times do not increase.
     """
-    values, symbols = [value for value, _ in given], tuple(s for _, block in given for s in block)
-    missing = [_title(block) for value, block in given if value is None]
-    if len(missing) == len(given):
+    values, symbols = [value for value, _ in coefficients], tuple(s for _, block in coefficients for s in block)
+    missing = [_title(block) for value, block in coefficients if value is None]
+    if len(missing) == len(coefficients):
         return Motion(name, A, b, symbols)
     if missing:
         raise ValueError(
             f"a {name} motion takes all of its coefficients or none of them; give also {', '.join(missing)}"
         )
     if any(map(_has_symbols, values)):
-        entries = [e for value, block in given for e in matrix(value, _title(block), *block.shape)]
+        entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
         return Motion(name, A, b, free, Signal(OverTime(lambda times: times[:, None])) if free == (TIME,) else None)
     if any(map(callable, values)):
-        functions = [_function(value, block) for value, block in given]
+        functions = [_function(value, block) for value, block in coefficients]
         function = OverTime(lambda times: np.hstack([rows(times) for rows in functions]))
         return Motion(name, A, b, symbols, Signal(function))
     times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
     if times is not None and not times.size:
         raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
     count = 1 if times is None else len(times)
-    motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(*each, count) for each in given]), times))
+    motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(*each, count) for each in coefficients]), times))
     ask_for_degrees(motion, 0.0 if times is None else times)
     return motion
 

@@ -132,7 +132,7 @@ def _message(function: str, argument: str, value: Any, kind: Kind, parameter: in
         remedy = f"call it: {value.__name__}({', '.join(needed)})"
     elif any(entry.fits(value) for entry in kind.entries):
         remedy = "put it into a list"
-    return f"{function}(): {argument} is {described(value)}; expected {kind.words}" + (remedy and f": {remedy}")
+    return f"{function}(): {argument} is {described(value)}; expected {kind.label}" + (remedy and f": {remedy}")
 
 
 def refuse_kind(function: str, argument: str, value: Any, annotation: Any) -> None:

@@ -53,7 +53,7 @@ class Kind:
 
     Parameters
     ----------
-    words : str
+    label : str
         Its name in messages.
     fits : function of a value
         Return True if a value is of this kind.
@@ -65,7 +65,7 @@ class Kind:
         Kinds of a sequence's entries, and of a union's members.
     """
 
-    words: str
+    label: str
     fits: Callable[[Any], bool]
     example: str = ""
     by_type: bool = False
@@ -166,7 +166,7 @@ def _union(inside: tuple[Any, ...]) -> Kind:
         inside = (ArrayLike, *(each for each in inside if each not in arrays))
     kinds = tuple(map(kind_of, inside))
     return Kind(
-        " or ".join(dict.fromkeys(kind.words for kind in kinds if kind is not NOTHING)),
+        " or ".join(dict.fromkeys(kind.label for kind in kinds if kind is not NOTHING)),
         lambda v: any(kind.fits(v) for kind in kinds),
         next((kind.example for kind in kinds if kind.example), ""),
         all(kind.by_type for kind in kinds),
@@ -179,7 +179,7 @@ def _mapping(key: Kind, entry: Kind) -> Kind:
     def fits(value: Any) -> bool:
         return isinstance(value, Mapping) and all(key.fits(k) and entry.fits(v) for k, v in value.items())
 
-    return Kind(f"a mapping from {key.words} to {entry.words}", fits, entry.example)
+    return Kind(f"a mapping from {key.label} to {entry.label}", fits, entry.example)
 
 
 def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
@@ -201,7 +201,7 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
             return len(each) == len(inside) and all(kind_of(a).fits(e) for a, e in zip(inside, each, strict=True))
         return all(map(entry.fits, value))
 
-    return Kind(f"a sequence, each entry {entry.words}", fits, entry.example, entries=(entry,))
+    return Kind(f"a sequence, each entry {entry.label}", fits, entry.example, entries=(entry,))
 
 
 def _instance(cls: Any) -> Kind:

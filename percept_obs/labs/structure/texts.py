@@ -43,7 +43,7 @@ ISMO_WAYS = {
 }
 OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
     {key: (f"ISMO, {way}", partial(integral_sliding_mode, switch=switch)) for key, (way, switch) in ISMO_WAYS.items()}
-    | {make.key: (make.name, make) for make in observers.OBSERVERS if make.offered_for_structure}
+    | {make.key: (make.name, make) for make in observers.OBSERVERS if make.for_structure}
 )
 """Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
 
