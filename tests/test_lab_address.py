@@ -10,6 +10,7 @@ from lab_alone import DRAWN
 from lab_browser import UNFOLD, control
 from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
+from sample_sizes import sampled
 from structure_settings import CASES as STRUCTURE_CASES
 
 from percept_obs import affine, rigid
@@ -57,11 +58,10 @@ def random_states(name, count):
 
 
 @pytest.mark.node
-@pytest.mark.parametrize("each", [8, pytest.param(334, marks=pytest.mark.slow)])
-def test_random_settings_go_into_an_address_and_back_unchanged(node, each):
+def test_random_settings_go_into_an_address_and_back_unchanged(node):
     models, states = {}, []
     for name in LABS:
-        lab, found = random_states(name, each)
+        lab, found = random_states(name, sampled(8, 334))
         models[name] = whole_model(lab)
         states += [(name, settings) for settings in found]
     assert len({json.dumps(state) for state in states}) > 0.8 * len(states)

@@ -9,6 +9,7 @@ import pytest
 from examples import BOTH, NOISE, NOISY, ONE, OTHER, ZERO
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from sample_sizes import sampled
 from trust_study import figures
 
 from percept_obs import (
@@ -141,7 +142,7 @@ def test_points_are_judged_where_they_are_and_structure_by_all_that_is_sought():
     assert run.view.judged == "the distance, v_c2, v_c3"
 
 
-@settings(max_examples=20, suppress_health_check=list(HealthCheck))
+@settings(max_examples=sampled(5, 20), suppress_health_check=list(HealthCheck))
 @pytest.mark.slow
 @given(
     st.integers(0, 2**32 - 1),
@@ -292,12 +293,14 @@ def test_a_good_estimate_is_trusted_for_points_and_structure_too():
 
 
 @pytest.mark.slow
-def test_trust_is_right_in_two_hundred_runs_without_a_truth():
-    missed, alarms, wrong, right, *_ = figures(range(200))
+def test_trust_is_right_without_a_truth():
+    """In 200 runs with ALL_SAMPLES=1."""
+    count = sampled(40, 200)
+    missed, alarms, wrong, right, *_ = figures(range(count))
     assert missed <= 0.03
     assert alarms <= 0.05
-    assert wrong > 50
-    assert right > 50
+    assert wrong > count / 4
+    assert right > count / 4
 
 
 def follow(recording, observer):
