@@ -1,4 +1,4 @@
-"""What all figures share: a picture with its text, and axes in one hand."""
+"""The base of all figures: a picture with its text equivalent, axes in one style, and checks of the data."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from percept_obs.tracking.run import Run
 P = ParamSpec("P")
 T = TypeVar("T")
 Drawing = Generator[str, None, Sequence[Axes]]
-"""Sentences about what is being drawn, empty ones where there is nothing to say, and in the end the axes."""
+"""Yields sentences about what is drawn, which may be empty, and returns the axes."""
 
 SCREEN, SHARP = 96, 144  # dots an inch: as a browser counts them, and as the picture has them
 DESCRIPTION = {".png": "Description", ".svg": "Description", ".pdf": "Subject"}
@@ -43,7 +43,7 @@ axes : sequence of axes, optional
 ax : axes, optional
     New ones when left out.""",
 }
-"""Parameters that mean the same in every figure."""
+"""Docstrings of common parameters."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,7 +58,7 @@ class Figure:
     axes : tuple of matplotlib Axes
         The axes that were drawn on.
     text : str
-        What a reader sees in it, in words and numbers.
+        Text equivalent: what a reader sees in it, in words and numbers.
 
     Examples
     --------
@@ -105,12 +105,12 @@ class Figure:
 def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]]:
     """Make a Figure of what a function draws and says.
 
-    After its own parameters the common ones, what is returned and what is refused are added to its docstring.
+    Common parameters, Returns and Raises are added to its docstring.
 
     Parameters
     ----------
     refuses : str
-        What the function raises a ValueError for, after "If".
+        Condition of its ValueError, after "If".
     """
 
     def of(draw: Callable[P, Drawing]) -> Callable[P, Figure]:
@@ -137,7 +137,7 @@ def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]
 
 
 def canvas(ax: Axes | None, height: float, **kind: Any) -> Axes:
-    """The axes given, or new ones of a height in inches, in a figure that pyplot does not know."""
+    """Return the axes, or new ones of a height in inches in a figure that pyplot does not know."""
     if ax is None:
         new = matplotlib.figure.Figure(figsize=(WIDTH, height), layout="constrained")
         with matplotlib.rc_context({"grid.color": LIGHT}):  # three-dimensional axes take it from there only
@@ -148,7 +148,7 @@ def canvas(ax: Axes | None, height: float, **kind: Any) -> Axes:
 
 
 def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, **layout: Any) -> list[Axes]:
-    """Axes for the parts of a figure: those given, one for each, or new ones that are laid out by `subplots`."""
+    """Return axes for the parts of a figure, or new ones that `subplots` lays out."""
     if axes is None:
         new = matplotlib.figure.Figure(figsize=(WIDTH, height), layout="constrained")
         axes = np.ravel(new.subplots(**layout, squeeze=False)).tolist()
@@ -162,7 +162,7 @@ def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, *
 
 
 def rows(axes: Sequence[Axes] | None, heights: Sequence[float], parts: Sequence[str]) -> list[Axes]:
-    """Axes one above the other that share their time; see `canvases`."""
+    """Return axes one above the other that share their time; see `canvases`."""
     layout = {"nrows": len(heights), "sharex": True, "height_ratios": heights}
     stack = canvases(axes, parts, sum(heights) + 0.9, **layout)
     stack[-1].set_xlabel("time (s)")
@@ -170,7 +170,7 @@ def rows(axes: Sequence[Axes] | None, heights: Sequence[float], parts: Sequence[
 
 
 def _tidy(ax: Axes) -> None:
-    """Take away what is not data, and put the rest into the background."""
+    """Remove frames, and put the grid into the background."""
     ax.grid(True, color=LIGHT, linewidth=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
@@ -179,7 +179,7 @@ def _tidy(ax: Axes) -> None:
 
 
 def legend_above(ax: Axes, centred: bool = False, fitting: int = 80) -> None:
-    """Name the curves above the axes, where they hide nothing, in as many columns as fit into so many letters."""
+    """Put the legend above the axes, in as many columns as fit into so many letters."""
     lengths = [8 + len(name.replace("$", "")) for name in ax.get_legend_handles_labels()[1]]
     columns = len(lengths)
     while columns > 1 and sum(max(part) for part in np.array_split(lengths, columns)) > fitting:
@@ -199,14 +199,14 @@ def legend_above(ax: Axes, centred: bool = False, fitting: int = 80) -> None:
 
 
 def require(data: Any, kinds: type | tuple[type, ...], source: str) -> None:
-    """Refuse what is of none of the kinds; the source says what makes one."""
+    """Raise a ValueError for data of another kind; the source says what makes one."""
     names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
     if not isinstance(data, kinds):
         raise ValueError(f"{' or '.join(map(_with_article, names))} is needed, not {data!r}; {source} makes one")
 
 
 def require_several(data: T | Iterable[T], kind: type[T], source: str) -> list[T]:
-    """One or several of a kind as a list; the source says what makes one."""
+    """Return one or several of a kind as a list; the source says what makes one."""
     found: list[Any] = list(data) if isinstance(data, Iterable) else [data]
     if not found or not all(isinstance(each, kind) for each in found):
         raise ValueError(f"{_with_article(kind.__name__)} or several are needed, not {data!r}; {source} makes one")
@@ -218,13 +218,13 @@ def _with_article(name: str) -> str:
 
 
 def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:
-    """A recording, and what an observer made of it if there is a run."""
+    """Return a recording, and the run on it if there is one."""
     require(data, (Run, Recording), "track() or record()")
     return (data.recording, data) if isinstance(data, Run) else (data, None)
 
 
 def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
-    """Runs as a list, whose times, surfaces and truths are the same."""
+    """Return runs as a list; their times, surfaces and truths must be equal."""
     found = require_several(runs, Run, "track()")
     first = found[0].recording
     for number, run in enumerate(found[1:], 2):
@@ -244,15 +244,15 @@ def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
 
 
 def equal(one: Any, other: Any) -> bool:
-    """Whether two arrays are the same, or both are missing."""
+    """Return True if two arrays are equal, or both missing."""
     return one is other if one is None or other is None else np.array_equal(one, other)
 
 
-def labels_for(labels: Sequence[str] | None, otherwise: Sequence[str]) -> list[str]:
-    """The labels if they are given, one for each of the others, or else these, numbered if they repeat."""
+def labels_for(labels: Sequence[str] | None, default: Sequence[str]) -> list[str]:
+    """Return the labels, or default ones, which are numbered if they repeat."""
     if labels is None:
-        repeated = len(set(otherwise)) < len(otherwise)
-        return [f"{name} [{k}]" if repeated else name for k, name in enumerate(otherwise, 1)]
-    if isinstance(labels, str) or len(labels) != len(otherwise):
-        raise ValueError(f"labels= is {labels!r}; a list of {len(otherwise)} is needed, one for each curve")
+        repeated = len(set(default)) < len(default)
+        return [f"{name} [{k}]" if repeated else name for k, name in enumerate(default, 1)]
+    if isinstance(labels, str) or len(labels) != len(default):
+        raise ValueError(f"labels= is {labels!r}; a list of {len(default)} is needed, one for each curve")
     return list(labels)

@@ -1,4 +1,4 @@
-"""Axes and curves: limits that hold what matters, errors with their root mean square, bands that an observer claims."""
+"""Axes and curves: limits, errors with their moving root mean square, and bands that an observer claims."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,7 +23,7 @@ NARROWEST = 0.4
 
 
 def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
-    """Ends of an axis that holds all firm values, and those loose ones that are at most some spans away from them."""
+    """Return the ends of an axis that holds all firm values, and loose ones at most `reach` spans away from them."""
     firm, loose = describe.finite(firm), describe.finite(loose)
     low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
     constant = high - low <= 1e-3 * abs(high)
@@ -35,14 +35,14 @@ def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[
 
 
 def linear(ax: Axes, firm: Array, loose: Array, what: str, reach: float = 2.0) -> str:
-    """Let the axis follow the firm values, and say how many of the loose ones it leaves out."""
+    """Fit the axis to the firm values, and say how many of the loose ones it leaves out."""
     ends = limits(firm, loose, reach)
     ax.set_ylim(*ends)
     return _left_out(loose, ends, what)
 
 
 def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str = "") -> str:
-    """A logarithmic axis without the spikes: towards zero where an error changes its sign, and before divergence."""
+    """Make the axis logarithmic, and leave out spikes: towards zero at a change of sign, and before divergence."""
     seen = describe.finite(values)
     seen = seen[seen > 0]
     low, high = np.percentile(seen, [3, 99.9], method="lower") if seen.size else (ROUND_OFF, 1.0)
@@ -63,19 +63,19 @@ def _left_out(values: Array, ends: tuple[float, float], what: str) -> str:
 
 
 def not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
-    """Limits, the nearer ones drawn apart until no side is much shorter than another."""
+    """Return limits, extended until no side is much shorter than another."""
     longest = max(high - low for low, high in ends)
     missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
     return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
 
 
 def complete(rows: Array) -> Array:
-    """The rows without a gap."""
+    """Return the rows without NaN, shape (K, n)."""
     return rows[np.isfinite(rows).all(axis=1)]
 
 
 def bulk(values: Array) -> Array:
-    """The values without the smallest and the largest twentieth, which may be a transient."""
+    """Return the values without the smallest and the largest twentieth, which may be a transient."""
     seen = np.sort(describe.finite(values))
     return seen[len(seen) // 20 : len(seen) - len(seen) // 20]
 
@@ -88,7 +88,7 @@ CLAIM = r"$\pm 2\sigma$ claimed"
 
 
 def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
-    """Curves with sparse markers, none of which lies on another."""
+    """Draw curves with sparse markers, none of which lies on another."""
     step = max(1, len(time) // 8)
     for number, (curve, name, style) in enumerate(zip(curves, labels, styles, strict=True)):
         every = (step * number // len(curves), step)
@@ -97,7 +97,7 @@ def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], styles: Se
 
 
 def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
-    """Every error faintly, and over it the root mean square of its neighbourhood."""
+    """Draw every error faintly, and over it a moving root mean square."""
     width = 2 * (len(time) // (2 * SMOOTHING)) + 1
     if width > 1:
         for error, style in zip(errors, styles, strict=True):
@@ -122,12 +122,11 @@ def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) ->
 
 
 def _root_mean_square(values: Array, width: int) -> Array:
-    """Of the finite values in a window around each; NaN where the value itself is."""
+    """Return the root mean square of finite values around each, shape (K,); NaN where the value itself is."""
     windows = sliding_window_view(np.pad(values, width // 2, constant_values=np.nan), width)
-    largest = np.fmax(np.fmax.reduce(windows, axis=1), np.finfo(float).tiny)
-    parts = np.nan_to_num(windows / largest[:, None]) ** 2
     count = np.maximum(np.isfinite(windows).sum(axis=1), 1)
-    return np.where(np.isnan(values), np.nan, largest * np.sqrt(parts.sum(axis=1) / count))
+    length = np.hypot.reduce(np.nan_to_num(windows), axis=1)  # does not overflow before divergence
+    return np.where(np.isnan(values), np.nan, length / np.sqrt(count))
 
 
 def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
@@ -141,8 +140,7 @@ def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> st
 def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
     """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
     reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
-    named = CLAIM in ax.get_legend_handles_labels()[1]
-    name = "_claim" if named else CLAIM
+    name = "_claim" if CLAIM in ax.get_legend_handles_labels()[1] else CLAIM  # one entry in the legend
     ax.fill_between(run.elapsed, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)
     claimed = ~np.isnan(low)
     if not claimed.any():

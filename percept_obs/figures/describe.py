@@ -12,13 +12,13 @@ from percept_obs.tracking.verdict import TOLERANCE
 
 
 def finite(values: ArrayLike) -> Array:
-    """The values that are neither NaN nor infinite, in one row."""
+    """Return the finite values, shape (K,)."""
     array = np.asarray(values, dtype=float).ravel()
     return array[np.isfinite(array)]
 
 
 def span(values: ArrayLike) -> str:
-    """The range of values."""
+    """Return the range of values as text."""
     seen = finite(values)
     if not seen.size:
         return "nowhere finite"
@@ -26,17 +26,17 @@ def span(values: ArrayLike) -> str:
 
 
 def times(run: Run) -> str:
-    """From when to when a run goes."""
+    """Return the beginning and the end of a run as text."""
     return f"{run.elapsed[0]:.4g} to {run.elapsed[-1]:.4g} s"
 
 
 def place(coordinates: Array) -> str:
-    """Coordinates in brackets."""
+    """Return coordinates in brackets."""
     return f"({', '.join(f'{value:.3g}' for value in coordinates)})"
 
 
 def depth_or_range(view: View) -> tuple[str, str]:
-    """The word for a view's distance, and its letter."""
+    """Return the word for a view's distance, and its letter."""
     if not isinstance(view, ImagingSurface):
         return "depth", "Z"
     if view.distance.is_Symbol:
@@ -47,19 +47,19 @@ def depth_or_range(view: View) -> tuple[str, str]:
 
 
 def letter(name: str) -> str:
-    """The symbol of a coordinate such as y1, for matplotlib."""
+    """Return the symbol of a coordinate such as y1 in matplotlib's mathematics."""
     return f"${sp.latex(sp.Symbol(name))}$"
 
 
 def label(name: str, view: View) -> str:
-    """How an axis names a coordinate: its symbol, what it is and its unit."""
+    """Return the label of a coordinate's axis, with its unit."""
     if not _is_inverse_distance(name, view):
         return letter(name)
     return f"{letter(name)[:-1]} = 1/{depth_or_range(view)[1]}$ (1/m)"
 
 
 def coordinate(name: str, view: View) -> str:
-    """How a sentence names a coordinate."""
+    """Return the name of a coordinate in a sentence."""
     return f"{name} = 1/{depth_or_range(view)[1]}" if _is_inverse_distance(name, view) else name
 
 
@@ -68,22 +68,20 @@ def _is_inverse_distance(name: str, view: View) -> bool:
 
 
 def joined(*sentences: str) -> str:
-    """The sentences that are not empty."""
+    """Join the sentences that are not empty."""
     return " ".join(filter(None, sentences))
 
 
 def story(run: Run, tolerance: float = TOLERANCE) -> str:
-    """What happened to a run, in sentences: its verdict, resets, divergence and lost samples."""
+    """Return the verdict on a run as a sentence, with missing estimates and lost samples."""
     if not tolerance > 0:
         raise ValueError(f"the tolerance is {tolerance}; it must be positive")
-    verdict, diverged = run.verdict(tolerance), run.diverged_at is not None
-    resets = "once" if len(run.resets) == 1 else f"{len(run.resets)} times"
+    verdict = run.verdict(tolerance)
     columns = [run.recording.names.index(name) for name in run.measured]
     lost = int(np.isnan(run.recording.outputs[:, columns]).any(axis=1).sum())
     missing = int(np.isnan(run.estimate).any(axis=1).sum())
     return joined(
         f"{verdict[0].upper()}{verdict[1:]}.",
-        f"Before that it was reset {resets}." if diverged and len(run.resets) else "",
         f"From there on {missing} estimates are missing: the curve ends." if missing else "",
         f"{lost} of {len(run.elapsed)} samples were lost." if lost else "",
     )

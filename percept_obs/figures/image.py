@@ -20,14 +20,14 @@ from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.run import Run
 
 NEARBY = 0.6
-"""How far outside the path, in sides of its box, the focus of expansion may lie to be shown in its place."""
+"""Largest distance from the path, in sides of its box, at which the focus of expansion is drawn at its place."""
 
 KINDS = {"truth": "True", "samples": "Measured", "estimate": "Estimated"}
 
 
 @figure("two image coordinates are not known, no point is seen, or the threshold is not positive")
 def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None = None) -> Drawing:
-    """Paths in the image, and dashed what an observer makes of them.
+    """Paths in the image, and dashed their estimates.
 
     Of one point the focus of expansion is drawn as well, a diamond if the motion is constant and a faint path if it
     varies.  With both outputs measured and a constant motion there is the disk |w| < threshold, with one output the
@@ -129,7 +129,7 @@ def _one_point(ax: Axes, recording: Recording, run: Run | None, threshold: float
 
 
 def _path(recording: Recording, run: Run | None) -> tuple[Array, str]:
-    """Image coordinates over time, shape (K, 2), and whether they are the truth, samples or estimates."""
+    """Return image coordinates over time, shape (K, 2), and their kind: truth, samples or estimate."""
     names = [symbol.name for symbol in recording.view.image_coordinates]
     if recording.truth is not None:
         return recording.truth[:, :2], "truth"
@@ -144,7 +144,7 @@ def _path(recording: Recording, run: Run | None) -> tuple[Array, str]:
 
 
 def _set_limits(ax: Axes, path: Array, estimate: Array, centre: Array, radius: float) -> None:
-    """Follow the path, and show the focus of expansion and the disk around it if they are near."""
+    """Fit the axes to the path, and to the focus of expansion and its disk if they are near."""
     low, high = np.nanmin(path, axis=0), np.nanmax(path, axis=0)
     size = (high - low).max()
     shown = path
@@ -157,7 +157,7 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, centre: Array, radius: f
 
 
 def _fit_height(ax: Axes) -> None:
-    """Make a figure lower whose picture is wide; it would have empty margins above and below."""
+    """Make the figure of a wide picture lower, without empty margins."""
     width, height = np.ptp([ax.get_xlim(), ax.get_ylim()], axis=1)
     whole: Any = ax.get_figure(root=True)
     lettering = 1.2  # inches above and below the axes
@@ -165,7 +165,7 @@ def _fit_height(ax: Axes) -> None:
 
 
 def focus_of_expansion(system: PerspectiveSystem, time: Array) -> Array:
-    """Focus of expansion, shape (1, 2) if it stays, else (K, 2); not finite where there is none."""
+    """Return the focus of expansion, shape (1, 2) if it stays, else (K, 2); not finite where there is none."""
     known = system.motion.known(time)
     with np.errstate(divide="ignore", invalid="ignore"):
         focus = vectorised(system.motion.parameters, list(system.foe), system.surface.values)(*known.T)
@@ -174,7 +174,7 @@ def focus_of_expansion(system: PerspectiveSystem, time: Array) -> Array:
 
 
 def blind_radius(system: PerspectiveSystem, measured: tuple[str, ...], threshold: float) -> float:
-    """Radius of the disk |w| < threshold around the focus of expansion; NaN if the region is no disk."""
+    """Return the radius of the disk |w| < threshold around the focus of expansion; NaN if the region is no disk."""
     partition = system.partition(*measured)
     if partition.culprits:
         return np.nan
@@ -186,13 +186,13 @@ def blind_radius(system: PerspectiveSystem, measured: tuple[str, ...], threshold
 
 
 def inside(ax: Axes, places: Array) -> Flags:
-    """Which places are in the picture."""
+    """Return True for places in the picture, shape (K,)."""
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     return ((places > low) & (places < high)).all(axis=1)
 
 
 def draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
-    """A diamond, a faint path or a pointer at the edge; in words where it is and how close the point comes."""
+    """Draw the focus as a diamond, a faint path or a pointer at the edge; say where it is, and the closest approach."""
     distances = np.linalg.norm(path - focus, axis=1)
     if not np.isfinite(distances).any():
         ax.plot([], [], linestyle="", label="no focus of expansion")
@@ -213,7 +213,7 @@ def draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
 
 
 def _edge(ax: Axes, place: Array) -> Array:
-    """Where the line from the middle of the picture to a place outside meets the edge, nearly."""
+    """Return the point near the edge of the picture on the line from its middle to a place outside."""
     ends = np.array([ax.get_xlim(), ax.get_ylim()])
     centre, half = ends.mean(axis=1), np.diff(ends, axis=1)[:, 0] / 2
     away = place - centre
@@ -221,13 +221,13 @@ def _edge(ax: Axes, place: Array) -> Array:
 
 
 def _pointer(ax: Axes, place: Array) -> dict[str, Any]:
-    """A triangle that points to a place outside."""
+    """Return the look of a triangle that points to a place outside."""
     away = place - _edge(ax, place)
     return {"marker": (3, 0, np.degrees(np.arctan2(away[1], away[0])) - 90), "markersize": 10}
 
 
 def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Array) -> str:
-    """The disk in which |w| is below the threshold; in words how many samples lie in it."""
+    """Draw the disk in which |w| is below the threshold; say how many samples lie in it."""
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     visible = bool(np.linalg.norm(focus[0] - np.clip(focus[0], low, high)) < radius)
     name = f"{'' if visible else '_'}$|w| < {threshold:g}$"
@@ -239,7 +239,7 @@ def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Arr
 
 
 def draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str:
-    """Where w vanishes if one output is measured, in a constant motion."""
+    """Draw lines where w vanishes if one output is measured, in a constant motion; say where."""
     # As fractions, roots of two entries are equal when they should be.
     numbers = {symbol: sp.Rational(repr(value)) for symbol, value in system.values.items()}
     if system.partition(measured).culprits:

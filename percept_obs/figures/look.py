@@ -35,7 +35,7 @@ CURVES = (
     Tone(PURPLE, "#a3267f", "#ff8ed2"),
     Tone(ORANGE, "#6b6a00", "#d9d44e"),
 )
-"""Of the first curves that are compared."""
+"""Colours of the first curves that are compared."""
 
 MORE_CURVES = tuple(
     zip(
@@ -44,7 +44,7 @@ MORE_CURVES = tuple(
         strict=True,
     )
 )
-"""Of further ones in the labs, on white and on black; figures begin anew."""
+"""Colours of further curves in the labs, on white and on black; figures begin anew."""
 
 NAMED: Mapping[str, Tone] = MappingProxyType(
     {
@@ -54,18 +54,18 @@ NAMED: Mapping[str, Tone] = MappingProxyType(
         "kept": Tone(PURPLE, "#7d6b99", "#b9a5d9"),
     }
 )
-"""Samples; the focus of expansion and whatever is not seen; what noise does; a run that is kept to compare with."""
+"""Colours of samples, of warnings (the focus of expansion too), of noise, and of a kept run."""
 
 DASHES = (
     *((7, 4), (10, 3, 2, 3), (2, 3), (9, 3, 2, 3, 2, 3), (16, 4), (4, 2, 4, 7), (2, 7), (16, 3, 5, 3)),
     *((13, 3, 2, 3, 7, 3), (5, 2, 5, 8), (11, 2), (3, 6, 9, 6)),
 )
-"""Of the same curves, in pixels along a line two pixels wide."""
+"""Dashes of the same curves, in pixels along a line two pixels wide."""
 
 PATTERNS: Mapping[str, tuple[int, ...]] = MappingProxyType(
     {"SOLID": (), "KEPT": (1, 3), "FIT": (5, 3), "BOUND": (1, 5), "QUIET": (4, 2)}
 )
-"""Of the truth, of a kept run, of a fit, of a bound, and of a run without noise."""
+"""Dashes of the truth, a kept run, a fit, a bound, and a run without noise."""
 
 LINES: tuple[Any, ...] = ("--", "-.", *((0, tuple(length / 2 for length in dash)) for dash in DASHES[2:4]))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")

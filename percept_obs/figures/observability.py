@@ -50,14 +50,13 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     if found.excitation is not None:
         _draw(windows, found.excitation.time - begun, found.excitation.smallest, 0, "excitation (window's end)")
     _draw(windows, found.error.time - begun, found.error.smallest, 1, "error Gramian (beginning)")
-    ends: dict[str, Any] = {
-        "linestyle": "",
-        "marker": "o",
-        "color": look.GREEN,
-        "markersize": 4,
-        "label": "by perturbed runs",
-    }
-    windows.plot(found.empirical.time - begun, np.maximum(found.empirical.smallest, curves.ROUND_OFF), **ends)
+    ends: dict[str, Any] = {"linestyle": "", "marker": "o", "color": look.GREEN, "markersize": 4}
+    windows.plot(
+        found.empirical.time - begun,
+        np.maximum(found.empirical.smallest, curves.ROUND_OFF),
+        label="by perturbed runs",
+        **ends,
+    )
     windows.set_ylabel(f"{found.window:g} s windows")
     _draw(derivatives, found.lie.time - begun, found.lie.smallest, 0, "smallest singular value")
     derivatives.set_ylabel("derivatives")
@@ -84,7 +83,7 @@ def _draw(ax: Axes, time: Array, values: Array, number: int, name: str) -> None:
 
 
 def _logarithmic(ax: Axes) -> None:
-    """A logarithmic axis over at most twelve powers of ten."""
+    """Make the axis logarithmic, over at most twelve powers of ten."""
     every = np.concatenate([np.ravel(np.asarray(line.get_ydata(), dtype=float)) for line in ax.lines] or [np.ones(1)])
     high = 3 * float(every.max())
     ax.set_yscale("log")
@@ -94,7 +93,7 @@ def _logarithmic(ax: Axes) -> None:
 
 @figure("it is something else, or the threshold is not positive")
 def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -> Drawing:
-    """How well the distance can be known at each place of the image, on a logarithmic scale of colours.
+    """Least error of the distance at each place of the image, on a logarithmic scale of colours.
 
     Over it the focus of expansion, where there is one, with both outputs and a constant motion the circle
     |w| = threshold, and with one output the lines on which w vanishes.

@@ -109,7 +109,7 @@ def _coordinate(ax: Axes, run: Run, column: int) -> str:
 
 
 def _levels(run: Run, residuals: Array, names: Sequence[str], what: str) -> str:
-    """Root mean square over the last half, where there is no gap in it."""
+    """Return the sentence on root mean squares over the last half."""
     late = {name: describe.finite(each[len(run.elapsed) // 2 :]) for name, each in zip(names, residuals, strict=True)}
     levels = [f"{np.sqrt(np.mean(each**2)):.2g} ({name})" for name, each in late.items() if each.size]
     over = f"; root mean square over the last half: {', '.join(levels)}" if levels else ""
@@ -119,17 +119,8 @@ def _levels(run: Run, residuals: Array, names: Sequence[str], what: str) -> str:
 def _mark_resets_and_divergence(ax: Axes, run: Run) -> None:
     ax.set_xlim(run.elapsed[0], run.elapsed[-1])
     if len(run.resets):
-        top = ax.get_xaxis_transform()
-        ax.vlines(
-            run.resets - run.time[0],
-            1,
-            1.05,
-            transform=top,
-            color=look.PURPLE,
-            linewidth=1,
-            clip_on=False,
-            label="reset",
-        )
+        tick: dict[str, Any] = {"color": look.PURPLE, "linewidth": 1, "clip_on": False, "label": "reset"}
+        ax.vlines(run.resets - run.time[0], 1, 1.05, transform=ax.get_xaxis_transform(), **tick)
     if run.diverged_at is not None:
         diverged = run.diverged_at - run.time[0]
         ax.axvspan(diverged, run.elapsed[-1], color=look.PALE, zorder=0)
@@ -141,13 +132,8 @@ def _say_where_it_diverged(ax: Axes, run: Run) -> None:
         return
     diverged = run.diverged_at - run.time[0]
     aside, ha = (6, "left") if diverged < run.elapsed[-1] / 2 else (-6, "right")
-    place: dict[str, Any] = {
-        "xycoords": ax.get_xaxis_transform(),
-        "textcoords": "offset points",
-        "ha": ha,
-        "va": "center",
-    }
-    ax.annotate(f"diverged at {diverged:.3g} s", (diverged, 0.5), (aside, 0), **place)
+    place: dict[str, Any] = {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points", "va": "center"}
+    ax.annotate(f"diverged at {diverged:.3g} s", (diverged, 0.5), (aside, 0), ha=ha, **place)
 
 
 @figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
@@ -287,7 +273,7 @@ def distance(
 
 
 def _known_distances(recording: Recording) -> dict[str, Array]:
-    """The true distance, if there is one, and what else measured it."""
+    """Return the true distance, if known, and other measurements of it."""
     truth = {} if recording.truth is None else {"truth": recording.distance}
     return {**truth, **recording.distances}
 
@@ -308,7 +294,7 @@ def _counted(runs: Sequence[Run]) -> str:
 
 
 def _descriptions(runs: Sequence[Run]) -> list[str]:
-    """What tells the runs apart: observers, measured outputs and differing gains."""
+    """Return labels of runs: observers, measured outputs and differing gains."""
     kinds = [f"{run.observer.name} ({', '.join(run.measured)})" for run in runs]
     gains = [{gain.name: gain.value for gain in run.observer.gains} for run in runs]
     found = []
@@ -320,7 +306,7 @@ def _descriptions(runs: Sequence[Run]) -> list[str]:
 
 
 def _with_divergence(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
-    """Labels that say when a curve ends, and why."""
+    """Add the time of divergence to labels."""
     ends = ["" if run.diverged_at is None else f", diverged at {run.diverged_at:.3g} s" for run in runs]
     return [f"{name}{end}" for name, end in zip(labels, ends, strict=True)]
 
@@ -391,13 +377,13 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
 
 
 def _draw_in_space(ax: Axes, points: Array, **looks: Any) -> None:
-    """Z to the right, X into the picture and Y upwards, which is right-handed."""
+    """Draw with Z to the right, X into the picture and Y upwards, which is right-handed."""
     if len(points):
         ax.plot(*points.T[[2, 0, 1]], **looks)
 
 
 def _set_equal_scales(ax: Any, points: Array) -> None:
-    """One scale for the three directions, and few numbers along them."""
+    """Set one scale for the three directions, with few ticks."""
     x, y, z = curves.not_a_strip(*(curves.limits(column) for column in points.T[[2, 0, 1]]))
     ax.set(xlim=x, ylim=y, zlim=z)
     for set_label, name in ((ax.set_xlabel, "Z"), (ax.set_ylabel, "X"), (ax.set_zlabel, "Y")):
@@ -408,7 +394,7 @@ def _set_equal_scales(ax: Any, points: Array) -> None:
 
 
 def _believable(run: Run, far: float) -> Array:
-    """Estimated places, NaN where they are not in front of the camera or too far away."""
+    """Return estimated places, shape (K, 3); NaN where they are not in front of the camera or too far away."""
     seen = describe.finite(run.distance)
     usual = np.median(seen) if seen.size else 0.0
     expected = usual if run.recording.truth is None else run.recording.distance
@@ -423,7 +409,7 @@ def _approach(time: Array, points: Array) -> str:
 
 
 _TRUTH = "truth"
-"""The label of the path that the others are compared with."""
+"""Label of the path that the others are compared with."""
 
 
 @figure("there are no paths, their times differ, or the axis is none of 0, 1 and 2")

@@ -117,11 +117,11 @@ def cases(
 
 
 UNITS = {"d_s": "1/m", "y1": "", "y2": "", "y3": "1/m"}
-"""Of quantities that are no velocity."""
+"""Units of quantities that are no velocity."""
 
 
 def _named(run: Run, coordinates: Array, image: bool) -> dict[str, Array]:
-    """The unknown quantities, and if asked for the image coordinates and the inverse depth before them."""
+    """Return the unknown quantities, if asked for after the image coordinates and the inverse depth."""
     view, choice = run.view, _choice(run)
     found = choice.quantities(coordinates[:, -len(choice.unknown) :])
     if not image:
@@ -141,7 +141,7 @@ def _choice(run: Run) -> StructureAndMotion:
 
 
 def _neighbourhood(truth: Array) -> Array:
-    """Values that an axis should hold: a quarter of its size around the truth, or 0.1 around zero."""
+    """Return values that an axis should hold: a quarter of its size around the truth, or 0.1 around zero."""
     size = np.abs(describe.finite(truth)).max()
     around = 0.25 * size if size > 0 else 0.1
     return np.concatenate([truth - around, truth + around])

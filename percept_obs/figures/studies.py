@@ -99,7 +99,7 @@ def _draw_runs(ax: Axes, table: pd.DataFrame, found: pd.DataFrame, column: str) 
 
 
 def _counts(row: pd.Series) -> str:
-    """How many runs failed, were reset or diverged."""
+    """Return the numbers of runs that failed, were reset or diverged as text."""
     counts = [f"{row['failed']:.0f} of {row['runs']:.0f} fail"]
     counts += [f"{row[name]:.0f} {how}" for name, how in (("reset", "reset"), ("diverged", "diverge")) if row[name]]
     return ", ".join(counts)
@@ -207,7 +207,7 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
 
 
 def _with_unit(values: Any) -> str:
-    """A name with its unit."""
+    """Return a name with its unit."""
     unit = values.attrs.get("units", "1")
     return str(values.name) if unit == "1" else f"{values.name} ({unit})"
 
@@ -307,7 +307,7 @@ def _shade(ax: Axes, found: TrustOverTime) -> None:
 
 @figure("it is something else, or nothing was found that has values to scan")
 def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
-    """What is left of the samples for each value of what was found first, such as each time offset.
+    """Residual of the samples for each value of the first finding, such as each time offset.
 
     Parameters
     ----------
