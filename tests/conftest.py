@@ -131,7 +131,7 @@ def playwright_chromium():
 def missing(need, advice):
     """Skip a test that needs something which is not here, or fail it where PERCEPT_OBS_MUST_RUN names the need.
 
-    The variable holds words separated by spaces: utias, node, chromium, lighthouse, jupyterlab.
+    The variable holds words separated by spaces: utias, node, chromium, firefox, lighthouse, or a front end's module.
     """
     if need in os.environ.get("PERCEPT_OBS_MUST_RUN", "").split():
         pytest.fail(advice)

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from conftest import missing
 from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_notebook, in_voila, marimo
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
@@ -51,7 +52,7 @@ def browsers(request, playwright):
             return playwright.firefox.launch()
         own = shutil.which("firefox-esr") or shutil.which("firefox")
         if not own:
-            pytest.skip("Firefox is missing; get it with: python -m playwright install firefox")
+            missing("firefox", "Firefox is missing; get it with: python -m playwright install firefox")
         # Spoken to by WebDriver BiDi, of which Playwright asks for as much as the Firefox of its day knows.
         return playwright.firefox.launch(channel="moz-firefox", executable_path=own)
 
@@ -86,7 +87,7 @@ def shown(request, browsers, tmp_path_factory):
     name, _, browser = request.param.partition(" in ")
     open_in, module, resource = OPEN[name]
     if find_spec(module) is None:
-        pytest.skip(f"{name} is missing; get it with: {GET[name]}")
+        missing(module, f"{name} is missing; get it with: {GET[name]}")
     given = request.getfixturevalue(resource)
     page = browsers(browser).new_page(viewport={"width": 1280, "height": 900}, base_url=getattr(given, "url", None))
     page.set_default_timeout(30_000)
