@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from percept_obs.labs.desk.answering import said_of
+from percept_obs.labs.desk.answers import answer_to
 from percept_obs.labs.desk.settings import SCHEMA
 from percept_obs.labs.desk.sheets import Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
@@ -17,14 +17,14 @@ from percept_obs.system.perspective import PerspectiveSystem
 class DerivationDesk(Lab):
     """The desk at which a derivation is filled in; `settings` define everything, and may be set from Python as well.
 
-    What is typed is read as `percept_obs.check` reads it, and compared with what the package derives.
+    Formulas are read as `percept_obs.check` reads them, and compared with those that the package derives.
 
     Parameters
     ----------
     system : PerspectiveSystem, optional
-        What is derived, if it is none of those that can be chosen.
+        System of one's own, if it is none of those that can be chosen.
     **settings
-        Those to open with, such as ``student="Ada"``, from which a system of her own follows:
+        Settings to open with, such as ``student="Ada"``, from which a system of her own follows:
 
     {settings}
 
@@ -71,7 +71,7 @@ class DerivationDesk(Lab):
             )
 
     def system(self) -> tuple[PerspectiveSystem, tuple[str, ...]]:
-        """The system that the settings stand for, and its measured outputs."""
+        """Return the system of the settings, and its measured outputs."""
         settings = self.settings
         if self._given is not None:
             return self._given, tuple(settings["outputs"])
@@ -80,7 +80,7 @@ class DerivationDesk(Lab):
         return system_of(settings["motion"], settings["surface"]), tuple(settings["outputs"])
 
     def sheet(self) -> Sheet:
-        """What is asked for.
+        """Return the derivation to fill in.
 
         Raises
         ------
@@ -90,14 +90,14 @@ class DerivationDesk(Lab):
         return sheet_of(*self.system(), self.settings["observer"], self.settings["part"])
 
     def analyse(self) -> Settings:
-        """The sheet, and what is found of the lines of the step that is shown."""
+        """Return the sheet, and the answer to the lines of the step that is shown."""
         settings = self.settings
         try:
             sheet = self.sheet()
         except ValueError as error:
             return {"problem": str(error)}
         system, outputs = self.system()
-        return {"title": _title(system, outputs), **said_of(sheet, settings, system)}
+        return {"title": _title(system, outputs), **answer_to(sheet, settings, system)}
 
 
 derivation_desk = DerivationDesk

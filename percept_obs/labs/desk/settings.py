@@ -1,10 +1,11 @@
-"""What may be set at the desk."""
+"""Settings of the desk, and the choices that the page shows."""
 
 from typing import Any
 
 from percept_obs.checking.review import HINTS
 from percept_obs.labs.desk.sheets import PARTS
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, system_of
+from percept_obs.labs.shared.printed import Parts
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
 from percept_obs.labs.shared.surfaces import SURFACES
 
@@ -31,3 +32,16 @@ SCHEMA = Schema(
         about="where numbers are put in: y1, y2 and the inverse distance",
     ),
 )
+
+
+def texts_for_the_page() -> Parts:
+    """Yield the choices that the page shows before Python answers."""
+    yield (
+        "",
+        {
+            "surfaces": {name: system_of("affine", name).output_choices for name in SURFACES},
+            "motions": list(MOTIONS),
+            "observers": {name: make.name for name, make in OBSERVERS.items()},
+            "parts": PARTS,
+        },
+    )

@@ -1,4 +1,4 @@
-"""What is asked for at the desk: the steps of a derivation, a line for each formula, and the goal."""
+"""Sheets of the desk: the steps of a derivation, a line for each formula, and the goal."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PARTS = {
     "observer": "an observer",
     "error": "its error dynamics",
 }
-"""What can be derived, in the order in which one thing needs the other."""
+"""Parts of a derivation, each of which needs those before it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +36,13 @@ class Sheet:
     Parameters
     ----------
     given : list of str
-        What is known, as MathML.
+        Known formulas as MathML.
     derivation : Derivation
-        Its steps with their values are what is asked for.
+        The values of its steps are to be filled in.
     goal : Target
-        What lines are read with and compared with, a line for each value.
+        Target of the lines, one for each value.
     image : tuple of str
-        The lines whose numbers are the image's motion.
+        Names of the lines that are the image's motion.
     """
 
     given: list[str]
@@ -52,25 +52,25 @@ class Sheet:
 
     @cached_property
     def numbered(self) -> Target:
-        """The same goal with a name for each line that no other has."""
+        """The goal with a name of its own for each line."""
         lines = (replace(line, name=f"line{k}") for k, line in enumerate(self.goal.lines))
         return replace(self.goal, lines=tuple(lines))
 
     @cached_property
     def letters(self) -> list[str]:
-        """The letters that occur in the lines, as MathML."""
+        """Letters that occur in the lines, as MathML."""
         used = {s for line in self.goal.lines for s in in_letters(line.formula).free_symbols}
         return [markup(s) for s in sorted(used, key=str)]
 
     def rows(self, step: int) -> range:
-        """The lines of a step, which is counted from 1."""
+        """Return the rows of a step, which is counted from 1."""
         start = sum(len(before.values) for before in self.derivation[: step - 1])
         return range(start, start + len(self.derivation[step - 1].values))
 
 
 @lru_cache(maxsize=64)
 def sheet_of(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str, part: str) -> Sheet:
-    """What is asked for.
+    """Return the derivation to fill in.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) ->
     seen = {s.name: e for s, e in zip(surface.coordinates, (*surface.image, 1 / surface.distance), strict=True)}
     steps = [step for step in system.derivation() if step.values]
     # what is only written in another form is asked for once
-    kept = [step for before, step in pairwise([None, *steps]) if step and not _again(step, before)]
+    kept = steps[:1] + [step for before, step in pairwise(steps) if list(step.values) != list(before.values)]
     given = [
         formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(system.motion.A, sp.Matrix(POINT)), system.motion.b)),
         row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
@@ -93,10 +93,6 @@ def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) ->
     ]
     image = tuple(f"{s.name}'" for s in surface.image_coordinates)
     return _sheet(given, kept, target_of(system), image)
-
-
-def _again(step: Step, before: Step | None) -> bool:
-    return before is not None and list(step.values) == list(before.values)
 
 
 def _form(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:
@@ -143,7 +139,7 @@ def _known(system: PerspectiveSystem, outputs: tuple[str, ...]) -> list[str]:
 
 
 def _named_in(expressions: Iterable[sp.Expr]) -> list[str]:
-    """What the letters of roots stand for; they may be typed."""
+    """Return the definitions of letters for roots; they may be typed."""
     return [formula(letter, value) for letter, value in definitions(expressions).items()]
 
 

@@ -1,4 +1,4 @@
-"""The systems of the desk: what a motion, a surface and outputs make, and which one follows from a student's name."""
+"""Systems of the desk: of a motion and a surface, or from a student's name."""
 
 import hashlib
 import unicodedata
@@ -20,13 +20,13 @@ OBSERVERS = {make.key: make for make in (identifier_based, de_luca, spica)}
 
 @lru_cache
 def system_of(motion: str, surface: str) -> PerspectiveSystem:
-    """A motion in letters, seen on a surface."""
+    """Return a motion in letters, seen on a surface."""
     return PerspectiveSystem(MOTIONS[motion](), SURFACES[surface]())
 
 
 @lru_cache
 def observer_of(system: PerspectiveSystem, outputs: tuple[str, ...], name: str) -> Observer:
-    """An observer of a system whose outputs are measured.
+    """Return an observer of a system with these measured outputs.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def observer_of(system: PerspectiveSystem, outputs: tuple[str, ...], name: str) 
 
 @lru_cache
 def system_of_student(student: str) -> tuple[PerspectiveSystem, tuple[str, ...]]:
-    """The system that follows from a student's name or number, and its measured outputs.
+    """Return the system that follows from a student's name or number, and its measured outputs.
 
     The same name gives the same system on every machine; capitals and spaces around it do not matter.  Some letters of
     the motion are zero, so that neighbours have different and shorter formulas; b3 never is, for without it the
@@ -87,7 +87,7 @@ def _rigid(drawn: _Draw) -> Motion:
 
 
 def number_of(symbol: sp.Symbol, system: PerspectiveSystem) -> float:
-    """The number of a letter in the picture: the system's, or one that follows from the letter's name."""
+    """Return the number of a letter: the system's, or one that follows from the letter's name."""
     if symbol in system.values:
         return system.values[symbol]
     drawn = int.from_bytes(hashlib.sha256(symbol.name.encode()).digest()[:4], "big") / 2**32
