@@ -196,7 +196,7 @@ def test_a_late_picture_still_has_the_map_of_settings_before_whose_axis_means_no
     page.close()
 
 
-AIMED = "([...window.perceptObsLabs][0].planes[2].there)"
+AIMED = "([...window.perceptObsLabs][0].planes[2].pointerRun)"
 TRACE = ".there path"
 
 

@@ -88,11 +88,11 @@ def test_frames_stand_behind_the_track_of_ones_own_recording(browser, tmp_path):
     lab = observer_lab(film, frames=Frames(tmp_path, drawn.time, drawn.extent))
     page = opened(browser, lab)
     page.wait_for_function(DRAWN)
-    page.wait_for_function("() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.values()].some(Boolean)")
+    page.wait_for_function("() => [...[...window.perceptObsLabs][0].planes[0].film.ready.values()].some(Boolean)")
     page.wait_for_function(DRAWN)
     painted(page)
     assert page.evaluate(PIXEL) > 40
-    kept = "() => [...[...window.perceptObsLabs][0].planes[0].frames.ready.keys()].map((key) => key.split(' ').at(-1))"
+    kept = "() => [...[...window.perceptObsLabs][0].planes[0].film.ready.keys()].map((key) => key.split(' ').at(-1))"
     page.evaluate("() => [...window.perceptObsLabs][0].point(3.9)")
     page.wait_for_function(f"() => ({kept})().includes('7')")
     page.close()

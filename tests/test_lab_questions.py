@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 ARROWS = """() => {
     const [lab] = window.perceptObsLabs;
-    const found = lab.planes[0].arrowsOf(lab.shown, { sample: 0, part: 0, next: 0 }, lab.theme);
+    const found = lab.planes[0].parts.arrowsOf(lab.shown, { sample: 0, part: 0, next: 0 }, lab.theme);
     return found[0].velocities;
 }"""
 FOE_TO_POINT = """() => {

@@ -65,7 +65,7 @@ def overlap(one, other):
 def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(show):
     page = show(outputs=["y1"])
     alike = page.evaluate("""() => { const [lab] = window.perceptObsLabs; const [plane] = lab.planes;
-        return plane.alikeOf(lab.shown, { sample: 300, part: 0 }, plane.square); }""")
+        return plane.parts.alikeOf(lab.shown, { sample: 300, part: 0 }, plane.square); }""")
     copies = alike["copies"]
     assert len({round(copy["place"][0], 9) for copy in copies}) == 1
     np.testing.assert_allclose([copy["velocity"][0] for copy in copies], copies[0]["velocity"][0], atol=1e-7)
@@ -180,7 +180,7 @@ def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_sho
         (found,) = names_of(page, "FOE now")
         seen = page.evaluate(
             """([time]) => { const [lab] = window.perceptObsLabs;
-            return lab.planes[0].focusAt(lab.shown, { sample: Math.round(time / 0.01), part: 0 }).foe; }""",
+            return lab.planes[0].parts.focusAt(lab.shown, { sample: Math.round(time / 0.01), part: 0 }).foe; }""",
             [time],
         )
         assert seen == pytest.approx([np.cos(time), 0], abs=1e-9)

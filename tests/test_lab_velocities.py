@@ -24,7 +24,7 @@ ARROWS = """() => {
     const k = Math.floor(shown.time.length / 3);
     const rows = shown.images ?? shown.image ?? shown.truth;
     const width = shown.images ? 2 * shown.points : 3;
-    const arrows = plane.arrowsOf(shown, { sample: k, part: 0 }, theme);
+    const arrows = plane.parts.arrowsOf(shown, { sample: k, part: 0 }, theme);
     const seconds = shown.time[k + 1] - shown.time[k - 1];
     const step = (c) => (rows[(k + 1) * width + c] - rows[(k - 1) * width + c]) / seconds;
     return arrows.map(({ place, velocities }, p) => {
@@ -41,7 +41,7 @@ UNSEEN = {
 SWUNG = """() => {
     const [lab] = window.perceptObsLabs;
     const [, scene] = lab.planes;
-    const { moved } = scene.unseenOf(lab.shown, { sample: 50, part: 0 }, lab.theme);
+    const { moved } = scene.parts.unseenOf(lab.shown, { sample: 50, part: 0 }, lab.theme);
     return [-1, 0, 1].map((amount) => moved(amount).map(({ image, place }) => [image, place]));
 }"""
 

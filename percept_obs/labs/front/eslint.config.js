@@ -2,6 +2,7 @@ import js from "@eslint/js";
 import globals from "globals";
 
 const MODEL = "src/**/model/**/*.js";
+const OTHERS = "^(?!\\./[^/]+$|\\.\\./\\.\\./common/model/)";
 const message = "what computes knows nothing of the page: import from a folder `model` only";
 
 export default [
@@ -15,12 +16,21 @@ export default [
     files: [MODEL],
     languageOptions: { globals: globals["shared-node-browser"] },
     rules: {
-      "no-restricted-imports": ["error", { patterns: [{ regex: "^(?!\\./[^/]+$|\\.\\./\\.\\./common/model/)", message }] }],
+      "no-restricted-imports": ["error", { patterns: [{ regex: OTHERS, message }] }],
     },
   },
   {
     files: ["src/**/*.js"],
-    rules: { "no-unused-vars": ["error", { varsIgnorePattern: "^_", argsIgnorePattern: "^_" }], eqeqeq: "error", "prefer-const": "error" },
+    rules: {
+      "no-unused-vars": ["error", { varsIgnorePattern: "^_", argsIgnorePattern: "^_" }],
+      eqeqeq: "error",
+      "prefer-const": "error",
+    },
+  },
+  {
+    files: ["src/**/*.js"],
+    ignores: [MODEL, "src/types.js", "src/main.js", "src/common/page/looks.js"],
+    rules: { "max-len": ["error", { code: 120 }] },
   },
   { files: ["tests/**/*.js"], languageOptions: { globals: globals.node } },
 ];

@@ -1,13 +1,13 @@
 // The bundle's entrance: anywidget calls render() for each view of a lab.
 //
 // To add a lab: a folder beside observer/ with an engine that makes results of settings (types.js says of what) and a
-// class that extends Live (common/page/live.js) and draws them; name it below, as its Python side names it in `kind`.
+// class that extends Lab (common/page/lab.js) and draws them; name it below, as its Python side names it in `kind`.
 // What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
 
 import { serveMaps } from "./common/model/filling.js";
 import { serve } from "./common/model/serving.js";
 import { modelOf } from "./common/model/texts.js";
-import { element } from "./common/page/controls.js";
+import { element } from "./common/page/dom.js";
 import { COLOURS } from "./common/page/looks.js";
 import style from "./common/page/style.css";
 import { DeskLab } from "./desk/lab.js";

@@ -58,7 +58,7 @@ test("while a hand moves fewer windows are looked at, and each tells what it tel
 });
 
 test("resets have one tick in each column of pixels, however many there are", () => {
-  const place = { left: 10, width: 50, top: 0, words: [], x: (time) => 10 + 5 * (time - 2), timeAt: (x) => 2 + (x - 10) / 5 };
+  const place = { left: 10, right: 60, top: 0, words: [], x: (time) => 10 + 5 * (time - 2), timeAt: (x) => 2 + (x - 10) / 5 };
   const ticks = [];
   const pen = { fillRect: (x) => ticks.push(x) };
   const times = Float64Array.from({ length: 3000 }, (_, k) => 0.01 * k - 5).filter((time) => time < 4 || time > 6);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
 import { State } from "../src/common/model/state.js";
 import { Link } from "../src/common/page/link.js";
-import { Live } from "../src/common/page/live.js";
+import { Lab } from "../src/common/page/lab.js";
 
 const OPENING = { gain: 1, seed: 0, period: 0.01, duration: 1, observers: [], pictures: [], kept: null };
 
@@ -54,7 +54,7 @@ function fakeWidget() {
 }
 
 /** A lab of one picture, which notes what it draws and what it says of Python's answers. */
-class SmallLab extends Live {
+class SmallLab extends Lab {
   static computing = { Kernels: SmallKernels, Engine: CountingEngine };
 
   constructor(widget) {

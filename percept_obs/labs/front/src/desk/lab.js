@@ -2,7 +2,7 @@
 
 import { same } from "../common/model/settings.js";
 import { themeOf } from "../common/page/canvas.js";
-import { Following } from "../common/page/following.js";
+import { LabBase } from "../common/page/lab_base.js";
 import { build } from "./page/layout.js";
 import { Panel, WORDS } from "./page/panel.js";
 import { Sheet } from "./page/sheet.js";
@@ -12,7 +12,7 @@ const DEBOUNCE = 20;
 /** How long nobody types before something is said of a text that may not be complete. */
 const PAUSE = 1000;
 
-export class DeskLab extends Following {
+export class DeskLab extends LabBase {
   constructor(widget, place, model) {
     super(widget, model, WORDS);
     this.calm = true;

@@ -3,12 +3,12 @@
 import { withoutRefused } from "../common/model/kernels.js";
 import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
-import { Frames } from "../common/page/frames.js";
+import { Film } from "../common/page/film.js";
+import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { ImagePlane } from "../common/page/image_plane.js";
-import { Live } from "../common/page/live.js";
+import { Lab } from "../common/page/lab.js";
 import { Scene } from "../common/page/scene.js";
 import { SettingsMap } from "../common/page/settings_map.js";
-import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { axesOf } from "./model/axes.js";
 import { CellEngine } from "./model/cell_engine.js";
 import { noBound } from "./model/bound.js";
@@ -25,8 +25,9 @@ import { chartOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
 const ALWAYS_POSSIBLE = "identifier_based";
+const RECORDED = "its motion is as it was measured, and between samples nothing is known";
 
-export class ObserverLab extends Live {
+export class ObserverLab extends Lab {
   static computing = { Kernels, Engine, CellEngine, axesOf };
 
   constructor(widget, place, model) {
@@ -47,7 +48,7 @@ export class ObserverLab extends Live {
       towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
-    plane.frames = new Frames(this);
+    plane.film = new Film(this);
     this.map = plane.map = new MapPicture(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {
@@ -110,7 +111,8 @@ export class ObserverLab extends Live {
     if (own && motion.trim()) return `${scenario} has a motion of its own, and none can be typed.`;
     if (!track) return "";
     if (surface !== track.surface) return `${scenario} was seen on the ${track.surface} surface.`;
-    if (!outputs.every((name) => track.names.includes(name))) return `${scenario} has ${track.names.join(" and ")} only.`;
-    return believed || hold === "exact" ? `${scenario} is a recording: its motion is as it was measured, and between samples nothing is known.` : "";
+    const names = track.names.join(" and ");
+    if (!outputs.every((name) => track.names.includes(name))) return `${scenario} has ${names} only.`;
+    return believed || hold === "exact" ? `${scenario} is a recording: ${RECORDED}.` : "";
   }
 }

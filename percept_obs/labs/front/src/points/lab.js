@@ -2,7 +2,7 @@
 
 import { readable } from "../common/model/scales.js";
 import { FormulaSheet, lettered } from "../common/page/formulas.js";
-import { Live } from "../common/page/live.js";
+import { Lab } from "../common/page/lab.js";
 import { Scene } from "../common/page/scene.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
@@ -24,7 +24,7 @@ class Formulas extends FormulaSheet {
 
   show(settings) {
     const numbers = { ...settings, ...lettered({ v: settings.velocity }) };
-    this.putIn((_, letter) => numbers[letter]);
+    this.setNumbers((_, letter) => numbers[letter]);
   }
 }
 
@@ -34,7 +34,7 @@ function placeBeside([x, y, z], k) {
   return [x + 0.5 * Math.cos(2.4 * k), y + 0.4 * Math.sin(2.4 * k), Math.max(z, 1) + 0.1 * k].map(round);
 }
 
-export class PointsLab extends Live {
+export class PointsLab extends Lab {
   static computing = { Kernels: PointsKernels, Engine: PointsEngine };
 
   constructor(widget, place, model) {
@@ -55,7 +55,7 @@ export class PointsLab extends Live {
     return this.settings.points[k].reduce((sum, value, i) => sum + l[i] * value, 0);
   }
 
-  put(k, place) {
+  placePoint(k, place) {
     const { most = Infinity } = this.schema.points;
     if (!place.every((value) => Math.abs(value) <= most)) return;
     this.change({ points: this.settings.points.with(k, place) });
@@ -64,13 +64,13 @@ export class PointsLab extends Live {
   movePoint(k, [y1, y2]) {
     const functions = this.kernels.of(this.settings);
     if (k >= this.settings.points.length || !functions) return;
-    this.put(k, Array.from(functions.locate([y1, y2, this.depthOf(k)], new Float64Array(3))));
+    this.placePoint(k, Array.from(functions.locate([y1, y2, this.depthOf(k)], new Float64Array(3))));
   }
 
   moveDepth(k, depth) {
     const now = this.depthOf(k);
     const [x, y, z] = this.settings.points[k];
-    if (depth > 0) this.put(k, now > 0 ? [x, y, z].map((value) => (value * depth) / now) : [x, y, depth]);
+    if (depth > 0) this.placePoint(k, now > 0 ? [x, y, z].map((value) => (value * depth) / now) : [x, y, depth]);
   }
 
   addPoint() {
@@ -100,8 +100,12 @@ export class PointsLab extends Live {
   }
 
   clash({ points, hidden, state, motion }) {
-    if (hidden.length !== points.length) return `There are ${points.length} points, and ${hidden.length} are said to be hidden or not.`;
-    if (hidden.some((times) => times && !(times[0] < times[1]))) return "A point is hidden until after the time from which it is hidden.";
+    if (hidden.length !== points.length) {
+      return `There are ${points.length} points, and ${hidden.length} are said to be hidden or not.`;
+    }
+    if (hidden.some((times) => times && !(times[0] < times[1]))) {
+      return "A point is hidden until after the time from which it is hidden.";
+    }
     return state === "own" && motion.trim() ? "Your own form has a motion of its own, and none can be typed." : "";
   }
 

@@ -3,11 +3,11 @@
 import { withoutRefused } from "../common/model/kernels.js";
 import { same, settingsAfter as settingsOf } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
+import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { ImagePlane } from "../common/page/image_plane.js";
-import { Live } from "../common/page/live.js";
+import { Lab } from "../common/page/lab.js";
 import { Scene } from "../common/page/scene.js";
 import { SettingsMap } from "../common/page/settings_map.js";
-import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { axesOf } from "./model/axes.js";
 import { isSampled } from "./model/camera.js";
 import { pythonOf } from "./model/code.js";
@@ -21,7 +21,9 @@ import { NAMES, StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
 
-export class StructureLab extends Live {
+const SYSTEM = "What multiplies the unknowns, and what is known";
+
+export class StructureLab extends Lab {
   static computing = { Kernels: StructureKernels, Engine: StructureEngine, CellEngine: StructureEngine, axesOf };
 
   constructor(widget, place, model) {
@@ -38,7 +40,7 @@ export class StructureLab extends Live {
     });
     this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {
-      systemOf: (settings) => ["What multiplies the unknowns, and what is known", model.unknowns[keyOf(settings)]?.formulas ?? []],
+      systemOf: (settings) => [SYSTEM, model.unknowns[keyOf(settings)]?.formulas ?? []],
       numbersOf: (settings) => this.numbersOf(settings),
     });
     this.choice = new ChoiceOfUnknowns(this.model, this);
@@ -69,9 +71,13 @@ export class StructureLab extends Live {
 
   clash({ velocities, motion, unknown, duration, period, step }) {
     const { mostSteps, samples, schema } = this.model;
-    if (isSampled({ velocities }) && motion.trim()) return "The velocities are those of your samples, and none can be typed.";
-    if (isSampled({ velocities }) && duration > samples.until) return `The velocities are sampled up to ${samples.times.at(-1)} s only.`;
-    if (!same(unknown, schema.unknown.names.filter((name) => unknown.includes(name)))) return `Unknowns come in the order ${schema.unknown.names.join(", ")}.`;
+    const sampled = isSampled({ velocities });
+    if (sampled && motion.trim()) return "The velocities are those of your samples, and none can be typed.";
+    if (sampled && duration > samples.until) return `The velocities are sampled up to ${samples.times.at(-1)} s only.`;
+    const { names } = schema.unknown;
+    if (!same(unknown, names.filter((name) => unknown.includes(name)))) {
+      return `Unknowns come in the order ${names.join(", ")}.`;
+    }
     return duration / Math.min(period, step) > mostSteps ? `A run has ${mostSteps} steps at most.` : "";
   }
 

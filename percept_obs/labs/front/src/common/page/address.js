@@ -1,21 +1,22 @@
 // @ts-check
 // A lab's part of the page's address, where the page opens without Python: read when the page opens or its address
-// changes, written when the hand rests, in the place of what stood there, so that "back" leads to the page before.
+// changes, and written when the hand rests; it replaces the address, so that "back" leads to the page before.
 
 import { BadAddress, fragmentOf, isTooLong, MOST, partsOf, settingsIn, textOf } from "../model/address.js";
 import { same } from "../model/settings.js";
 
 /** Milliseconds between changes of the address: browsers refuse more than a hundred in half a minute. */
 const SELDOM = 500;
+const UNCHANGED = "The lab is as it would be without the link.";
 
 export class Address {
-  /** @param {{name: string, names: string[]}} place  the lab's name in the address, and those of all labs of the page */
+  /** @param {{name: string, names: string[]}} place  the lab's name in the address, and those of all the page's labs */
   constructor(lab, place) {
     this.lab = lab;
     this.name = place.name;
     this.names = place.names;
-    /** The settings that the address tells; those that the lab opens with it need not tell. */
-    this.told = lab.settings;
+    /** The settings in the address; those that the lab opens with need not be there. */
+    this.written = lab.settings;
     this.timer = /** @type {any} */ (null);
     this.listener = () => this.follow();
     window.addEventListener("hashchange", this.listener);
@@ -31,7 +32,7 @@ export class Address {
       const parts = partsOf(hash);
       const mine = parts.get(name);
       if (mine === undefined) {
-        // What no lab of the page is meant by, the first one tells.
+        // The first lab tells of an address that is about none of them.
         if (names[0] === name) this.refuseStranger(hash, [...parts.keys()]);
         return;
       }
@@ -42,7 +43,8 @@ export class Address {
       if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
     } catch (error) {
       if (!(error instanceof BadAddress)) return lab.fail(error);
-      lab.view.notice(`The link in this page's address is not followed: ${error.message.replace(/\.$/, "")}. The lab is as it would be without the link.`);
+      const why = error.message.replace(/\.$/, "");
+      lab.view.notice(`The link in this page's address is not followed: ${why}. ${UNCHANGED}`);
     }
   }
 
@@ -63,23 +65,24 @@ export class Address {
     await lab.kernels.prepare(settings);
     for (const [observer, gains] of Object.entries(settings.gains ?? {})) {
       const standard = lab.model.standard.gains[observer];
-      const bad = Object.keys(gains).find((gain) => !same(gains[gain], standard[gain]) && !lab.kernels.allows(observer, gain, gains[gain]));
+      const allowed = (gain) => same(gains[gain], standard[gain]) || lab.kernels.allows(observer, gain, gains[gain]);
+      const bad = Object.keys(gains).find((gain) => !allowed(gain));
       if (bad) throw new BadAddress(`"gains.${observer}.${bad}" is ${gains[bad]}, which this observer does not allow`);
     }
   }
 
   /** Settings have come to rest. */
   rested(settings) {
-    if (settings === this.told) return;
-    this.told = settings;
+    if (settings === this.written) return;
+    this.written = settings;
     this.timer ??= setTimeout(() => this.write(), SELDOM);
   }
 
   write() {
     this.timer = null;
     const parts = [...partsOf(window.location.hash)].filter(([name]) => this.names.includes(name));
-    const told = new Map(parts).set(this.name, textOf(this.told, this.lab.model));
-    window.history.replaceState(window.history.state, "", fragmentOf(told));
+    const all = new Map(parts).set(this.name, textOf(this.written, this.lab.model));
+    window.history.replaceState(window.history.state, "", fragmentOf(all));
   }
 
   /** The address of the page with this lab as it is now, and no other. */

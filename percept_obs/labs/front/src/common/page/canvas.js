@@ -1,7 +1,7 @@
 // A canvas that is as sharp as the screen and as wide as its place, with a name for those who do not see it.
 
-import { element } from "./controls.js";
-import { DASHES } from "./lines.js";
+import { element, setAttribute } from "./dom.js";
+import { DASHES } from "./looks.js";
 
 const COLOURS = ["ink", "muted", "line", "grid", "sample", "warning", "kept", "noise", "paper"];
 
@@ -16,14 +16,12 @@ export class Picture {
     this.paintedFor = this.font = "";
     /** @type {{width: number, height: number} | null} */
     this.size = null;
-    /** @type {number | undefined} dots for a point, where it is not the screen that shows them */
-    this.sharpness = undefined;
   }
 
-  /** Fit the canvas to its figure's last known size, with a font for its letters; returns width and height in CSS pixels. */
+  /** Fit the canvas to its figure's last known size, with a font for its letters; return its size in CSS pixels. */
   fit(font) {
     const { canvas, context, figure } = this;
-    const ratio = this.sharpness ?? (window.devicePixelRatio || 1);
+    const ratio = window.devicePixelRatio || 1;
     // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
     this.size ??= { width: figure.clientWidth, height: figure.clientHeight };
     const width = Math.max(120, this.size.width);
@@ -45,7 +43,7 @@ export class Picture {
     return { width, height };
   }
 
-  /** Put below what is shown that which seldom changes: painted once for each key, since letters are slow. */
+  /** Draw what seldom changes below all else: painted once for each key, since letters are slow. */
   underlay(key, paint) {
     const { canvas, context, below } = this;
     const whole = JSON.stringify([key, canvas.width, canvas.height]);
@@ -66,16 +64,29 @@ export class Picture {
   }
 
   tell(text) {
-    const whole = `${this.label}: ${text}`;
-    if (this.canvas.getAttribute("aria-label") !== whole) this.canvas.setAttribute("aria-label", whole);
+    setAttribute(this.canvas, "aria-label", `${this.label}: ${text}`);
   }
+}
+
+/** Paint a square of dots of one colour, counted from the lower left on, each with an opacity from 0 to 1. */
+export function paintDots(canvas, size, colour, opacityOf) {
+  canvas.width = canvas.height = size;
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  pen.fillStyle = colour;
+  pen.fillRect(0, 0, size, size);
+  const dots = pen.getImageData(0, 0, size, size);
+  for (let k = 0; k < size * size; k++) {
+    const row = size - 1 - Math.floor(k / size);
+    dots.data[4 * (row * size + (k % size)) + 3] = 255 * opacityOf(k);
+  }
+  pen.putImageData(dots, 0, 0);
 }
 
 /** The colours of the theme that the element is shown in. */
 export function themeOf(element) {
   const style = getComputedStyle(element);
   const colour = (name) => style.getPropertyValue(`--lab-${name}`).trim();
-  const [ink, muted, line, grid, sample, warning, kept, noise, paper] = COLOURS.map(colour);
+  const named = /** @type {Record<string, any>} */ (Object.fromEntries(COLOURS.map((name) => [name, colour(name)])));
   const lines = DASHES.map((_, k) => colour(`line-${k}`));
-  return { ink, muted, line, grid, sample, warning, kept, noise, paper, lines, font: `11px ${colour("font") || "sans-serif"}` };
+  return { ...named, lines, font: `11px ${colour("font") || "sans-serif"}` };
 }

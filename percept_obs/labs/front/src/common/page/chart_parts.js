@@ -2,7 +2,7 @@
 
 import { settled } from "../model/errors.js";
 import { linearScale, logScale, readable } from "../model/scales.js";
-import { DASHES, KEPT, SOLID } from "./lines.js";
+import { DASHES, KEPT, SOLID } from "./looks.js";
 
 /** From this ratio on, the beginning of a distance cannot be read on a scale that shows its end. */
 const MANY = 50;
@@ -17,9 +17,10 @@ export function withKept(name, shown, ghost, theme, pick) {
   return [...kept, line(name, ...pick(shown), theme.ink, SOLID)];
 }
 
-// A scale is told as a function of `bounds`, which says between what a line stays in the time that is in sight.
-
-/** A range around the lines that are sure, which lets others leave it by as much as it is high, and no further. */
+/**
+ * A range around the lines that are sure, which holds others as far as they leave it by its height.  As all scales of
+ * charts it is a function of `bounds`, which says between what a line stays in the time that is in sight.
+ */
 export function rangeAround(lines, certain) {
   return (bounds) => {
     const found = lines.map((l) => [l, bounds(l)]).filter(([, b]) => b);
@@ -36,7 +37,7 @@ export function rangeAround(lines, certain) {
   };
 }
 
-/** The same for distances, in decades where the truth goes through several: both its beginning and its end can be read. */
+/** A range for distances, in decades where the truth goes through several, so that both its ends can be read. */
 export function distancesAround(lines, certain) {
   return (bounds) => {
     const sure = lines.filter(certain).map((l) => bounds(l)).filter(Boolean);
@@ -45,7 +46,7 @@ export function distancesAround(lines, certain) {
   };
 }
 
-/** A logarithmic range that holds a level and the lines' positive values, as far as these lie between a least and a most. */
+/** A logarithmic range for a level and the lines' positive values, as far as these lie between a least and a most. */
 export function decades(lines, least, most, level = NaN) {
   const named = level > 0 ? [[0.9 * level, 1.1 * level]] : [];
   return (bounds) => {
@@ -77,11 +78,12 @@ export function chartInWords({ title, lines }) {
 /** Lines of the kept run and of the runs, by what is picked of each in its result. */
 export function runLines(shown, ghost, theme, label, pick) {
   const kept = (run) => line(`kept ${run.title} ${label}`, ghost.time, pick(ghost, run), theme.kept, KEPT);
-  const own = ({ title, order }, values) => line(`${title} ${label}`, shown.time, values, theme.lines[order], DASHES[order]);
+  const own = ({ title, order }, values) =>
+    line(`${title} ${label}`, shown.time, values, theme.lines[order], DASHES[order]);
   return [...(ghost?.runs ?? []).map(kept), ...shown.runs.map((run) => own(run, pick(shown, run)))];
 }
 
-/** The same with the truth between them, of what is picked of rows of numbers. */
+/** Lines of the kept run, of the truth and of the runs, by what is picked of rows of numbers. */
 export function linesOf(shown, ghost, theme, label, pick) {
   const lines = runLines(shown, ghost, theme, label, (result, run) => pick(result, run.estimate));
   const truth = shown.truth ? [line(`true ${label}`, shown.time, pick(shown, shown.truth), theme.ink, SOLID)] : [];
@@ -90,10 +92,9 @@ export function linesOf(shown, ghost, theme, label, pick) {
 
 /** When observers were reset, in their colours. */
 export function marksOf({ runs }, theme) {
-  return runs.filter((run) => run.resets.length).map(({ resets, order }) => {
-    const text = resets.length === 1 ? "1 reset" : `${resets.length} resets`;
-    return { times: resets, colour: theme.lines[order], text };
-  });
+  const text = ({ length }) => (length === 1 ? "1 reset" : `${length} resets`);
+  const reset = runs.filter((run) => run.resets.length);
+  return reset.map(({ resets, order }) => ({ times: resets, colour: theme.lines[order], text: text(resets) }));
 }
 
 /** The tolerance, and since when errors stay in it, where they do so long enough to be sure of. */
@@ -101,7 +102,9 @@ export function toleranceOf({ runs, time, tolerance, settledPart }, theme) {
   const length = time.at(-1) - time[0];
   const events = runs
     .filter(({ settling }) => settling > 0 && settled(settling, length, settledPart))
-    .map(({ settling, order }) => ({ time: time[0] + settling, text: `${readable(settling)} s`, colour: theme.lines[order] }));
+    .map(({ settling, order }) => {
+      return { time: time[0] + settling, text: `${readable(settling)} s`, colour: theme.lines[order] };
+    });
   return { level: tolerance, events };
 }
 

@@ -1,13 +1,15 @@
-// Time charts: lines, of which the least and greatest value of each pixel column are drawn, so that 8,000 points cost as 800.
+// Time charts: lines of which the least and greatest value of each pixel column are drawn, so that 8,000 points cost as
+// 800.
 
 import { within } from "../model/playback.js";
+import { tickLabel } from "../model/scales.js";
 import { indicesIn } from "../model/timeline.js";
 import { Picture } from "./canvas.js";
-import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, nameLine, sayNothing, shade, shows } from "./chart_events.js";
-import { element } from "./controls.js";
-import { fading } from "./lines.js";
-import { horizontal } from "./chart_events.js";
-import { tickLabel } from "../model/scales.js";
+import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, horizontal } from "./chart_events.js";
+import { nameLine, sayNothing, shade, shows } from "./chart_events.js";
+import { element } from "./dom.js";
+import { clipTo } from "./image_frame.js";
+import { opacityOf } from "./line_styles.js";
 
 const LEFT = 46;
 const RIGHT = 12;
@@ -26,21 +28,22 @@ export class TimeChart extends Picture {
     this.keptCount = 0;
   }
 
-  /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time that they are drawn on */
-  draw({ title, lines, band, regions = [], marks = [], bars = [], events = [], level, scale, span, theme, first, last }) {
+  /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time to draw them on */
+  draw({ title, lines, scale, span, theme, first, last, ...more }) {
+    const { band, level, regions = [], marks = [], bars = [], events = [] } = more;
     const { width, height } = this.fit(theme.font);
-    const bottom = last ? BOTTOM : 6;
-    const place = new Place(span, scale, LEFT, TOP, width - LEFT - RIGHT, height - TOP - bottom);
-    this.place = place;
+    const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - (last ? BOTTOM : 6) };
+    const place = (this.place = new Place(span, scale, box));
+    const clipped = { left: LEFT, top: TOP - 1, width: box.width, height: box.height + 2 };
     const pen = this.context;
     const kept = this.keptOf(lines, theme);
     this.underlay([title, scale, span, last, theme, this.keptCount], (below) => {
       this.axes(below, place, theme, title, last);
-      clipTo(below, place);
+      clipTo(below, clipped);
       for (const line of kept) strokeLine(below, place, line, theme);
-      below.restore();
     });
-    clipTo(pen, place);
+    pen.save();
+    clipTo(pen, clipped);
     for (const region of regions) shade(pen, place, region, theme, first);
     if (level !== undefined) drawLevel(pen, place, level, theme);
     if (band) fillBand(pen, place, band);
@@ -54,11 +57,12 @@ export class TimeChart extends Picture {
     pen.restore();
   }
 
-  /** Those of a kept run before all others; each of them has its number, and so have others in their place. */
+  /** The lines of a kept run, before all others; a count of them tells whether what lies below is still right. */
   keptOf(lines, { kept }) {
     const others = lines.findIndex(({ colour }) => colour !== kept);
     const found = others < 0 ? lines : lines.slice(0, others);
-    if (found.length !== this.kept.length || found.some(({ values, dash }, k) => values !== this.kept[k].values || dash !== this.kept[k].dash)) this.keptCount += 1;
+    const same = ({ values, dash }, k) => values === this.kept[k].values && dash === this.kept[k].dash;
+    if (found.length !== this.kept.length || !found.every(same)) this.keptCount += 1;
     this.kept = found;
     return found;
   }
@@ -66,9 +70,9 @@ export class TimeChart extends Picture {
   /** Mark a time, without drawing anything again. */
   point(time) {
     const { now, place } = this;
-    const x = time === null || !place || time < place.span.low || time > place.span.high ? null : place.x(time);
-    now.hidden = x === null;
-    if (x !== null) now.style.transform = `translateX(${Math.round(x)}px)`;
+    const seen = time !== null && place && time >= place.span.low && time <= place.span.high;
+    now.hidden = !seen;
+    if (seen) now.style.transform = `translateX(${Math.round(place.x(time))}px)`;
   }
 
   axes(pen, place, theme, title, last) {
@@ -89,10 +93,9 @@ export class TimeChart extends Picture {
     pen.fillStyle = theme.muted;
     pen.textBaseline = "top";
     pen.textAlign = "center";
-    for (const tick of place.span.ticks) {
-      if (tick < place.span.low || tick > place.span.high) continue;
-      const end = tick === place.span.ticks.at(-1);
-      pen.fillText(end ? `${tickLabel(tick, false)} s` : tickLabel(tick, false), place.x(tick), place.bottom + 5);
+    const { low, high, ticks } = place.span;
+    for (const tick of ticks.filter((each) => each >= low && each <= high)) {
+      pen.fillText(tickLabel(tick, false) + (tick === ticks.at(-1) ? " s" : ""), place.x(tick), place.bottom + 5);
     }
   }
 
@@ -106,9 +109,8 @@ export class TimeChart extends Picture {
   /** The time nearest to a pointer. */
   nearest(clientX) {
     if (!this.place) return null;
-    const { left, width, span } = this.place;
-    const part = within((this.left(clientX) - left) / width, 0, 1);
-    return span.low + part * (span.high - span.low);
+    const { low, high } = this.place.span;
+    return within(this.place.timeAt(this.left(clientX)), low, high);
   }
 
   left(clientX) {
@@ -116,17 +118,9 @@ export class TimeChart extends Picture {
   }
 }
 
-/** Let nothing be drawn outside a place, until the pen is restored. */
-function clipTo(pen, { left, top, width, height }) {
-  pen.save();
-  pen.beginPath();
-  pen.rect(left, top - 1, width, height + 2);
-  pen.clip();
-}
-
 /** Where times and values lie on a canvas. */
 class Place {
-  constructor(span, scale, left, top, width, height) {
+  constructor(span, scale, { left, top, width, height }) {
     /** @type {{left: number, right: number, y: number}[]} where words stand */
     this.words = [];
     this.span = span;
@@ -135,9 +129,10 @@ class Place {
     this.top = top;
     this.width = width;
     this.height = height;
+    this.right = left + width;
     this.bottom = top + height;
     this.perSecond = width / (span.high - span.low);
-    const [low, high] = scale.log ? [Math.log10(scale.low), Math.log10(scale.high)] : [scale.low, scale.high];
+    const [low, high] = [scale.low, scale.high].map(scale.log ? Math.log10 : Number);
     this.perUnit = height / (high - low);
     this.base = low;
   }
@@ -152,8 +147,9 @@ class Place {
 
   y(value) {
     const height = this.scale.log ? Math.log10(Math.max(value, 1e-30)) : value;
+    const y = this.bottom - (height - this.base) * this.perUnit;
     // Outside is outside: a canvas would cut what is further away into dashes too, thousands of them.
-    return Math.min(Math.max(this.bottom - (height - this.base) * this.perUnit, this.top - this.height), this.bottom + this.height);
+    return Math.min(Math.max(y, this.top - this.height), this.bottom + this.height);
   }
 }
 
@@ -164,14 +160,14 @@ function strokeLine(pen, place, { time, values, colour, dash }, theme) {
   pen.setLineDash(dash ?? []);
   pen.lineJoin = "bevel";
   pen.lineWidth = theme.width;
-  pen.globalAlpha = fading(theme, colour);
+  pen.globalAlpha = opacityOf(theme, colour);
   pen.stroke();
   pen.globalAlpha = 1;
   pen.lineWidth = 1;
 }
 
 /** One path, with gaps where values are not numbers; of each pixel column the first, least, greatest and last. */
-function tracePath(pen, place, time, values) {
+export function tracePath(pen, place, time, values) {
   const { left, perSecond } = place;
   const begin = place.span.low;
   let column = -1;
@@ -221,8 +217,8 @@ export function fillBand(pen, place, { time, low, high, colour }) {
   pen.beginPath();
   let stretch = [];
   const close = () => {
-    stretch.forEach((k, at) => (at ? pen.lineTo(place.x(time[k]), place.y(high[k])) : pen.moveTo(place.x(time[k]), place.y(high[k]))));
-    stretch.reverse().forEach((k) => pen.lineTo(place.x(time[k]), place.y(low[k])));
+    const points = [...stretch.map((k) => [k, high]), ...stretch.toReversed().map((k) => [k, low])];
+    points.forEach(([k, values], at) => (at ? pen.lineTo : pen.moveTo).call(pen, place.x(time[k]), place.y(values[k])));
     stretch = [];
   };
   for (let k = 0; k < time.length; k += every) {

@@ -2,7 +2,9 @@
 
 import { schemaAt } from "../model/schema.js";
 import { changeAt, valueAt } from "../model/settings.js";
-import { checkbox, element, grid, radios, select, slider } from "./controls.js";
+import { checkbox, grid, radios, select, slider } from "./controls.js";
+import { element, listen } from "./dom.js";
+import { typedField } from "./typed.js";
 
 /** Controls of a lab, whose schema says of each setting what it may be. */
 export class Fieldsets {
@@ -25,20 +27,14 @@ export class Fieldsets {
     for (const control of this.controls) control.show();
   }
 
-  /** Leave the settings as they are, and say why. */
-  refuse(reason) {
-    this.lab.say(reason);
-    this.shownFor = null;
-    this.show();
-  }
-
   add(control) {
     this.controls.push(control);
     return control.row;
   }
 
   /** A part of the page that is there only where it has a meaning. */
-  onlyIf(holds, row) {
+  onlyIf(holds, ...rows) {
+    const row = rows.length === 1 ? rows[0] : element("div", {}, ...rows);
     this.controls.push({ row, show: () => (row.hidden = !holds(this.lab.settings)) });
     return row;
   }
@@ -81,7 +77,9 @@ export class Fieldsets {
 
   /** A number that has a meaning for some settings only. */
   numberIf(place, holds, more) {
-    return this.number(place, { ...more, get: () => (holds(this.lab.settings) ? valueAt(this.lab.settings, place) : undefined) });
+    const { lab } = this;
+    const get = () => (holds(lab.settings) ? valueAt(lab.settings, place) : undefined);
+    return this.number(place, { ...more, get });
   }
 
   /** A choice of one among several, in a list to open, or all in sight. */
@@ -98,8 +96,10 @@ export class Fieldsets {
     const { lab } = this;
     const set = (on) => {
       const chosen = all.filter((n) => (n === name ? on : lab.settings[place].includes(n)));
-      if (chosen.length || !refusal) lab.change({ [place]: chosen }, true);
-      else this.refuse(refusal);
+      if (chosen.length || !refusal) return lab.change({ [place]: chosen }, true);
+      lab.say(refusal);
+      this.shownFor = null;
+      return this.show();
     };
     return { get: () => lab.settings[place].includes(name), set };
   }
@@ -120,27 +120,35 @@ export class Fieldsets {
     return element("div", { class: "choices", role: "group", "aria-label": label }, ...boxes);
   }
 
-  /** Fields for the matrix at a place. */
+  /** Fields for the 3 x 3 matrix at a place. */
   matrix(place) {
     const { lab } = this;
     const bound = this.bound(place, false);
-    const names = [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => `a${i}${j}`));
+    const change = (k, value) => bound.get().map((row, i) => row.map((old, j) => (3 * i + j === k ? value : old)));
     const control = grid({
       ...bound,
-      names,
+      names: [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => `a${i}${j}`)),
       get: () => bound.get()?.flat(),
-      set: (k, value) => bound.set(bound.get().map((row, i) => row.map((old, j) => (3 * i + j === k ? value : old)))),
+      set: (k, value) => bound.set(change(k, value)),
     });
     for (const field of control.parts) {
-      field.addEventListener("focus", () => lab.formulas.highlight("motion", field.dataset.entry));
-      field.addEventListener("blur", () => lab.formulas.highlight("", ""));
+      listen(field, {
+        focus: () => lab.formulas.highlight("motion", field.dataset.entry),
+        blur: () => lab.formulas.highlight("", ""),
+      });
     }
     return this.add(control);
   }
 
-  /** Light up the last control's letter in the formulas. */
+  /** A field for an expression, which Python reads; a text without "=" takes the prefix. */
+  typed(place, hint, prefix = "") {
+    const { label, most } = this.schema[place];
+    return this.add(typedField(this.lab, { ...this.bound(place, true), label, most, hint, prefix }));
+  }
+
+  /** Highlight the last control's letter in the formulas while the hand or the focus is on it. */
   lit(row, letter, owner = "motion") {
-    linkToFormula(this.controls.at(-1), () => this.lab.formulas, owner, letter);
+    linkToFormula(this.controls.at(-1), this.lab, owner, letter);
     return row;
   }
 
@@ -153,15 +161,14 @@ export class Fieldsets {
 
 /** A part of the page that is closed until its title is pressed. */
 export function topic(name, title, ...inside) {
-  return element("details", { class: `topic ${name}` }, element("summary", { "data-control": `topic ${name}` }, title), ...inside);
+  const summary = element("summary", { "data-control": `topic ${name}` }, title);
+  return element("details", { class: `topic ${name}` }, summary, ...inside);
 }
 
-/** Light up a control's letter in the formulas while the hand or the focus is on it. */
-export function linkToFormula(control, formulas, owner, letter) {
-  const on = () => formulas().highlight(owner, letter);
-  const off = () => formulas().highlight("", "");
-  control.row.addEventListener("pointerenter", on);
-  control.row.addEventListener("pointerleave", off);
-  control.row.addEventListener("focusin", on);
-  control.row.addEventListener("focusout", off);
+/** Highlight a control's letter in a lab's formulas while the hand or the focus is on it. */
+export function linkToFormula(control, lab, owner, letter) {
+  listen(control.row, {
+    "pointerenter focusin": () => lab.formulas.highlight(owner, letter),
+    "pointerleave focusout": () => lab.formulas.highlight("", ""),
+  });
 }

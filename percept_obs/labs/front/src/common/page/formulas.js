@@ -1,8 +1,8 @@
-// Formulas as MathML: letters that a slider sets light up with it, and once more with the present numbers.
+// Formulas as MathML: letters that a slider sets are highlighted with it, and once more with the present numbers.
 
-import { switchOf } from "../model/settings.js";
-import { element } from "./controls.js";
 import { readable } from "../model/scales.js";
+import { switchOf } from "../model/settings.js";
+import { element, formula, setText } from "./dom.js";
 
 /** Sections of formulas, each with an owner whose letters it has. */
 export class FormulaSheet {
@@ -17,12 +17,11 @@ export class FormulaSheet {
     this.numbers = [];
   }
 
-  /** Put the present numbers in, each by its owner and its letter. */
-  putIn(valueOf) {
-    for (const place of this.numbers) {
-      const value = valueOf(place.owner, place.letter);
-      const text = value === undefined ? "" : value < 0 ? `(${readable(value)})` : readable(value);
-      if (place.node.textContent !== text) place.node.textContent = text;
+  /** Set the present numbers, each by its owner and its letter. */
+  setNumbers(valueOf) {
+    for (const { node, owner, letter } of this.numbers) {
+      const value = valueOf(owner, letter);
+      setText(node, value === undefined ? "" : value < 0 ? `(${readable(value)})` : readable(value));
     }
   }
 
@@ -35,33 +34,35 @@ export class FormulaSheet {
 
   section(title, owner, formulas) {
     const lines = formulas.flatMap((text) => {
-      const [inLetters, withNumbers] = ["in-letters", "with-numbers"].map((kind) => element("div", { class: `line ${kind}` }));
-      inLetters.innerHTML = withNumbers.innerHTML = `<math displaystyle="true">${text}</math>`;
-      this.putNumbers(withNumbers, owner);
-      return withNumbers.querySelector("[data-letter]") ? [inLetters, withNumbers] : [inLetters];
+      const [letters, numbers] = ["in-letters", "with-numbers"].map((kind) =>
+        formula("div", text, { class: `line ${kind}` }, true),
+      );
+      this.replaceLetters(numbers, owner);
+      return numbers.querySelector("[data-letter]") ? [letters, numbers] : [letters];
     });
     // A wide line scrolls inside its section, which a keyboard must reach for that.
     const attributes = { "data-owner": owner, role: "group", "aria-label": title, tabindex: 0 };
     this.body.append(element("section", attributes, element("h4", {}, title), ...lines));
   }
 
-  putNumbers(line, owner) {
+  /** Make places for numbers of the letters in a line. */
+  replaceLetters(line, owner) {
     for (const operator of line.querySelectorAll("mo")) {
       // Between numbers an invisible sign of multiplication would join them.
       if (operator.textContent === "\u2062") operator.textContent = "·";
     }
     for (const marked of line.querySelectorAll("[data-letter]")) {
       const node = document.createElementNS("http://www.w3.org/1998/Math/MathML", "mn");
-      const letter = marked.dataset.letter;
       marked.replaceChildren(node);
-      this.numbers.push({ node, owner, letter });
+      this.numbers.push({ node, owner, letter: marked.dataset.letter });
     }
   }
 }
 
 /** The numbers of rows by letter and place: a1, a2, a3 of {a: [...]}. */
 export function lettered(rows) {
-  return Object.fromEntries(Object.entries(rows).flatMap(([letter, row]) => row.map((value, i) => [`${letter}${i + 1}`, value])));
+  const entries = Object.entries(rows);
+  return Object.fromEntries(entries.flatMap(([letter, row]) => row.map((value, i) => [`${letter}${i + 1}`, value])));
 }
 
 /**
@@ -72,25 +73,26 @@ export function lettered(rows) {
 export class ObserverFormulas extends FormulaSheet {
   constructor(model, { systemOf, numbersOf }) {
     super();
-    this.shownFor = "";
     this.model = model;
     this.systemOf = systemOf;
     this.numbersOf = numbersOf;
+    this.shownFor = "";
   }
 
   /** Show the equations of these settings, with their numbers. */
   show(settings) {
+    const { observers } = this.model;
     const chosen = settings.observers.map((name) => [name, this.linesOf(settings, name)]);
-    const system = this.systemOf(settings);
-    const key = JSON.stringify([system, chosen]);
+    const [title, lines] = this.systemOf(settings);
+    const key = JSON.stringify([title, lines, chosen]);
     if (key !== this.shownFor) {
       this.shownFor = key;
       this.clear();
-      this.section(system[0], "motion", system[1]);
-      for (const [name, lines] of chosen) this.section(`The ${this.model.observers[name].title} observer`, name, lines);
+      this.section(title, "motion", lines);
+      for (const [name, own] of chosen) this.section(`The ${observers[name].title} observer`, name, own);
     }
     const motion = this.numbersOf(settings);
-    this.putIn((owner, letter) => (settings.gains[owner] ?? motion)[letter]);
+    this.setNumbers((owner, letter) => (settings.gains[owner] ?? motion)[letter]);
   }
 
   /** An observer's equations, without the terms of gains that are 0. */

@@ -1,17 +1,19 @@
 // A handle on a picture: dragged with mouse, touch or arrow keys.
 
-import { element } from "./controls.js";
+import { within } from "../model/playback.js";
 import { readable } from "../model/scales.js";
+import { element, listen } from "./dom.js";
 
 const NUDGE = 0.01;
 const LEAP = 10;
-const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Steps of the arrow keys, right and up. */
+export const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
 export class Handle {
   constructor({ name, label, className, text = "", onMove, onRest, onKey = (_event) => false }) {
     this.onMove = onMove;
-    this.onRest = onRest;
     this.onKey = onKey;
     /** @type {number[] | null} */
     this.at = null;
@@ -19,57 +21,55 @@ export class Handle {
     this.grip = null;
     this.keyed = false;
     this.scale = 1;
-    this.node = element("div", { class: `handle ${className}`, tabindex: 0, role: "slider", "aria-label": label, "aria-valuenow": 0 });
-    this.node.dataset.control = name;
-    this.node.append(text);
-    this.listen();
-  }
-
-  listen() {
-    const { node } = this;
-    node.addEventListener("pointerdown", (event) => {
-      if (!this.at || event.button > 0) return;
-      event.preventDefault();
-      node.focus({ preventScroll: true });
-      // What had the focus comes to rest and is drawn, and this handle may be gone with it.
-      if (!this.at) return;
-      try {
-        node.setPointerCapture(event.pointerId);
-      } catch {
-        // A pointer that a script made cannot be captured; its moves arrive all the same.
-      }
-      this.grip = { id: event.pointerId, x: event.clientX, y: event.clientY, from: [...this.at] };
+    this.node = element("div", {
+      ...{ class: `handle ${className}`, "data-control": name, tabindex: 0, role: "slider" },
+      ...{ "aria-label": label, "aria-valuenow": 0 },
     });
+    this.node.append(text);
     const follow = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
-      const [y1, y2] = this.grip.from;
-      this.move([y1 + (event.clientX - this.grip.x) / this.scale, y2 - (event.clientY - this.grip.y) / this.scale]);
+      const { x, y, from: [y1, y2] } = this.grip;
+      this.move([y1 + (event.clientX - x) / this.scale, y2 - (event.clientY - y) / this.scale]);
     };
     const release = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       // A quick drag loses its last move in half of the cases, so the place is read once more.
       if (event.type === "pointerup") follow(event);
       this.grip = null;
-      this.onRest();
+      onRest();
     };
-    node.addEventListener("pointermove", follow);
-    for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) node.addEventListener(type, release);
-    node.addEventListener("keydown", (event) => {
-      if (!this.at) return;
-      const step = STEPS[event.key];
-      if (step) {
-        const size = NUDGE * (event.shiftKey ? LEAP : 1);
-        this.move([this.at[0] + step[0] * size, this.at[1] + step[1] * size]);
-      } else if (!this.onKey(event)) return;
-      this.keyed = true;
-      event.preventDefault();
+    const endOfKeys = () => {
+      if (this.keyed) onRest();
+      this.keyed = false;
+    };
+    listen(this.node, {
+      pointerdown: (event) => this.take(event),
+      pointermove: follow,
+      "pointerup pointercancel lostpointercapture": release,
+      keydown: (event) => this.key(event),
+      "keyup blur": endOfKeys,
     });
-    for (const type of ["keyup", "blur"]) {
-      node.addEventListener(type, () => {
-        if (this.keyed) this.onRest();
-        this.keyed = false;
-      });
-    }
+  }
+
+  take(event) {
+    if (!this.at || event.button > 0) return;
+    event.preventDefault();
+    this.node.focus({ preventScroll: true });
+    // What had the focus comes to rest and is drawn, and this handle may be gone with it.
+    if (!this.at) return;
+    // A pointer that a script made cannot be captured; its moves arrive all the same.
+    if (event.isTrusted) this.node.setPointerCapture(event.pointerId);
+    this.grip = { id: event.pointerId, x: event.clientX, y: event.clientY, from: [...this.at] };
+  }
+
+  key(event) {
+    if (!this.at) return;
+    const step = STEPS[event.key];
+    const size = NUDGE * (event.shiftKey ? LEAP : 1);
+    if (step) this.move(this.at.map((value, c) => value + step[c] * size));
+    else if (!this.onKey(event)) return;
+    this.keyed = true;
+    event.preventDefault();
   }
 
   /** Go to a place, where the next step begins: keys may come faster than pictures. */
@@ -89,12 +89,10 @@ export class Handle {
     if (!at) return;
     const { box, scale, x, y } = frame;
     this.scale = scale;
-    const inside = (value, low) => Math.min(Math.max(value, low), low + box.side);
-    const [left, top] = [inside(x(at[0]), box.left), inside(y(at[1]), box.top)];
-    const outside = Math.abs(left - x(at[0])) + Math.abs(top - y(at[1])) > 1;
-    if (outside !== node.classList.contains("outside")) node.classList.toggle("outside");
-    const right = left > box.left + 0.7 * box.side;
-    if (right !== node.classList.contains("right")) node.classList.toggle("right");
+    const wanted = [x(at[0]), y(at[1])];
+    const [left, top] = [box.left, box.top].map((low, c) => within(wanted[c], low, low + box.side));
+    node.classList.toggle("outside", Math.abs(left - wanted[0]) + Math.abs(top - wanted[1]) > 1);
+    node.classList.toggle("right", left > box.left + 0.7 * box.side);
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 

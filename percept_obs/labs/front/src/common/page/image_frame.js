@@ -1,8 +1,8 @@
 // The frame of an image plane: a square with round numbers, axes, and paths in it.
 
-import { LINE } from "./lines.js";
-import { endMark, startMark } from "./marks.js";
 import { linearScale, tickLabel } from "../model/scales.js";
+import { LINE } from "./line_styles.js";
+import { endMark, startMark, stroke } from "./marks.js";
 
 /** Room for what is written around the square. */
 const ROOM = { left: 38, right: 12, top: 20, bottom: 34 };
@@ -15,7 +15,7 @@ export function squareAround(bounds) {
   return { centre, half, ticks };
 }
 
-/** Whether a square shows what another one would: that it is not lost in it, and leaves it by a little at most. */
+/** Return true if a square shows what another one would: that is not lost in it, and leaves it by a little at most. */
 export function showsToo({ centre, half }, wanted) {
   const apart = Math.max(...centre.map((value, i) => Math.abs(value - wanted.centre[i])));
   return apart + wanted.half <= 1.2 * half && wanted.half > 0.4 * half;
@@ -27,11 +27,9 @@ export function placed(target, { centre, half }, font, more = 0) {
   const [across, down] = [width - ROOM.left - ROOM.right - more, height - ROOM.top - ROOM.bottom];
   const side = Math.min(across, down);
   const box = { left: ROOM.left + (across - side) / 2, top: ROOM.top + (down - side) / 2, side };
-  return frameOf(box, side / (2 * half), centre, [box.left + side / 2, box.top + side / 2], 4 * Math.max(width, height));
-}
-
-/** A frame that puts `centre` at a place on the canvas, so many pixels a unit, and nothing further off than `far`. */
-export function frameOf(box, scale, centre, [left, top], far) {
+  const [scale, left, top] = [side / (2 * half), box.left + side / 2, box.top + side / 2];
+  // Nothing is drawn further off than this, for a canvas would cut it into dashes too.
+  const far = 4 * Math.max(width, height);
   return {
     ...{ box, scale, centre, left, top, far },
     x: (y1) => left + clamp((y1 - centre[0]) * scale, far),
@@ -39,7 +37,7 @@ export function frameOf(box, scale, centre, [left, top], far) {
   };
 }
 
-export function clipTo(pen, { left, top, side, width = side, height = side }) {
+export function clipTo(pen, { left, top, side = 0, width = side, height = side }) {
   pen.beginPath();
   pen.rect(left, top, width, height);
   pen.clip();
@@ -80,13 +78,6 @@ function within(ticks, place, low, high) {
   return placed.filter(([, at]) => at >= low && at <= high + 1);
 }
 
-export function stroke(pen, from, to) {
-  pen.beginPath();
-  pen.moveTo(...from);
-  pen.lineTo(...to);
-  pen.stroke();
-}
-
 /** The marks of a path's ends. */
 export function drawEnds(pen, rows, width, { x, y }, theme) {
   const end = rows.length - width;
@@ -95,8 +86,8 @@ export function drawEnds(pen, rows, width, { x, y }, theme) {
 }
 
 /** One path of rows of numbers, whose coordinates y1, y2 stand at `first`, with gaps where they are none. */
-export function drawPath(pen, rows, { width, first = 0 }, { scale, centre, left, top, far, lineWidth = LINE }, colour, dash) {
-  const [middle1, middle2] = centre;
+export function drawPath(pen, rows, { width, first = 0 }, frame, colour, dash) {
+  const { scale, centre: [middle1, middle2], left, top, far, lineWidth = LINE } = frame;
   // Points closer than a pixel do not show.
   const near = 1.2 / scale;
   pen.beginPath();

@@ -1,23 +1,25 @@
 // The image plane: the point's path, the estimates, and a handle.
 
-import { spread } from "../model/scales.js";
 import { between, valueBetween } from "../model/playback.js";
+import { spread } from "../model/scales.js";
+import { rimOf } from "../model/space.js";
+import { indicesIn } from "../model/timeline.js";
+import { meanSpeed } from "../model/velocities.js";
 import { imagePlaneInWords } from "../model/words.js";
 import { Picture } from "./canvas.js";
-import { rimOf } from "../model/space.js";
-import { button } from "./controls.js";
-import { indicesIn } from "../model/timeline.js";
 import { hull } from "./chart_parts.js";
+import { button } from "./dom.js";
 import { Handle } from "./handle.js";
 import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
-import { DASHES, fading, KEPT, SOLID } from "./lines.js";
-import { meanSpeed } from "../model/velocities.js";
+import { opacityOf } from "./line_styles.js";
+import { DASHES, KEPT, SOLID } from "./looks.js";
+import { foeMark, ghostMark, pointMark, rimMark } from "./marks.js";
 import { drawSwung } from "./swing.js";
 import { drawAlike, drawVelocities } from "./velocities.js";
-import { foeMark, ghostMark, pointMark, rimMark } from "./marks.js";
 
 /** How much is seen of the path at times that are not in sight. */
 const OTHER_TIMES = 0.2;
+const NONE = /** @type {(...of: any[]) => any} */ (() => null);
 
 /** A picture of a square of the image, with handles to drag. */
 export class FramedImage extends Picture {
@@ -30,16 +32,17 @@ export class FramedImage extends Picture {
     this.choices = 0;
     /** @type {any} the scene beside it */
     this.scene = null;
-    const said = { class: "fitting", hidden: true, "data-control": "fit image", title: "Show all of the path" };
-    this.fitting = button("Fit", () => {
+    const fit = () => {
       this.square = null;
       this.fitting.hidden = true;
       lab.redraw();
-    }, said);
+    };
+    const attributes = { class: "fitting", hidden: true, "data-control": "fit image", title: "Show all of the path" };
+    this.fitting = button("Fit", fit, attributes);
     this.figure.append(this.fitting, ...this.handles.map(({ node }) => node));
   }
 
-  /** The square that stays while a hand moves something and after: a choice, or a press on "Fit", takes another one. */
+  /** Return the square that stays while a hand moves something and after: a choice, or a press on "Fit", changes it. */
   squareFor(squareOf) {
     const { square, lab } = this;
     if (square && lab.held) return square;
@@ -47,15 +50,14 @@ export class FramedImage extends Picture {
     if (!square) return wanted;
     const there = showsToo(square, wanted);
     const chosen = this.choices !== lab.choices;
-    if (chosen) this.choices = lab.choices;
+    this.choices = lab.choices;
     this.fitting.hidden = there || chosen;
     return there || !chosen ? square : wanted;
   }
 
   /** Paint inside a square, and put handles in their places. */
   paint(squareOf, theme, { inside, outside = (_pen, _frame) => {}, room = 0 }, placesIn) {
-    const square = this.squareFor(squareOf);
-    this.square = square;
+    const square = (this.square = this.squareFor(squareOf));
     const frame = { ...placed(this, square, theme.font, room), lineWidth: theme.width };
     const pen = this.context;
     this.underlay([square, theme, room], (below) => drawAxes(below, frame, square.ticks, theme));
@@ -68,79 +70,85 @@ export class FramedImage extends Picture {
     this.handles.forEach((handle, k) => handle.stand(places[k], frame, this.lab.late));
   }
 
-  /** The images of the copies that swing along what is not seen. */
+  /** Draw the images of the copies that swing along what is not seen. */
   swing(pen, { box, x, y }, shown, cursor, theme) {
     const swung = this.scene?.swung(shown, cursor, theme);
-    if (swung) drawSwung(pen, swung.copies, ({ image }) => [x(image[0]), y(image[1])], swung.words, [box.left + 4, box.top + 14], theme);
+    if (swung) drawSwung(pen, swung, ({ image: [y1, y2] }) => [x(y1), y(y2)], [box.left + 4, box.top + 14], theme);
   }
 }
 
-/** The image of one point; `placeOf` says of a result where the handle stands. */
+/**
+ * The image of one point.  `placeOf` says of a result where the handle stands, and `onMove` takes where it is moved to;
+ * `arrowsOf`, `alikeOf` and `focusAt` are the scene's.
+ */
 export class ImagePlane extends FramedImage {
-  constructor(lab, { name, label, tag, placeOf, towardsOf = (_shown) => null, arrowsOf, alikeOf = /** @type {(...of: any[]) => any} */ (() => null), focusAt = /** @type {(...of: any[]) => any} */ (() => null), onMove }) {
+  /** The film behind the track, and the map under it, if there are. */
+  film = /** @type {any} */ (null);
+  map = /** @type {any} */ (null);
+
+  constructor(lab, { name, label, tag, onMove, ...parts }) {
     const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
     super(lab, [{ name, ...said, onMove, onRest: () => lab.rest() }]);
-    this.placeOf = placeOf;
-    this.arrowsOf = arrowsOf;
-    this.alikeOf = alikeOf;
-    this.focusAt = focusAt;
     this.tag = tag;
-    this.towardsOf = towardsOf;
-    /** @type {any} the film behind the track, if there is one */
-    this.frames = null;
-    /** @type {any} the map under the track, if there is one */
-    this.map = null;
+    /** @type {any} */
+    this.parts = { towardsOf: NONE, alikeOf: NONE, focusAt: NONE, ...parts };
   }
 
   draw(shown, ghost, cursor, theme) {
-    const place = this.placeOf(shown);
+    const { map, parts } = this;
+    const place = parts.placeOf(shown);
     const inside = (pen, frame) => {
-      this.frames?.draw(pen, frame, shown.settings, cursor);
-      this.map?.draw(pen, frame, this.square, shown, theme);
+      this.film?.draw(pen, frame, shown.settings, cursor);
+      map?.draw(pen, frame, this.square, shown, theme);
       this.trace(pen, frame, shown, ghost, cursor, theme);
     };
-    const towards = this.towardsOf(shown);
-    const placesIn = ({ centre, half }) => [place ?? (towards && centre.map((value, c) => value + 1.5 * half * towards[c]))];
-    const outside = (pen, frame) => this.map?.drawKey(pen, frame, theme);
-    this.paint(() => squareOf(shown, ghost, place, this.lab.span), theme, { inside, outside, room: this.map?.roomFor(shown) }, placesIn);
+    const towards = parts.towardsOf(shown);
+    const atInfinity = ({ centre, half }) => towards && centre.map((value, c) => value + 1.5 * half * towards[c]);
+    const outside = (pen, frame) => map?.drawKey(pen, frame, theme);
+    const drawing = { inside, outside, room: map?.roomFor(shown) };
+    const squareNow = () => squareOf(shown, ghost, place, this.lab.span);
+    this.paint(squareNow, theme, drawing, (square) => [place ?? atInfinity(square)]);
     const tag = place || !towards ? this.tag : `${this.tag} at infinity`;
-    if (this.handles[0].node.dataset.tag !== tag) this.handles[0].node.dataset.tag = tag;
+    const { dataset } = this.handles[0].node;
+    if (dataset.tag !== tag) dataset.tag = tag;
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {
     if (shown.circle) drawCircle(pen, shown.circle, frame, theme);
-    const { width } = shown;
-    const [from, to] = shown.time.length ? indicesIn(shown.time, this.lab.span) : [0, -1];
-    const some = from > 0 || to + 1 < shown.time.length;
-    const trace = (rows, colour, dash, all = width * shown.time.length) => {
-      pen.globalAlpha = (some ? OTHER_TIMES : 1) * fading(theme, colour);
+    const { parts } = this;
+    const { width, truth, time } = shown;
+    const [from, to] = time.length ? indicesIn(time, this.lab.span) : [0, -1];
+    const inSight = (rows) => rows.subarray(from * width, (to + 1) * width);
+    const some = from > 0 || to + 1 < time.length;
+    const trace = (rows, colour, dash) => {
+      pen.globalAlpha = (some ? OTHER_TIMES : 1) * opacityOf(theme, colour);
       drawPath(pen, rows, { width }, frame, colour, dash);
-      pen.globalAlpha = fading(theme, colour);
-      if (some && rows.length === all) drawPath(pen, rows.subarray(from * width, (to + 1) * width), { width }, frame, colour, dash);
+      pen.globalAlpha = opacityOf(theme, colour);
+      if (some && rows.length === width * time.length) drawPath(pen, inSight(rows), { width }, frame, colour, dash);
       pen.globalAlpha = 1;
     };
     ghost?.runs.forEach((run) => trace(run.estimate, theme.kept, KEPT));
-    if (shown.truth?.length) trace(shown.truth, theme.ink, SOLID);
+    if (truth?.length) trace(truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
-    if (shown.truth?.length) drawEnds(pen, shown.truth.subarray(from * width, (to + 1) * width), width, frame, theme);
+    if (truth?.length) drawEnds(pen, inSight(truth), width, frame, theme);
     if (cursor === null) return;
-    if (shown.truth?.length) {
-      const speed = meanSpeed(shown.time, shown.truth, width, 0, [from, to]);
-      const at = between(shown.time, cursor);
-      const alike = this.alikeOf(shown, at, this.square);
+    const at = between(time, cursor);
+    if (truth?.length) {
+      const speed = meanSpeed(time, truth, width, 0, [from, to]);
+      const alike = parts.alikeOf(shown, at, this.square);
       if (alike) drawAlike(pen, frame, alike, speed, theme);
-      else drawVelocities(pen, frame, this.arrowsOf(shown, at, theme), speed, theme);
+      else drawVelocities(pen, frame, parts.arrowsOf(shown, at, theme), speed, theme);
     }
-    const focus = this.focusAt(shown, between(shown.time, cursor));
+    const focus = parts.focusAt(shown, at);
     if (focus?.circle) drawCircle(pen, focus.circle, frame, theme);
     if (focus) foeMark(pen, frame.x(focus.foe[0]), frame.y(focus.foe[1]), "FOE now", theme);
-    drawAt(pen, shown, cursor, frame, theme);
+    drawPoints(pen, shown, at, frame, theme);
     this.swing(pen, frame, shown, cursor, theme);
   }
 
   describe(shown) {
     this.tell([imagePlaneInWords(shown), this.map?.inWords(shown)].filter(Boolean).join(" "));
-    this.handles[0].describe(this.towardsOf(shown) ? ", at infinity" : "");
+    this.handles[0].describe(this.parts.towardsOf(shown) ? ", at infinity" : "");
   }
 }
 
@@ -148,11 +156,12 @@ export class ImagePlane extends FramedImage {
 function squareOf(shown, ghost, place, span) {
   const [from, to] = shown.time.length ? indicesIn(shown.time, span) : [0, -1];
   const [rows, width] = shown.truth?.length ? [shown.truth, shown.width] : [shown.outputs, shown.sampled];
-  const seen = (c) => bound(rows.subarray(from * width, (to + 1) * width), width, c);
+  const most = { lowPart: 0.005, highPart: 0.995 };
+  const boundOf = (values, columns, first) => spread(values, { ...most, first, width: columns });
   const bounds = [0, 1].map((c) => {
-    let found = seen(c) ?? [-1, 1];
+    let found = boundOf(rows.subarray(from * width, (to + 1) * width), width, c) ?? [-1, 1];
     for (const run of ghost?.runs ?? []) {
-      const other = bound(run.estimate, shown.width, c);
+      const other = boundOf(run.estimate, shown.width, c);
       if (other && other[1] - other[0] < 3 * (found[1] - found[0])) found = hull([found, other]);
     }
     return found;
@@ -162,18 +171,14 @@ function squareOf(shown, ghost, place, span) {
   return squareAround(reachable ? bounds.map((b, c) => hull([b, [place[c], place[c]]])) : bounds);
 }
 
-function bound(rows, width, c) {
-  return spread(rows, { lowPart: 0.005, highPart: 0.995, first: c, width });
-}
-
 /** The region where |w| is below the threshold: dotted outline, light hatching. */
 function drawCircle(pen, [y1, y2, radius], { x, y, scale }, theme) {
   const size = Math.abs(radius) * scale;
   if (!(size > 0 && size < 1e4)) return;
+  pen.globalAlpha = 0.1;
+  pen.fillStyle = theme.warning;
   pen.beginPath();
   pen.arc(x(y1), y(y2), size, 0, 2 * Math.PI);
-  pen.fillStyle = theme.warning;
-  pen.globalAlpha = 0.1;
   pen.fill();
   pen.globalAlpha = 1;
   pen.strokeStyle = theme.warning;
@@ -182,12 +187,9 @@ function drawCircle(pen, [y1, y2, radius], { x, y, scale }, theme) {
 }
 
 /** The point and its estimates at a time, between samples too. */
-function drawAt(pen, shown, cursor, frame, theme) {
-  const { x, y } = frame;
-  const at = between(shown.time, cursor);
+function drawPoints(pen, shown, at, { x, y, box }, theme) {
   /** @type {(rows: Float64Array) => [number, number]} */
   const place = (rows) => [x(valueBetween(rows, shown.width, 0, at)), y(valueBetween(rows, shown.width, 1, at))];
-  const { box } = frame;
   const corners = [[box.left + 1, box.top + 1], [box.left + box.side - 1, box.top + box.side - 1]];
   const middle = [box.left + box.side / 2, box.top + box.side / 2];
   for (const { estimate, order } of shown.runs) {

@@ -41,9 +41,7 @@ export function foeMark(pen, x, y, text, theme) {
   for (const [across, down] of [[0, -9], [9, 0], [0, 9], [-9, 0]]) pen.lineTo(x + across, y + down);
   pen.closePath();
   pen.stroke();
-  pen.textAlign = "left";
-  pen.textBaseline = "middle";
-  label(pen, text, x + 13, y, theme.warning, theme);
+  label(pen, text, x + 13, y, theme.warning, theme, "left", "middle");
 }
 
 /** What lies outside: an arrow at the rim, with its value inside of it. */
@@ -55,9 +53,8 @@ export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
   pen.lineTo(x - 10 * c + 5 * s, y - 10 * s - 5 * c);
   pen.lineTo(x - 10 * c - 5 * s, y - 10 * s + 5 * c);
   pen.fill();
-  pen.textAlign = c > 0.3 ? "right" : c < -0.3 ? "left" : "center";
-  pen.textBaseline = "middle";
-  label(pen, text, x - 14 * c, y - 14 * s, colour, theme);
+  const align = c > 0.3 ? "right" : c < -0.3 ? "left" : "center";
+  label(pen, text, x - 14 * c, y - 14 * s, colour, theme, align, "middle");
 }
 
 /** An arrow with a head of a fixed size; nothing where it would be shorter than it could be seen. */
@@ -68,10 +65,7 @@ export function arrowMark(pen, from, to, { colour, dash, width, head }) {
   pen.strokeStyle = pen.fillStyle = colour;
   pen.lineWidth = width;
   pen.setLineDash(dash);
-  pen.beginPath();
-  pen.moveTo(from[0], from[1]);
-  pen.lineTo(to[0] - 0.7 * head * c, to[1] - 0.7 * head * s);
-  pen.stroke();
+  stroke(pen, from, [to[0] - 0.7 * head * c, to[1] - 0.7 * head * s]);
   pen.lineWidth = 1;
   pen.beginPath();
   pen.moveTo(to[0], to[1]);
@@ -80,8 +74,10 @@ export function arrowMark(pen, from, to, { colour, dash, width, head }) {
 }
 
 /** Letters that can be read on whatever lies below them. */
-export function label(pen, text, x, y, colour, theme) {
+export function label(pen, text, x, y, colour, theme, align = "left", baseline = "alphabetic") {
   if (!text || Number.isNaN(x + y)) return;
+  pen.textAlign = align;
+  pen.textBaseline = baseline;
   pen.setLineDash([]);
   pen.lineWidth = HALO;
   pen.lineJoin = "round";
@@ -92,7 +88,15 @@ export function label(pen, text, x, y, colour, theme) {
   pen.fillText(text, x, y);
 }
 
-function disc(pen, x, y, radius, colour) {
+/** A straight line in the pen's present style. */
+export function stroke(pen, from, to) {
+  pen.beginPath();
+  pen.moveTo(from[0], from[1]);
+  pen.lineTo(to[0], to[1]);
+  pen.stroke();
+}
+
+export function disc(pen, x, y, radius, colour) {
   pen.fillStyle = colour;
   pen.beginPath();
   pen.arc(x, y, radius, 0, 2 * Math.PI);

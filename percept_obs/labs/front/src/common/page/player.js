@@ -2,13 +2,12 @@
 
 import { advanced, begun, SPEEDS, stepped } from "../model/playback.js";
 import { readable } from "../model/scales.js";
-import { button, element } from "./controls.js";
+import { button, element, setText } from "./dom.js";
 
 const FINEST = 1e-3;
 /** After a stall play goes on from where it was, instead of leaping. */
 const LONGEST_STALL = 0.1;
 const STEPS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -5, PageUp: 5 };
-
 const ZOOMS = {
   "-": ["−", "Show more of the time", "zoom out"],
   "+": ["+", "Show less of the time", "zoom in"],
@@ -25,18 +24,20 @@ export class Player {
     this.frame = 0;
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
     this.press = button("", () => this.toggle(), { class: "play", "data-control": "play" });
-    const range = { type: "range", min: 0, max: 1, step: FINEST, value: 0, "data-control": "cursor", "aria-label": "Time" };
-    this.slider = element("input", range);
+    this.slider = element("input", {
+      ...{ type: "range", min: 0, max: 1, step: FINEST, value: 0, "data-control": "cursor", "aria-label": "Time" },
+      oninput: () => this.put(this.span.low + Number(this.slider.value) * (this.span.high - this.span.low)),
+    });
     const speeds = SPEEDS.map((speed) => element("option", { value: speed, selected: speed === 1 }, `${speed}×`));
     this.speed = element("select", { class: "speed", "data-control": "speed", "aria-label": "Speed" }, ...speeds);
     this.now = element("output", {});
-    const zooms = Object.entries(ZOOMS).map(([key, [sign, words, name]]) => {
-      const said = { class: "zoom", "data-control": name, "aria-label": words, title: `${words} (${key})` };
-      return button(sign, () => this.zoom(key), said);
-    });
+    const zooms = Object.entries(ZOOMS).map(([key, [sign, words, name]]) =>
+      button(sign, () => this.zoom(key), {
+        ...{ class: "zoom", "data-control": name, "aria-label": words, title: `${words} (${key})` },
+      }),
+    );
     const parts = [this.press, this.slider, this.now, this.speed, element("span", { class: "zooms" }, ...zooms)];
     this.body = element("div", { class: "player", role: "group", "aria-label": "Time" }, ...parts);
-    this.slider.addEventListener("input", () => this.put(this.timeAt(Number(this.slider.value))));
     this.body.addEventListener("keydown", (event) => this.key(event));
     this.still.addEventListener("change", () => this.pause());
     this.label();
@@ -46,18 +47,15 @@ export class Player {
     return this.lab.span;
   }
 
-  timeAt(share) {
-    const { low, high } = this.span;
-    return low + share * (high - low);
-  }
-
   key(event) {
     if (event.target === this.speed) return;
+    const zoom = KEYS[event.key] ?? event.key;
+    const step = STEPS[event.key] * (event.shiftKey ? 0.1 : 1);
     if (event.key === " " && event.target !== this.press) this.toggle();
-    else if (STEPS[event.key]) this.put(stepped(this.lab.state.cursor, this.span, STEPS[event.key] * (event.shiftKey ? 0.1 : 1)));
+    else if (step) this.put(stepped(this.lab.state.cursor, this.span, step));
     else if (event.key === "Home") this.put(this.span.low);
     else if (event.key === "End") this.put(this.span.high);
-    else if (ZOOMS[KEYS[event.key] ?? event.key]) this.zoom(KEYS[event.key] ?? event.key);
+    else if (ZOOMS[zoom]) this.zoom(zoom);
     else return;
     event.preventDefault();
   }
@@ -65,7 +63,10 @@ export class Player {
   /** Show less or more of the time about the present one, or all of it. */
   zoom(key) {
     const about = this.lab.state.cursor ?? this.span.low;
-    this.lab.zoom((timeline) => (key === "0" ? timeline.select(timeline.whole) : timeline.zoom(key === "+" ? 0.5 : 2, about)));
+    this.lab.zoom((timeline) => {
+      if (key === "0") timeline.select(timeline.whole);
+      else timeline.zoom(key === "+" ? 0.5 : 2, about);
+    });
   }
 
   /** Show a time that the hand asks for, which ends play. */
@@ -109,7 +110,8 @@ export class Player {
     const now = performance.now();
     const seconds = Math.min((now - this.last) / 1000, LONGEST_STALL);
     this.last = now;
-    const { time, playing } = advanced(this.lab.state.cursor ?? -Infinity, this.span, Number(this.speed.value), seconds);
+    const from = this.lab.state.cursor ?? -Infinity;
+    const { time, playing } = advanced(from, this.span, Number(this.speed.value), seconds);
     this.lab.point(time);
     this.lab.paint();
     if (playing && this.playing) this.frame = requestAnimationFrame(() => this.tick());
@@ -132,11 +134,7 @@ export class Player {
     if (Math.abs(Number(this.slider.value) - share) > FINEST / 2) this.slider.value = String(share);
     const text = `${cursor.toFixed(Math.max(0, 2 - Math.floor(Math.log10(high - low))))} s`;
     if (this.now.textContent === text) return;
-    this.now.textContent = text;
+    setText(this.now, text);
     this.slider.setAttribute("aria-valuetext", `${text}, of ${readable(low)} to ${readable(high)} s`);
-  }
-
-  close() {
-    this.pause();
   }
 }

@@ -1,98 +1,102 @@
 // The map over two settings: what an observer's run comes to at every place, with a cursor that goes there.
 
-import { cellAt } from "../model/axes.js";
+import { cellAt, planOf } from "../model/axes.js";
 import { bare, IMPOSSIBLE, settingsAt, THEN } from "../model/cells.js";
 import { breath, Filling } from "../model/filling.js";
+import { cellInWords, mapInWords, placeInWords, stateInWords } from "../model/map_words.js";
+import { changeAt } from "../model/settings.js";
 import { cellAtShares, sharesOf, Sweep } from "../model/sweep.js";
 import { readOf } from "../model/typed.js";
-import { cellInWords, mapInWords, placeInWords, stateInWords } from "../model/map_words.js";
-import { openBeside } from "./beside.js";
 import { Picture } from "./canvas.js";
-import { element } from "./controls.js";
-import { put } from "./put.js";
-import { RunThere } from "./run_there.js";
+import { select } from "./controls.js";
+import { element, listen, setAttribute, setText } from "./dom.js";
+import { topic } from "./fieldsets.js";
+import { STEPS } from "./handle.js";
+import { PointerRun } from "./pointer_run.js";
 import { boxOf, drawAim, drawMap } from "./settings_map_drawing.js";
+import { openWorker } from "./worker.js";
 
-const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const LEAP = 8;
 const HOW = "Map over two settings: move the cursor with the arrow keys, Enter goes there";
+const SHOWS = { nothing: "no map", settling: "settling time", error: "error at the end" };
+const MEANING = "Each place is a whole run with all other settings as they are; noise has the same seed everywhere.";
 /** Milliseconds at a time that maps may take of the page's own, until there is a worker and where there is none. */
 const SLICE = 8;
 /** Milliseconds in which a first picture has been handed to the screen, so that opening a worker does not delay it. */
 const SHOWN = 50;
 
 export class SettingsMap extends Picture {
+  /** @type {Filling | null} what fills maps in the page */
+  filling = null;
+  /** @type {Worker | null} */
+  worker = null;
+  /** @type {number[] | null} where the cursor is, in shares of the way along both axes */
+  aim = null;
+  /** @type {PointerRun | null} */
+  pointerRun = null;
+  /** The box that the pad covers. */
+  box = "";
+
   constructor(lab, axesOf) {
     super("settings-map", "Map over two settings");
     this.figure.hidden = true;
     this.lab = lab;
-    this.axesOf = axesOf;
     this.sweep = new Sweep(lab.model, axesOf, () => this.come());
-    /** @type {Filling | null} */
-    this.here = null;
-    /** @type {Worker | null} */
-    this.worker = null;
-    /** @type {number[] | null} where the cursor is, in shares of the way along both axes */
-    this.aim = null;
-    /** @type {ReturnType<typeof boxOf> | null} */
-    this.box = null;
-    this.pad = element("div", { class: "aim", tabindex: 0, role: "slider", "aria-label": HOW, "aria-valuenow": 0, title: "Press to go there" });
-    this.pad.dataset.control = "map place";
+    this.pad = element("div", {
+      ...{ class: "aim", "data-control": "map place", tabindex: 0, role: "slider", "aria-label": HOW },
+      ...{ "aria-valuenow": 0, title: "Press to go there" },
+    });
     this.line = element("p", { class: "run-there", "aria-hidden": "true" });
     this.figure.append(this.pad, this.line);
-    /** @type {RunThere | null} */
-    this.there = null;
     this.listen();
   }
 
   listen() {
     const { pad } = this;
-    const shares = ({ clientX, clientY }) => {
+    const sharesAt = ({ clientX, clientY }) => {
       const { left, top, width, height } = pad.getBoundingClientRect();
       const [x, y] = [(clientX - left) / width, 1 - (clientY - top) / height];
       return x >= 0 && x < 1 && y >= 0 && y < 1 ? [x, y] : null;
     };
     const point = (aim) => {
       this.aim = aim;
-      this.again();
+      this.redraw();
     };
-    pad.addEventListener("pointermove", (event) => point(shares(event)));
-    pad.addEventListener("pointerleave", () => point(null));
-    pad.addEventListener("blur", () => point(null));
-    pad.addEventListener("click", (event) => {
-      point(shares(event));
-      this.go();
-    });
-    pad.addEventListener("keydown", (event) => {
-      const step = STEPS[event.key];
-      if (step) this.step(step, event.shiftKey ? LEAP : 1);
-      else if (event.key === "Enter") this.go();
-      else if (event.key === "Escape" && this.aim) point(null);
-      else return;
-      event.preventDefault();
+    listen(pad, {
+      pointermove: (event) => point(sharesAt(event)),
+      "pointerleave blur": () => point(null),
+      click: (event) => {
+        point(sharesAt(event));
+        this.go();
+      },
+      keydown: (event) => {
+        const step = STEPS[event.key];
+        if (step) this.step(step, event.shiftKey ? LEAP : 1);
+        else if (event.key === "Enter") this.go();
+        else if (event.key === "Escape" && this.aim) point(null);
+        else return;
+        event.preventDefault();
+      },
     });
   }
 
   /** Move the cursor by so many of the finest cells. */
   step(direction, size) {
-    const cells = Math.max(this.sweep.finest, THEN[THEN.length - 1]);
-    const from = this.aim ?? this.standing() ?? [0.5, 0.5];
-    this.aim = from.map((share, c) => (cellAt(cellAt(share, cells) / cells + (direction[c] * size + 0.5) / cells, cells) + 0.5) / cells);
-    this.again();
+    const { lab, sweep: { found } } = this;
+    const cells = THEN[THEN.length - 1];
+    const functions = lab.shown && lab.kernels.of(lab.shown.settings);
+    const standing = functions && found ? sharesOf(found.plan, lab.shown.settings, functions) : [0.5, 0.5];
+    this.aim = (this.aim ?? standing).map((share, c) => {
+      const moved = cellAt(share, cells) + direction[c] * size + 0.5;
+      return (cellAt(moved / cells, cells) + 0.5) / cells;
+    });
+    this.redraw();
   }
 
   /** Draw once more what has changed here, and nothing else, unless the whole lab is about to be drawn. */
-  again() {
+  redraw() {
     const { lab } = this;
     if (lab.shown && lab.theme && !lab.pending) this.draw(lab.shown, null, null, lab.theme);
-  }
-
-  /** Where the shown settings are; null while that is not known. */
-  standing() {
-    const { shown, kernels } = this.lab;
-    const functions = shown && kernels.of(shown.settings);
-    const plan = this.sweep.found?.plan;
-    return functions && plan ? sharesOf(plan, shown.settings, functions) : null;
   }
 
   /** The cell at shares of the way along both axes, and the settings there; null as long as it is not filled. */
@@ -101,7 +105,8 @@ export class SettingsMap extends Picture {
     const cell = found && cellAtShares(found, shares);
     const functions = lab.kernels.of(lab.settings);
     if (!cell || !functions) return null;
-    return { cell, observer: found.plan.observer, settings: cell.kind === IMPOSSIBLE ? null : settingsAt(lab.settings, found.plan, cell.place, functions) };
+    const settings = cell.kind === IMPOSSIBLE ? null : settingsAt(lab.settings, found.plan, cell.place, functions);
+    return { cell, observer: found.plan.observer, settings };
   }
 
   /** Take the settings of the place under the cursor: a step that can be undone. */
@@ -114,57 +119,61 @@ export class SettingsMap extends Picture {
   /** Something of the map has come. */
   come() {
     const { lab } = this;
-    this.again();
-    setTimeout(() => this.here && this.hire(), SHOWN);
+    this.redraw();
+    setTimeout(() => this.filling && this.openWorker(), SHOWN);
     const finest = this.sweep.found?.levels.at(-1);
     if (finest && finest.done === finest.cells ** 2 && !lab.held && lab.shown) this.describe(lab.shown);
   }
 
   /** Fill maps in slices of the page's own time: until there is a worker, and where there is none. */
   begin() {
-    if (this.here) return;
+    if (this.filling) return;
     const { lab, sweep } = this;
-    const there = (this.there ??= new RunThere(lab.charts.error));
-    const { Engine, CellEngine, axesOf } = lab.constructor.computing;
     const { model, kernels } = lab;
-    const here = new Filling({ model, kernels, engine: new CellEngine(model), runs: new Engine(model), axesOf }, (part) => sweep.take(part), { slice: SLICE, pause: breath });
-    this.here = here;
+    const { Engine, CellEngine, axesOf } = lab.constructor.computing;
+    const computing = { model, kernels, engine: new CellEngine(model), runs: new Engine(model), axesOf };
+    const filling = new Filling(computing, (part) => sweep.take(part), { slice: SLICE, pause: breath });
+    const pointerRun = (this.pointerRun ??= new PointerRun(lab.charts.error));
     const failed = (error) => lab.fail(error);
-    sweep.fill({ ask: (task) => here.take(task).catch(failed) });
-    there.from((task) => here.follow(task).then((found) => there.take(found), failed));
+    this.filling = filling;
+    sweep.fill({ ask: (task) => filling.take(task).catch(failed) });
+    pointerRun.computeBy((task) => filling.follow(task).then((found) => pointerRun.take(found), failed));
   }
 
-  /** Let a worker fill maps as soon as it is open: hired when somebody comes to its controls, else after the first picture, which would wait for it. */
-  hire() {
+  /**
+   * Let a worker fill maps as soon as it is open: from when somebody comes to the map's controls, or else after the
+   * first picture, which would wait for it.
+   */
+  openWorker() {
     this.begin();
-    const { here, lab, sweep, there } = this;
-    const bundle = lab.widget.get("_esm");
+    const { filling, lab, sweep, pointerRun } = this;
     if (this.worker || typeof Worker === "undefined") return;
-    const [kind, texts, model] = ["kind", "texts", "model"].map((name) => lab.widget.get(name));
-    this.worker = openBeside({ bundle, kind, texts, model }, {
-      onReady: ({ ask }) => {
-        here?.stop();
-        there?.from(ask);
-        sweep.fill({ ask: (task) => ask({ ...task, written: readOf(task.settings, lab.model) }) });
-        // Who comes to its controls has the map before choosing to see it.
-        if (lab.shown) this.want(lab.shown);
-      },
-      onAnswer: (answer) => (answer.error ? lab.fail(new Error(answer.error)) : answer.key ? there?.take(answer) : sweep.take(answer)),
-      onGone: () => {},
-    }, "maps");
+    const ready = (ask) => {
+      filling?.stop();
+      pointerRun?.computeBy(ask);
+      sweep.fill({ ask: (task) => ask({ ...task, written: readOf(task.settings, lab.model) }) });
+      // Who comes to its controls has the map before choosing to see it.
+      if (lab.shown) this.want(lab.shown);
+    };
+    const answer = (found) => {
+      if (found.error) lab.fail(new Error(found.error));
+      else if (found.key) pointerRun?.take(found);
+      else sweep.take(found);
+    };
+    this.worker = openWorker(lab.widget, { ready, answer }, "maps");
   }
 
-  /** Nothing is to be filled any more. */
+  /** Fill nothing any more. */
   close() {
-    this.here?.stop();
+    this.filling?.stop();
     this.worker?.terminate();
-    this.here = this.worker = null;
+    this.filling = this.worker = null;
     this.sweep.close();
-    this.there?.from(null);
-    this.there?.want(null);
+    this.pointerRun?.computeBy(null);
+    this.pointerRun?.want(null);
   }
 
-  /** Ask for the map of what is shown; what its settings compute with, where that is known. */
+  /** Ask for the map of what is shown; return the functions of its settings, where they are there. */
   want({ settings, tolerance }) {
     const functions = this.lab.kernels.of(settings);
     if (functions) this.sweep.want(settings, functions, tolerance);
@@ -173,28 +182,29 @@ export class SettingsMap extends Picture {
 
   draw(shown, _ghost, _cursor, theme) {
     const { figure, sweep } = this;
-    const off = shown.settings.over.shows === "nothing";
-    if (off !== figure.hidden) {
-      figure.hidden = off;
-      if (off) this.close();
-    }
+    const what = shown.settings.over.shows;
+    const off = what === "nothing";
+    if (off && !figure.hidden) this.close();
+    figure.hidden = off;
     if (off) return undefined;
     this.begin();
     const functions = this.want(shown);
     if (!functions) return undefined;
-    const size = this.fit(theme.font);
-    const box = boxOf(size);
-    if (!this.box || Object.entries(box).some(([side, value]) => this.box?.[side] !== value)) {
-      this.box = box;
-      Object.assign(this.pad.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` });
-    }
-    const what = shown.settings.over.shows;
+    const box = boxOf(this.fit(theme.font));
+    this.coverBy(box);
     const { plan, found, version } = sweep;
     const title = this.title(plan, what);
-    this.underlay([version, what, title, box, found && plan?.across.place, found && plan?.up.place, theme], (pen) => drawMap(pen, box, { found, plan, what, title }, theme));
+    const axes = found && [plan?.across.place, plan?.up.place];
+    this.underlay([version, title, box, axes, theme], (pen) => drawMap(pen, box, { found, plan, what, title }, theme));
     const standing = found && sharesOf(found.plan, shown.settings, functions);
     if (standing) drawAim(this.context, box, standing, this.aim && cellAtShares(found, this.aim), theme);
     return this.read();
+  }
+
+  /** Put the pad over the box. */
+  coverBy(box) {
+    const style = Object.entries(box).map(([side, value]) => `${side}: ${value}px`).join("; ");
+    if (this.box !== style) this.pad.style.cssText = this.box = style;
   }
 
   title(plan, what) {
@@ -204,20 +214,69 @@ export class SettingsMap extends Picture {
 
   /** Say what the run under the cursor comes to, or how far the map is. */
   read() {
-    const { sweep, aim, sweep: { found } } = this;
+    const { sweep, aim, pad, sweep: { found } } = this;
     const cell = aim && found && cellAtShares(found, aim);
     const text = cell ? `${placeInWords(found.plan, cell.place)}: ${cellInWords(cell)}` : stateInWords(sweep);
-    put(this.line, text);
-    const follow = cell && this.at(aim)?.settings;
-    this.there?.want(follow ? { key: JSON.stringify([sweep.key, cell.place]), follow: bare(follow, found.plan.observer) } : null);
-    this.pad.setAttribute("aria-valuenow", String(Math.round(100 * (aim?.[0] ?? 0))));
-    if (this.pad.getAttribute("aria-valuetext") !== text) this.pad.setAttribute("aria-valuetext", text);
+    setText(this.line, text);
+    const settings = cell && this.at(aim)?.settings;
+    const key = cell && JSON.stringify([sweep.key, cell.place]);
+    this.pointerRun?.want(settings ? { key, follow: bare(settings, found.plan.observer) } : null);
+    pad.setAttribute("aria-valuenow", String(Math.round(100 * (aim?.[0] ?? 0))));
+    setAttribute(pad, "aria-valuetext", text);
   }
 
   describe(shown) {
-    if (shown.settings.over.shows === "nothing") return this.tell("off");
-    const { sweep } = this;
     const { shows } = shown.settings.over;
-    return this.tell(sweep.found ? mapInWords(sweep, shows, this.title(sweep.found.plan, shows)) : stateInWords(sweep));
+    if (shows === "nothing") return this.tell("off");
+    const { sweep, sweep: { found } } = this;
+    return this.tell(found ? mapInWords(sweep, shows, this.title(found.plan, shows)) : stateInWords(sweep));
   }
+}
+
+/** The controls of the map: what it shows, of which observer, and the setting along each axis. */
+export function mapTopic(panel, axesOf) {
+  const { lab, model } = panel;
+  const plan = () => {
+    const functions = lab.kernels.of(lab.settings);
+    return functions && planOf(lab.settings, model, axesOf, functions);
+  };
+  const set = (part) => (value) => lab.change(changeAt(lab.settings, `over.${part}`, value), true);
+  const titles = Object.fromEntries(Object.entries(model.observers).map(([name, { title }]) => [name, title]));
+  const shows = select({
+    ...{ name: "map shows", label: "shows", choices: SHOWS, set: set("shows") },
+    get: () => lab.settings.over.shows,
+  });
+  const observer = select({
+    ...{ name: "map observer", label: "observer", choices: titles, set: set("observer") },
+    get: () => {
+      const { over, observers } = lab.settings;
+      return observers.includes(over.observer) ? over.observer : observers[0];
+    },
+    possible: (name) => lab.settings.observers.includes(name),
+  });
+  const axes = ["across", "up"].map((part) => axisChoice(part, set(part), plan));
+  const rows = [observer, ...axes].map((control) => panel.add(control));
+  const meaning = element("p", { class: "meaning" }, MEANING);
+  const more = panel.onlyIf(({ over }) => over.shows !== "nothing", ...rows, meaning);
+  const body = topic("over", "Map over two settings", panel.add(shows), more);
+  listen(body, { "pointerenter focusin toggle": () => lab.planes.find((plane) => plane.sweep).openWorker() });
+  return body;
+}
+
+/** A choice among the axes that have a meaning at present, besides that of the other side. */
+function axisChoice(part, set, plan) {
+  const control = select({ name: `map ${part}`, label: part, set, choices: {}, get: () => "" });
+  const [box] = control.parts;
+  let shownFor = "";
+  const show = () => {
+    const now = plan();
+    if (!now) return;
+    const axes = now.axes.filter((axis) => axis !== now[part === "across" ? "up" : "across"]);
+    const key = axes.map(({ place }) => place).join();
+    const option = ({ place, label }) => element("option", { value: place }, label);
+    if (key !== shownFor) box.replaceChildren(...axes.map(option));
+    shownFor = key;
+    box.value = now[part]?.place ?? "";
+  };
+  return { ...control, show };
 }

@@ -3,7 +3,9 @@
 import { cellAt, shareOf, ticksOn } from "../model/axes.js";
 import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, NOT_YET } from "../model/cells.js";
 import { linearScale, readable } from "../model/scales.js";
-import { drawAxes, stroke } from "./image_frame.js";
+import { paintDots } from "./canvas.js";
+import { clipTo, drawAxes } from "./image_frame.js";
+import { stroke } from "./marks.js";
 
 const MARGIN = { left: 46, top: 34, right: 94, bottom: 62 };
 const SHADES = 8;
@@ -21,10 +23,10 @@ export function boxOf({ width, height }) {
 /** Values at which a next shade begins. */
 export function edgesOf(what, duration) {
   if (what === "error") return Array.from({ length: SHADES - 1 }, (_, k) => 10 ** (LEAST_DECADE + (k + 1) / 2));
-  const edges = [];
-  let power = Math.ceil(Math.log10(duration));
-  for (; edges.length < SHADES - 1; power--) for (const step of [5, 2, 1]) if (step * 10 ** power < duration) edges.unshift(Number(`${step}e${power}`));
-  return edges.slice(1 - SHADES);
+  const highest = Math.ceil(Math.log10(duration));
+  const powers = Array.from({ length: SHADES }, (_, k) => highest - SHADES + 1 + k);
+  const round = powers.flatMap((power) => [1, 2, 5].map((step) => Number(`${step}e${power}`)));
+  return round.filter((edge) => edge < duration).slice(1 - SHADES);
 }
 
 const opacityOf = (shade) => FAINTEST + ((STRONGEST - FAINTEST) * shade) / (SHADES - 1);
@@ -42,7 +44,8 @@ function merged({ levels }) {
     for (let i = 0; i < cells; i++, at += EACH_CELL) {
       for (let k = levels.length - 1; k >= 0 && values[at] === NOT_YET; k--) {
         const level = levels[k];
-        const from = EACH_CELL * (cellAt((j + 0.5) / cells, level.cells) * level.cells + cellAt((i + 0.5) / cells, level.cells));
+        const [column, row] = [i, j].map((place) => cellAt((place + 0.5) / cells, level.cells));
+        const from = EACH_CELL * (row * level.cells + column);
         for (let c = 0; c < EACH_CELL; c++) values[at + c] = level.values[from + c];
       }
     }
@@ -75,23 +78,17 @@ function hatchOf(values, at, what) {
 function paintCells(pen, { left, top, width, height }, { found, what }, theme) {
   const { cells, values } = merged(found);
   const edges = edgesOf(what, found.duration);
-  const picture = document.createElement("canvas");
-  picture.width = picture.height = cells;
-  const on = /** @type {CanvasRenderingContext2D} */ (picture.getContext("2d"));
-  on.fillStyle = theme.lines[0];
-  on.fillRect(0, 0, cells, cells);
-  const dots = on.getImageData(0, 0, cells, cells);
+  const [across, down] = [width / cells, height / cells];
   const paths = { [DIVERGED]: new Path2D(), [FOLLOWED]: new Path2D() };
-  for (let cell = 0; cell < cells * cells; cell++) {
+  const picture = document.createElement("canvas");
+  paintDots(picture, cells, theme.lines[0], (cell) => {
     const at = EACH_CELL * cell;
     const [i, j] = [cell % cells, Math.floor(cell / cells)];
     const hatched = hatchOf(values, at, what);
-    const shaded = values[at] === FOLLOWED && !hatched;
-    const shade = shaded ? opacityOf(shadeOf(edges, values[at + (what === "settling" ? SETTLING : 2)])) : 0;
-    dots.data[4 * ((cells - 1 - j) * cells + i) + 3] = 255 * shade;
-    if (hatched) paths[hatched].rect(left + (i * width) / cells, top + height - ((j + 1) * height) / cells, width / cells, height / cells);
-  }
-  on.putImageData(dots, 0, 0);
+    if (hatched) paths[hatched].rect(left + i * across, top + height - (j + 1) * down, across, down);
+    if (hatched || values[at] !== FOLLOWED) return 0;
+    return opacityOf(shadeOf(edges, values[at + (what === "settling" ? SETTLING : 2)]));
+  });
   pen.imageSmoothingEnabled = false;
   pen.drawImage(picture, left, top, width, height);
   for (const kind of [FOLLOWED, DIVERGED]) {
@@ -155,9 +152,7 @@ export function drawMap(pen, box, { found, plan, what, title }, theme) {
   pen.fillText(`${title}, in ${what === "settling" ? "s" : "%"}`, 4, 11);
   if (found) {
     pen.save();
-    pen.beginPath();
-    pen.rect(box.left, box.top, box.width, box.height);
-    pen.clip();
+    clipTo(pen, box);
     paintCells(pen, box, { found, what }, theme);
     drawTolerance(pen, box, found, theme);
     pen.restore();
@@ -170,7 +165,8 @@ export function drawMap(pen, box, { found, plan, what, title }, theme) {
     x: (value) => box.left + shareOf(plan.across, value) * box.width,
     y: (value) => box.top + box.height - shareOf(plan.up, value) * box.height,
   };
-  drawAxes(pen, frame, [ticks(plan.across, box.width, 45), ticks(plan.up, box.height, 30)], { ...theme, grid: "transparent" }, [plan.across.label, plan.up.label]);
+  const each = [ticks(plan.across, box.width, 45), ticks(plan.up, box.height, 30)];
+  drawAxes(pen, frame, each, { ...theme, grid: "transparent" }, [plan.across.label, plan.up.label]);
 }
 
 /** What shades and hatches mean, beside the map. */
@@ -195,7 +191,8 @@ function drawKey(pen, { left, top, width, height }, what, { duration, tolerance 
   pen.strokeRect(x + 0.5, top + 0.5, 16, SHADES * each);
   const every = Math.ceil((what === "settling" ? 11 : 20) / each);
   edges.forEach((edge, k) => {
-    if ((k + 1) % every === 0 || every === 1) word(readable(what === "settling" ? edge : 100 * edge, 2), x + 21, top + (k + 1) * each);
+    if ((k + 1) % every) return;
+    word(readable(what === "settling" ? edge : 100 * edge, 2), x + 21, top + (k + 1) * each);
   });
   const rows = [
     [FOLLOWED, what === "settling" ? "never" : "no error"],

@@ -2,7 +2,7 @@
 
 import { within } from "../model/playback.js";
 import { readable } from "../model/scales.js";
-import { element } from "./controls.js";
+import { element, listen, setAttribute, svg } from "./dom.js";
 
 const POINTS = 33;
 const KEY_STEP = 0.25;
@@ -12,15 +12,12 @@ export class Sketch {
   constructor(lab) {
     this.lab = lab;
     this.chart = lab.charts.error;
-    const space = "http://www.w3.org/2000/svg";
-    const picture = document.createElementNS(space, "svg");
-    this.path = document.createElementNS(space, "path");
-    picture.append(this.path);
-    picture.setAttribute("class", "sketched");
-    picture.setAttribute("aria-hidden", "true");
-    this.pad = element("div", { class: "pad", hidden: true, tabindex: 0, role: "slider", "aria-label": HOW, "data-control": "sketch" });
-    this.chart.figure.append(picture, this.pad);
-    /** @type {{low: number, high: number, levels: number[]} | null} what is being drawn: decades at equal steps of time */
+    this.path = svg("path");
+    this.pad = element("div", {
+      ...{ class: "pad", hidden: true, tabindex: 0, role: "slider", "aria-label": HOW, "data-control": "sketch" },
+    });
+    this.chart.figure.append(svg("svg", { class: "sketched", "aria-hidden": "true" }, this.path), this.pad);
+    /** @type {{low: number, high: number, levels: number[]} | null} being drawn: decades at equal steps of time */
     this.draft = null;
     this.at = 0;
     this.listen();
@@ -52,29 +49,29 @@ export class Sketch {
   listen() {
     const { pad } = this;
     let down = false;
-    pad.addEventListener("pointerdown", (event) => {
-      down = true;
-      this.at = -1;
-      if (event.isTrusted) pad.setPointerCapture(event.pointerId);
-      this.follow(event);
-    });
-    pad.addEventListener("pointermove", (event) => down && this.follow(event));
-    for (const type of ["pointerup", "pointercancel"]) {
-      pad.addEventListener(type, () => {
+    listen(pad, {
+      pointerdown: (event) => {
+        down = true;
+        this.at = -1;
+        if (event.isTrusted) pad.setPointerCapture(event.pointerId);
+        this.follow(event);
+      },
+      pointermove: (event) => down && this.follow(event),
+      "pointerup pointercancel": () => {
         if (down) this.end();
         down = false;
-      });
-    }
-    pad.addEventListener("blur", () => down || this.end());
-    pad.addEventListener("keydown", (event) => {
-      const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      const turn = { ArrowUp: KEY_STEP, ArrowDown: -KEY_STEP }[event.key];
-      if (event.key === "Enter" || event.key === "Escape") this.end();
-      else if (step) this.at = within(this.at + step, 0, POINTS - 1);
-      else if (turn && this.draft) this.draw(this.at, POINTS - 1, this.draft.levels[this.at] + turn);
-      else return;
-      event.preventDefault();
-      this.show();
+      },
+      blur: () => down || this.end(),
+      keydown: (event) => {
+        const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+        const turn = { ArrowUp: KEY_STEP, ArrowDown: -KEY_STEP }[event.key];
+        if (event.key === "Enter" || event.key === "Escape") this.end();
+        else if (step) this.at = within(this.at + step, 0, POINTS - 1);
+        else if (turn && this.draft) this.draw(this.at, POINTS - 1, this.draft.levels[this.at] + turn);
+        else return;
+        event.preventDefault();
+        this.show();
+      },
     });
   }
 
@@ -82,7 +79,7 @@ export class Sketch {
   follow(event) {
     const { chart, draft } = this;
     if (!draft) return;
-    const { height, base, perUnit, bottom, top } = chart.place;
+    const { height, base, perUnit, bottom } = chart.place;
     const y = event.clientY - chart.canvas.getBoundingClientRect().top;
     const level = base + within(bottom - y, 0, height) / perUnit;
     const share = (chart.nearest(event.clientX) - draft.low) / (draft.high - draft.low);
@@ -90,25 +87,26 @@ export class Sketch {
     const from = this.at < 0 ? now : this.at;
     this.draw(Math.min(from, now), this.at < 0 ? POINTS - 1 : Math.max(from, now), level);
     this.at = now;
-    if (top < bottom) this.show();
+    this.show();
   }
 
   draw(first, last, level) {
-    if (this.draft) this.draft = { ...this.draft, levels: this.draft.levels.map((old, k) => (k >= first && k <= last ? level : old)) };
+    if (!this.draft) return;
+    const levels = this.draft.levels.map((old, k) => (k >= first && k <= last ? level : old));
+    this.draft = { ...this.draft, levels };
   }
 
   /** Put the curve where its times and values are on the chart now. */
   show() {
-    const { chart, pad, path } = this;
+    const { chart: { place }, pad, path } = this;
     const sketch = this.draft ?? this.lab.state.preset?.sketch;
-    const place = chart.place;
     const step = sketch && (sketch.high - sketch.low) / (POINTS - 1);
-    const points = sketch && place ? sketch.levels.map((level, k) => `${place.x(sketch.low + k * step).toFixed(1)},${place.y(10 ** level).toFixed(1)}`) : [];
-    const drawn = points.length ? `M${points.join("L")}` : "";
-    if ((path.getAttribute("d") ?? "") !== drawn) path.setAttribute("d", drawn);
+    const pointOf = (level, k) => `${place.x(sketch.low + k * step).toFixed(1)},${place.y(10 ** level).toFixed(1)}`;
+    setAttribute(path, "d", sketch && place ? `M${sketch.levels.map(pointOf).join("L")}` : "");
     if (!this.draft) return;
     const at = Math.max(this.at, 0);
     pad.setAttribute("aria-valuenow", String(at));
-    pad.setAttribute("aria-valuetext", `at ${readable(this.draft.low + at * step)} s, ${readable(10 ** this.draft.levels[at])}`);
+    const level = readable(10 ** this.draft.levels[at]);
+    pad.setAttribute("aria-valuetext", `at ${readable(this.draft.low + at * step)} s, ${level}`);
   }
 }

@@ -1,6 +1,6 @@
 // Moving what is not seen: a copy of the point swings along the direction that the measurements do not tell.
 
-import { button } from "./controls.js";
+import { button } from "./dom.js";
 import { label, pointMark } from "./marks.js";
 
 /** Swings in a second, and the part of one that a step is where nothing may move by itself. */
@@ -15,17 +15,20 @@ export class Swing {
     this.amount = null;
     this.phase = 0;
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
-    this.press = button("Move what is not seen", () => this.toggle(), { class: "swing", hidden: true, "data-control": "swing", "aria-pressed": "false" });
+    this.press = button("Move what is not seen", () => this.toggle(), {
+      ...{ class: "swing", hidden: true, "data-control": "swing", "aria-pressed": "false" },
+    });
   }
 
   toggle() {
-    const moving = this.amount !== null && !this.still.matches;
-    this.phase = this.still.matches ? this.phase + STEP : 0;
-    this.put(moving ? null : Math.sin(2 * Math.PI * this.phase));
-    if (this.amount !== null && !this.still.matches) this.tick(performance.now());
+    const still = this.still.matches;
+    const moving = this.amount !== null && !still;
+    this.phase = still ? this.phase + STEP : 0;
+    this.set(moving ? null : Math.sin(2 * Math.PI * this.phase));
+    if (this.amount !== null && !still) this.tick(performance.now());
   }
 
-  put(amount) {
+  set(amount) {
     this.amount = amount;
     this.press.setAttribute("aria-pressed", String(amount !== null));
     this.lab.redraw();
@@ -36,27 +39,25 @@ export class Swing {
       if (this.amount === null || this.lab.closed) return;
       const now = performance.now();
       this.phase += (RATE * (now - before)) / 1000;
-      this.put(Math.sin(2 * Math.PI * this.phase));
+      this.set(Math.sin(2 * Math.PI * this.phase));
       this.tick(now);
     });
   }
 
-  /** Offer it where there is something that is not seen. */
-  offer(unseen) {
+  /** Show the button where there is something that is not seen. */
+  show(unseen) {
     this.press.hidden = !unseen;
-    if (!unseen && this.amount !== null) this.put(null);
+    if (!unseen && this.amount !== null) this.set(null);
   }
 }
 
-/** The copies on a picture, whose places `on` tells, and what stands still meanwhile. */
-export function drawSwung(pen, copies, on, words, [x, y], theme) {
-  for (const { colour, ...copy } of copies) {
+/** The copies on a picture, at the places that `on` returns, and what stands still meanwhile. */
+export function drawSwung(pen, { copies, words }, on, [x, y], theme) {
+  for (const copy of copies) {
     const [left, top] = on(copy);
     pen.globalAlpha = 0.75;
-    pointMark(pen, left, top, colour, theme);
+    pointMark(pen, left, top, copy.colour, theme);
     pen.globalAlpha = 1;
   }
-  pen.textAlign = "left";
-  pen.textBaseline = "alphabetic";
   label(pen, words, x, y, theme.ink, theme);
 }

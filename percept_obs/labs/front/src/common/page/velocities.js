@@ -2,8 +2,8 @@
 
 import { readable } from "../model/scales.js";
 import { COPIES } from "../model/velocities.js";
-import { SOLID } from "./lines.js";
-import { arrowMark, label } from "./marks.js";
+import { SOLID } from "./looks.js";
+import { arrowMark, disc, label } from "./marks.js";
 
 /** Length of an arrow at the mean speed of the image, as a part of the picture's side. */
 const USUAL = 0.16;
@@ -30,15 +30,15 @@ export function drawVelocities(pen, frame, arrows, speed, theme) {
       const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
       return [{ name: NAMES[k], at: [0, 1].map((i) => to[i] + (11 * (to[i] - from[i])) / length) }];
     });
-    pen.textBaseline = "middle";
     for (const { name, x, y, align } of readApart(named.map(({ name, at }) => lettering(name, at, from, frame.box)))) {
-      pen.textAlign = align;
-      label(pen, name, x, y, colour, theme);
+      label(pen, name, x, y, colour, theme, align, "middle");
     }
   });
   const still = arrows.every(({ velocities }) => Math.hypot(...velocities.flat()) < 1e-9);
-  const same = arrows.every(({ velocities: [near, , far] }) => Math.hypot(near[0] - far[0], near[1] - far[1]) < ALIKE * Math.hypot(...near));
-  caption(pen, frame, arrows.map(({ place }) => place), [still ? STILL : same ? SAME : MOVING], theme);
+  const same = arrows.every(({ velocities: [near, , far] }) => {
+    return Math.hypot(near[0] - far[0], near[1] - far[1]) < ALIKE * Math.hypot(...near);
+  });
+  caption(pen, frame, arrows, [still ? STILL : same ? SAME : MOVING], theme);
 }
 
 /** Where a name stands beside the tip of its arrow, or a joined one inside the picture. */
@@ -49,15 +49,21 @@ function lettering(name, at, from, box) {
   const cut = !single && at[0] < from[0] && !right;
   const [x, y] = cut ? [box.left + 4, at[1] - APART] : at;
   const width = LETTER * name.length;
-  const left = single ? x - width / 2 : right ? x - width : x;
-  return { name, at, x, y, ends: [left, left + width], align: /** @type {CanvasTextAlign} */ (single ? "center" : right ? "right" : "left"), again: (more) => lettering(`${name}, ${more}`, at, from, box) };
+  const align = single ? "center" : right ? "right" : "left";
+  const left = x - { center: width / 2, right: width, left: 0 }[align];
+  const again = (more) => lettering(`${name}, ${more}`, at, from, box);
+  return { name, at, x, y, ends: [left, left + width], align, again };
 }
 
-/** Names of which none covers another: those that would are joined. */
+/** Join names that would cover each other. */
 function readApart(named) {
+  const covers = (one) => ({ ends, y }) =>
+    Math.abs(y - one.y) < APART && ends[0] < one.ends[1] && one.ends[0] < ends[1];
   for (const [k, one] of named.entries()) {
-    const other = named.slice(k + 1).find(({ ends, y }) => Math.abs(y - one.y) < APART && ends[0] < one.ends[1] && one.ends[0] < ends[1]);
-    if (other) return readApart(named.flatMap((each) => (each === one ? [one.again(other.name)] : each === other ? [] : [each])));
+    const other = named.slice(k + 1).find(covers(one));
+    if (!other) continue;
+    const others = named.filter((each) => each !== other);
+    return readApart(others.map((each) => (each === one ? one.again(other.name) : each)));
   }
   return named;
 }
@@ -80,19 +86,18 @@ export function drawAlike(pen, frame, alike, speed, theme) {
     pen.stroke();
   }
   copies.forEach(({ distance, own }, k) => {
-    drawArrow(pen, starts[k], ends[k], own ? 1 : 0.6, own ? theme.ink : theme.warning);
-    pen.fillStyle = own ? theme.ink : theme.warning;
-    pen.beginPath();
-    pen.arc(starts[k][0], starts[k][1], 3, 0, 2 * Math.PI);
-    pen.fill();
+    const colour = own ? theme.ink : theme.warning;
+    const [x, y] = starts[k];
+    drawArrow(pen, starts[k], ends[k], own ? 1 : 0.6, colour);
+    disc(pen, x, y, 3, colour);
+    const isNear = (copy, i) => copy.own && i !== k && Math.hypot(starts[i][0] - x, starts[i][1] - y) < APART;
+    if (copies.some(isNear)) return;
     const away = ends[k][measured] < starts[k][measured] ? 1 : -1;
-    pen.textBaseline = measured === 0 ? "middle" : away > 0 ? "top" : "bottom";
-    pen.textAlign = measured === 1 ? "center" : away > 0 ? "left" : "right";
-    const beside = [0, 1].map((c) => starts[k][c] + (c === measured ? 10 * away : 0));
-    const crowded = copies.some((copy, i) => copy.own && i !== k && Math.hypot(starts[i][0] - starts[k][0], starts[i][1] - starts[k][1]) < APART);
-    if (!crowded) label(pen, `${readable(distance, 2)} m`, beside[0], beside[1], own ? theme.ink : theme.warning, theme);
+    const text = `${readable(distance, 2)} m`;
+    if (measured === 0) label(pen, text, x + 10 * away, y, colour, theme, away > 0 ? "left" : "right", "middle");
+    else label(pen, text, x, y + 10 * away, colour, theme, "center", away > 0 ? "top" : "bottom");
   });
-  caption(pen, frame, copies.map(({ place }) => place), [`alike to ${name} alone:`, `same ${name}, same speed along it`], theme);
+  caption(pen, frame, copies, [`alike to ${name} alone:`, `same ${name}, same speed along it`], theme);
 }
 
 /** Seconds that an arrow stands for. */
@@ -105,15 +110,13 @@ function tipOf(frame, place, velocity, seconds) {
 }
 
 /** What is drawn, in words: away from the points, and a line below what is said of a copy that swings. */
-function caption(pen, { box: { left, top, side }, y }, places, lines, theme) {
-  pen.textAlign = "left";
-  pen.textBaseline = "alphabetic";
-  const above = places.some((place) => y(place[1]) > top + 0.7 * side);
+function caption(pen, { box: { left, top, side }, y }, points, lines, theme) {
+  const above = points.some(({ place }) => y(place[1]) > top + 0.7 * side);
   const first = above ? top + 28 : top + side - 6 - 13 * (lines.length - 1);
   lines.forEach((text, k) => label(pen, text, left + 4, first + 13 * k, theme.muted, theme));
 }
 
-/** An arrow of a strength, if it is long enough to be seen; whether it is. */
+/** Draw an arrow of a strength, if it is long enough to be seen; return true if it is. */
 function drawArrow(pen, from, to, strength, colour) {
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
   if (!(length >= SHORTEST && length < Infinity)) return false;

@@ -1,13 +1,12 @@
 // Where everything stands at the desk: choices, what is given, the steps, the lines of one, the picture.
 
-import { button, element } from "../../common/page/controls.js";
-import { keys, sayings, ways } from "../../common/page/layout.js";
-import { put } from "../../common/page/put.js";
+import { button, element, formula, setText } from "../../common/page/dom.js";
+import { historyButtons, keys, messagesOf } from "../../common/page/layout.js";
 
 export function build(lab, place) {
   const { panel, sheet, picture } = lab;
-  const { problem, pythonError, silence, notice, said, functions } = sayings();
-  const history = ways(lab);
+  const { problem, pythonError, silence, notice, said, functions } = messagesOf();
+  const history = historyButtons(lab);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
   const title = element("h4", { class: "whose" });
   const given = element("div", { class: "given", role: "group", "aria-label": "What is given", tabindex: 0 });
@@ -45,23 +44,24 @@ export function build(lab, place) {
     root,
     ...functions,
     steps: history.show,
-    announce: (text) => put(live, text),
+    announce: (text) => setText(live, text),
     show(answer, ofThisSheet) {
       root.querySelector(".stage").classList.toggle("waiting", !ofThisSheet);
       if (!answer.steps || answer.problem) return;
-      put(title, answer.title);
+      setText(title, answer.title);
       root.dataset.part = answer.settings.part;
       const known = JSON.stringify([answer.given, answer.letters]);
       if (known !== drawn) {
         drawn = known;
-        given.replaceChildren(...answer.given.map(formulaOf));
-        letters.replaceChildren("Letters: ", ...answer.letters.flatMap((letter, k) => [k ? ", " : "", inLine(letter)]));
+        given.replaceChildren(...answer.given.map((text) => formula("div", text, { class: "line" }, true)));
+        const each = answer.letters.flatMap((letter, k) => [k ? ", " : "", formula("span", letter)]);
+        letters.replaceChildren("Letters: ", ...each);
       }
       const { step } = answer;
       const now = JSON.stringify([answer.steps, step]);
       if (now === named) return;
       named = now;
-      put(reason, `${step}. ${answer.steps[step - 1].reason}`);
+      setText(reason, `${step}. ${answer.steps[step - 1].reason}`);
       const inside = steps.contains(document.activeElement);
       steps.replaceChildren(...answer.steps.map((each, k) => entryOf(each, k + 1, step)));
       if (inside) steps.querySelector("[aria-current]").focus({ preventScroll: true });
@@ -71,21 +71,10 @@ export function build(lab, place) {
   function entryOf({ reason: why, mark, given: filled, asked }, number, step) {
     const done = mark === "right" && filled === asked;
     const how = done ? "done" : filled ? `${filled} of ${asked}` : "";
-    const text = [element("span", { class: "why-step" }, why), element("span", { class: `how ${mark}` }, done ? `✓ ${how}` : how)];
-    const turn = button("", () => lab.turnTo(number), { "data-control": `step ${number}`, "aria-current": number === step && "step" });
-    turn.append(...text);
+    const found = element("span", { class: `how ${mark}` }, done ? `✓ ${how}` : how);
+    const attributes = { "data-control": `step ${number}`, "aria-current": number === step && "step" };
+    const turn = button("", () => lab.turnTo(number), attributes);
+    turn.append(element("span", { class: "why-step" }, why), found);
     return element("li", {}, turn);
   }
-}
-
-function formulaOf(text) {
-  const line = element("div", { class: "line" });
-  line.innerHTML = `<math displaystyle="true">${text}</math>`;
-  return line;
-}
-
-function inLine(text) {
-  const node = element("span", {});
-  node.innerHTML = `<math>${text}</math>`;
-  return node;
 }

@@ -1,7 +1,8 @@
 // What is derived: whose system, which motion and surface, what is measured, which observer.
 
 import { same } from "../../common/model/settings.js";
-import { element, field, select } from "../../common/page/controls.js";
+import { field, select } from "../../common/page/controls.js";
+import { element } from "../../common/page/dom.js";
 import { Fieldsets } from "../../common/page/fieldsets.js";
 
 export const WORDS = {

@@ -1,7 +1,6 @@
 // The lines of a step: what is typed, the same as mathematics, and what is found of it.
 
-import { button, element } from "../../common/page/controls.js";
-import { put } from "../../common/page/put.js";
+import { button, element, formula, setText } from "../../common/page/dom.js";
 
 const MARKS = { right: "✓", wrong: "✗", carried: "↳", unknown: "?" };
 const SAID = { right: "right", wrong: "not right", carried: "right from there on", unknown: "cannot be told" };
@@ -17,8 +16,10 @@ export class Sheet {
     this.key = "";
     this.list = element("div", { class: "sheet-lines" });
     this.words = element("p", { class: "sheet-words" });
-    this.hint = button("", () => lab.openHint(Number(this.hint.dataset.number)), { "data-control": "hint", hidden: true });
-    this.body = element("div", { class: "sheet" }, this.list, element("div", { class: "found" }, this.words, this.hint));
+    const open = () => lab.openHint(Number(this.hint.dataset.number));
+    this.hint = button("", open, { "data-control": "hint", hidden: true });
+    const found = element("div", { class: "found" }, this.words, this.hint);
+    this.body = element("div", { class: "sheet" }, this.list, found);
   }
 
   /** Show what Python has found; of a line whose text is newer only that it is being looked at. */
@@ -32,7 +33,7 @@ export class Sheet {
     const { calm } = this.lab;
     this.lines.forEach((line, k) => line.show(answer.lines[k], calm));
     const said = current && (calm || answer.right);
-    put(this.words, said ? answer.words : "");
+    setText(this.words, said ? answer.words : "");
     this.words.className = `sheet-words ${said && answer.right ? "right" : ""}`;
     this.body.classList.toggle("waiting", !current);
     // It stays where it is while somebody types, or the focus and the lines below would jump.
@@ -40,7 +41,7 @@ export class Sheet {
     const focused = this.hint === document.activeElement;
     this.hint.hidden = !answer.hint;
     this.hint.dataset.number = answer.hint;
-    put(this.hint, `Hint: ${answer.says}`);
+    setText(this.hint, `Hint: ${answer.says}`);
     if (focused && !answer.hint) this.lines.at(-1)?.field.focus({ preventScroll: true });
   }
 
@@ -64,8 +65,9 @@ class Line {
     });
     this.field.addEventListener("input", () => lab.type(key, this.field.value));
     this.field.addEventListener("blur", () => lab.rest());
-    const words = label ? [element("span", { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)] : [name];
-    if (label) words[0].innerHTML = `<math>${label}</math>`;
+    const words = label
+      ? [formula("span", label, { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)]
+      : [name];
     this.mark = element("span", { class: "mark", role: "img" });
     this.formula = element("div", { class: "as-typed", role: "group", "aria-label": `${name} as mathematics` });
     this.state = element("p", { class: "state", id: `${id}-found` });
@@ -91,7 +93,7 @@ class Line {
     }
     this.letScroll(found.markup);
     const mark = mine && (calm || found.mark === "right") ? found.mark : "";
-    put(this.mark, MARKS[mark] ?? "");
+    setText(this.mark, MARKS[mark] ?? "");
     this.mark.className = `mark ${mark}`;
     if (mark) this.mark.setAttribute("aria-label", SAID[mark]);
     else this.mark.removeAttribute("aria-label");
@@ -99,7 +101,7 @@ class Line {
     const refused = Boolean(mine && found.refusal);
     this.field.setAttribute("aria-invalid", String(calm && refused));
     if (calm && refused) this.refuse(found, text);
-    else put(this.state, refused ? UNFINISHED : "");
+    else setText(this.state, refused ? UNFINISHED : "");
     this.tell(mine ? found.told : []);
   }
 
@@ -133,22 +135,19 @@ class Line {
   told(found) {
     if (found.refusal) return `${this.name}: ${found.refusal}.`;
     if (!found.mark) return "";
-    return [`${this.name}: ${SAID[found.mark]}.`, ...[...this.hints.children].map((item) => `${item.textContent}.`)].join(" ");
+    const hints = [...this.hints.children].map((item) => ` ${item.textContent}.`);
+    return `${this.name}: ${SAID[found.mark]}.${hints.join("")}`;
   }
 }
 
 function pieceOf({ text, math }) {
-  if (math === undefined) return text;
-  const node = element("span", {});
-  node.innerHTML = `<math>${math}</math>`;
-  return node;
+  return math === undefined ? text : formula("span", math);
 }
 
 /** A sum in pieces, a formula for each term, so that it goes on in the next line where its place is narrow. */
 function inPieces(markup) {
   if (!markup) return [];
-  const whole = element("div", {});
-  whole.innerHTML = `<math>${markup}</math>`;
+  const whole = formula("div", markup);
   /** @type {Element[][]} */
   const pieces = [[]];
   for (const node of [...whole.querySelectorAll("math > mrow > *")]) {
@@ -160,8 +159,7 @@ function inPieces(markup) {
     pieces.at(-1)?.push(node);
   }
   return pieces.map((nodes) => {
-    const piece = element("span", {});
-    piece.innerHTML = '<math displaystyle="true"></math>';
+    const piece = formula("span", "", {}, true);
     piece.firstElementChild?.append(...nodes);
     return piece;
   });

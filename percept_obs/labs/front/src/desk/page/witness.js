@@ -1,12 +1,12 @@
 // A numeric witness: the image's motion at a point, as the typed lines have it and as it is.
 
 import { readable } from "../../common/model/scales.js";
+import { element, setText } from "../../common/page/dom.js";
 import { squareAround } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
-import { element } from "../../common/page/controls.js";
-import { DASHES, SOLID, swatch } from "../../common/page/lines.js";
+import { swatch } from "../../common/page/line_styles.js";
+import { DASHES, SOLID } from "../../common/page/looks.js";
 import { arrowMark, pointMark } from "../../common/page/marks.js";
-import { put } from "../../common/page/put.js";
 
 const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
 /** How long the longer arrow is drawn, in units of the image. */
@@ -26,7 +26,8 @@ export class Witness extends FramedImage {
     this.handles[0].node.dataset.tag = "y";
     this.words = element("p", { class: "reading" });
     const entry = (which, text) => element("li", {}, swatch(which), text);
-    this.legend = element("ul", { class: "legend", "aria-label": "Arrows" }, entry("truth", "the true motion"), entry(MINE, "yours"));
+    const entries = [entry("truth", "the true motion"), entry(MINE, "yours")];
+    this.legend = element("ul", { class: "legend", "aria-label": "Arrows" }, ...entries);
     this.body = element("div", { class: "witness" }, this.legend, this.figure, this.words);
   }
 
@@ -52,7 +53,7 @@ export class Witness extends FramedImage {
     this.paint(() => SQUARE, theme, { inside }, () => [point.slice(0, 2)]);
     if (!found) return;
     const told = inWords(found, point);
-    put(this.words, told);
+    setText(this.words, told);
     this.tell(told);
     this.handles[0].describe();
   }

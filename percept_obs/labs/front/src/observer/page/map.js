@@ -1,7 +1,9 @@
-// The map of the bound under the track: the stronger the shade of a place in the image, the less can be known there of the distance.
+// The map of the bound under the track: the stronger the shade of a place in the image, the less can be known there of
+// the distance.
 
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
+import { paintDots } from "../../common/page/canvas.js";
 import { noBound } from "../model/bound.js";
 import { mapAt, mapOf, placeAlong } from "../model/bound_map.js";
 
@@ -43,10 +45,12 @@ export class MapPicture {
     if (!functions) return this.found;
     const { surface, outputs, A, b, normal, xi, motion, scenario, noise, period, map } = settings;
     const resolution = lab.held ? COARSE : FINE;
-    const key = JSON.stringify([surface, outputs, A, b, normal, xi, motion, scenario, noise, period, map, centre, half, resolution]);
+    const read = [surface, outputs, A, b, normal, xi, motion, scenario, noise, period, map];
+    const key = JSON.stringify([read, centre, half, resolution]);
     if (key !== this.known) {
       this.known = key;
-      this.found = mapOf(settings, functions, lab.results.engines[0].camera.motion(settings, functions), { centre, half }, resolution, lab.model);
+      const moving = lab.results.engines[0].camera.motion(settings, functions);
+      this.found = mapOf(settings, functions, moving, { centre, half }, resolution, lab.model);
     }
     return this.found;
   }
@@ -88,7 +92,9 @@ export class MapPicture {
     pen.fillStyle = theme.ink;
     pen.textAlign = "left";
     pen.textBaseline = "middle";
-    for (let shade = 0; shade <= SHADES; shade += 2) pen.fillText(readable(100 * 10 ** (LEAST + shade / 2)), x + KEY.width + 4, y(shade));
+    for (let shade = 0; shade <= SHADES; shade += 2) {
+      pen.fillText(readable(100 * 10 ** (LEAST + shade / 2)), x + KEY.width + 4, y(shade));
+    }
     pen.textBaseline = "alphabetic";
     const { seconds, distance } = this.found;
     pen.fillText(`least error in % after ${readable(seconds)} s, at ${readable(distance)} m`, left + 20, top - 8);
@@ -99,17 +105,9 @@ export class MapPicture {
     const key = this.known + theme.warning;
     if (key === this.painted) return;
     this.painted = key;
-    this.canvas.width = this.canvas.height = resolution;
-    const pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    pen.fillStyle = theme.warning;
-    pen.fillRect(0, 0, resolution, resolution);
-    const dots = pen.getImageData(0, 0, resolution, resolution);
-    for (let i = 0; i < relative.length; i++) {
-      const row = resolution - 1 - Math.floor(i / resolution);
-      const value = relative[i];
-      dots.data[4 * (row * resolution + (i % resolution)) + 3] = Number.isNaN(value) ? 0 : 255 * opacityOf(shadeOf(value));
-    }
-    pen.putImageData(dots, 0, 0);
+    paintDots(this.canvas, resolution, theme.warning, (k) => {
+      return Number.isNaN(relative[k]) ? 0 : opacityOf(shadeOf(relative[k]));
+    });
   }
 
   /** The text equivalent. */
@@ -126,7 +124,10 @@ export class MapPicture {
     };
     const best = places.reduce((a, i) => (relative[i] < relative[a] ? i : a));
     const worst = places.reduce((a, i) => (relative[i] > relative[a] ? i : a));
-    const parts = [`the distance to ${percent(relative[best], 2)} at best, at ${place(best)}`, `to ${percent(relative[worst], 2)} at worst, at ${place(worst)}`];
+    const parts = [
+      `the distance to ${percent(relative[best], 2)} at best, at ${place(best)}`,
+      `to ${percent(relative[worst], 2)} at worst, at ${place(worst)}`,
+    ];
     const told = (name, there) => {
       const value = there ? mapAt(found, there) : NaN;
       if (Number.isFinite(value)) parts.push(`to ${percent(value, 2)} at ${name}`);

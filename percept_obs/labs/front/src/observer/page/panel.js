@@ -1,12 +1,12 @@
 // The controls of the observer lab: each reads from the settings and changes them.
 
 import { HOLD, NOISE } from "../../common/model/schema.js";
-import { axesOf } from "../model/axes.js";
-import { checkbox, element, slider } from "../../common/page/controls.js";
+import { checkbox, slider } from "../../common/page/controls.js";
+import { element } from "../../common/page/dom.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
-import { typedField } from "../../common/page/typed.js";
-import { mapTopic } from "../../common/page/settings_map_panel.js";
 import { ObserverList } from "../../common/page/observer_list.js";
+import { mapTopic } from "../../common/page/settings_map.js";
+import { axesOf } from "../model/axes.js";
 
 /** What the page calls the settings. */
 export const WORDS = {
@@ -22,7 +22,8 @@ export const WORDS = {
   believed: { A: { label: "Believed A" }, b: { name: "believed {}", label: "believed {}" } },
   pictures: {
     choices: {
-      outputs: "image coordinates", innovation: "innovation", step: "steps of the estimate", inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
+      outputs: "image coordinates", innovation: "innovation", step: "steps of the estimate",
+      inverse: "inverse distance", distance: "distance", error: "error", excitation: "excitation",
     },
   },
   bound: { choices: { error: "bound under the error", map: "map of the bound in the image" } },
@@ -30,10 +31,13 @@ export const WORDS = {
 
 /** What the lab calls a setting when it says which have changed. */
 export const NAMES = {
-  motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A", b: "the translation b", X0: "where the point starts", surface: "the imaging surface",
-  normal: "the normal", outputs: "what is measured", observers: "the observers", gains: "gains", switches: "how an observer switches",
-  believed: "the motion that is believed", noise: "noise", dropout: "lost samples", hold: "what is held between samples",
-  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts", bound: "where the bound is drawn", map: "what the map is of", over: "the map over two settings",
+  motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A",
+  b: "the translation b", X0: "where the point starts", surface: "the imaging surface",
+  normal: "the normal", outputs: "what is measured", observers: "the observers", gains: "gains",
+  switches: "how an observer switches", believed: "the motion that is believed", noise: "noise",
+  dropout: "lost samples", hold: "what is held between samples",
+  start: "where the estimate starts", window: "the window", threshold: "the threshold", pictures: "the charts",
+  bound: "where the bound is drawn", map: "what the map is of", over: "the map over two settings",
 };
 
 export class Panel extends Fieldsets {
@@ -41,11 +45,15 @@ export class Panel extends Fieldsets {
     super(lab);
     this.list = new ObserverList(this);
     const { choices, mains, groups } = this.list;
+    const noise = { label: "noise, bound or σ" };
+    const hasMap = ({ bound }) => bound.includes("map");
+    const map = ["map.seconds", "map.distance"].map((place) => this.numberIf(place, hasMap));
+    const windows = ["window", "threshold"];
     const body = [
       this.first(
         this.fieldset("Measured", this.outputs()),
         this.fieldset("Observers", choices),
-        this.fieldset("Move these", ...this.focus(), ...mains, this.simulated(this.number("noise.size", { label: "noise, bound or σ" }))),
+        this.fieldset("Move these", ...this.focus(), ...mains, this.simulated(this.number("noise.size", noise))),
       ),
       topic("gains", "All gains", ...groups),
       topic("point", "The point and its motion", ...this.point()),
@@ -55,7 +63,7 @@ export class Panel extends Fieldsets {
         this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
       ),
       topic("start", "Start and belief", ...this.belief()),
-      topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...["map.seconds", "map.distance"].map((place) => this.numberIf(place, ({ bound }) => bound.includes("map"))), ...this.numbers("window", "threshold")),
+      topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...map, ...this.numbers(...windows)),
       mapTopic(this, axesOf),
     ];
     this.body = element("div", { class: "panel" }, ...body);
@@ -73,11 +81,12 @@ export class Panel extends Fieldsets {
   outputs() {
     const { lab } = this;
     const seen = (name) => this.track()?.names.includes(name) ?? true;
-    const offered = (value) => this.model.surfaces[lab.settings.surface].outputs.some((names) => names.join("+") === value);
+    const outputsNow = () => this.model.surfaces[lab.settings.surface].outputs;
+    const allowed = (value) => outputsNow().some((names) => names.join("+") === value);
     return this.inSight("outputs", {
       get: () => lab.settings.outputs.join("+"),
       set: (value) => lab.change({ outputs: value.split("+") }, true),
-      possible: (value) => offered(value) && value.split("+").every(seen),
+      possible: (value) => allowed(value) && value.split("+").every(seen),
     });
   }
 
@@ -103,6 +112,7 @@ export class Panel extends Fieldsets {
   point() {
     const { lab, model } = this;
     const titles = Object.entries(model.scenarios).map(([name, { title }]) => [name, title]);
+    const isSet = ({ scenario }) => !model.scenarios[scenario]?.track;
     const named = (names) => Object.keys(names).map((name) => [name, name]);
     return [
       this.choice("scenario", {
@@ -111,19 +121,13 @@ export class Panel extends Fieldsets {
       }),
       this.simulated(
         this.choice("surface", { choices: Object.fromEntries(named(model.surfaces)) }),
-        this.onlyIf(({ surface }) => surface === "plane", element("div", {}, ...this.each("normal"))),
+        this.onlyIf(({ surface }) => surface === "plane", ...this.each("normal")),
         this.numberIf("xi", ({ surface }) => surface === "unified"),
         this.number("duration"),
-        this.onlyIf(({ scenario }) => !model.scenarios[scenario]?.track, element("div", {}, ...this.litList("b"), this.matrix("A"), this.typed())),
+        this.onlyIf(isSet, ...this.litList("b"), this.matrix("A"), this.typed("motion", "b1 = b1 + 0.2 sin(2t)")),
         ...this.each("X0"),
       ),
     ];
-  }
-
-  /** The motion in expressions of time, which changes some of the numbers. */
-  typed() {
-    const { label, most } = this.schema.motion;
-    return this.add(typedField(this.lab, { ...this.bound("motion", true), label, most, hint: "b1 = b1 + 0.2 sin(2t)" }));
   }
 
   belief() {

@@ -7,7 +7,7 @@ import { knownAt } from "../../common/model/tables.js";
 import { affine, COPIES, imageVelocities, unseenDirection } from "../../common/model/velocities.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { tracksOfPoint } from "../../common/model/tracks.js";
-import { lookOf } from "../../common/page/lines.js";
+import { styleOf } from "../../common/page/line_styles.js";
 import { NAMES } from "../../common/page/velocities.js";
 import { shapeOf, varies } from "../model/camera.js";
 import { inImage } from "../model/engine.js";
@@ -29,7 +29,9 @@ function coefficientsAt(lab, { settings, time }, functions, at) {
 function placesOf(lab, { settings }) {
   const { ray } = lab.kernels.of(settings);
   const shape = shapeOf(settings);
-  return (/** @type {number[]} */ [y1, y2, inverse]) => Array.from(ray([y1, y2, ...shape], new Float64Array(3)), (value) => value / inverse);
+  const placeOf = (/** @type {number[]} */ [y1, y2, inverse]) =>
+    Array.from(ray([y1, y2, ...shape], new Float64Array(3)), (value) => value / inverse);
+  return placeOf;
 }
 
 /** Where points are at a time of a run, and the velocities of the images of their copies. */
@@ -71,8 +73,9 @@ function focusAt(lab, shown, at) {
   const { A, b } = coefficientsAt(lab, shown, functions, at);
   const numbers = [...A.flat(), ...b, ...shapeOf(settings)];
   const foe = inImage(functions, numbers);
-  const circle = foe && lab.model.forms[keyOf(settings)].circle ? Array.from(functions.circle([...numbers, settings.threshold], [0, 0, 0])) : null;
-  return foe && { foe, circle };
+  const { circle } = lab.model.forms[keyOf(settings)];
+  const circleNow = () => Array.from(functions.circle([...numbers, settings.threshold], [0, 0, 0]));
+  return foe && { foe, circle: circle ? circleNow() : null };
 }
 
 export function sceneOf(lab) {
@@ -81,7 +84,7 @@ export function sceneOf(lab) {
     inverse: columnOf(rows, width, width - 1),
     deviation: run?.deviation && columnOf(run.deviation, width, width - 1),
   });
-  /** Points on the line that one output does not tell at an instant, near enough to be seen in a square of the image. */
+  /** Points on the line that one output does not tell at an instant, near enough to be seen in a square. */
   const alikeOf = (shown, at, square) => {
     const line = unseenLine(lab, shown, at, REACH * (square?.half ?? 1));
     if (!line) return null;
@@ -105,7 +108,7 @@ export function sceneOf(lab) {
       const { ray } = lab.kernels.of(shown.settings);
       const seen = [0, 0, ...shapeOf(shown.settings)];
       return {
-        tracks: tracksOfPoint(shown, ghost, along, lookOf(theme)),
+        tracks: tracksOfPoint(shown, ghost, along, styleOf(theme)),
         foe: shown.foe ?? (cursor === null ? null : focusAt(lab, shown, between(shown.time, cursor))?.foe),
         ray(y1, y2, out) {
           seen[0] = y1;
@@ -120,10 +123,13 @@ export function sceneOf(lab) {
     /** The copies whose arrows are in the image, where they are in the scene. */
     copiesOf(shown, at, square) {
       const alike = alikeOf(shown, at, square);
-      if (alike) return alike.copies.filter(({ own }) => !own).map(({ at: place, distance }) => ({ place, text: `${readable(distance, 2)} m`, alike: true }));
+      const others = alike?.copies.filter(({ own }) => !own);
+      const textOf = (distance) => `${readable(distance, 2)} m`;
+      if (others) return others.map(({ at: place, distance }) => ({ place, text: textOf(distance), alike: true }));
       const [arrow] = arrowsOf(shown, at, null);
       if (!arrow) return [];
-      return [0, 2].map((k) => ({ place: arrow.there.map((value) => COPIES[k] * value), text: NAMES[k], alike: false }));
+      const placeOf = (k) => arrow.there.map((value) => COPIES[k] * value);
+      return [0, 2].map((k) => ({ place: placeOf(k), text: NAMES[k], alike: false }));
     },
     /** Of one output an instant does not tell a direction of both hidden coordinates: w^T times it is 0. */
     unseenOf(shown, at, theme) {

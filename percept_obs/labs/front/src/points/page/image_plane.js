@@ -3,18 +3,19 @@
 import { readable, spread } from "../../common/model/scales.js";
 import { between, valueBetween } from "../../common/model/playback.js";
 import { meanSpeed } from "../../common/model/velocities.js";
-import { drawVelocities } from "../../common/page/velocities.js";
 import { sampleAt } from "../../common/model/tables.js";
 import { hull } from "../../common/page/chart_parts.js";
 import { drawPath, squareAround } from "../../common/page/image_frame.js";
 import { FramedImage } from "../../common/page/image_plane.js";
-import { DASHES, KEPT, SOLID } from "../../common/page/lines.js";
+import { DASHES, KEPT, SOLID } from "../../common/page/looks.js";
 import { ghostMark, pointMark } from "../../common/page/marks.js";
+import { drawVelocities } from "../../common/page/velocities.js";
 import { imagePlaneInWords } from "../model/text.js";
 
 const NEARER = ["-", "PageDown"];
 const FARTHER = ["+", "=", "PageUp"];
 const DEPTH_STEP = 0.05;
+const HOW = "at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it";
 const TRAIL = 5;
 const FAINT = 0.35;
 const HIDDEN = [1, 4];
@@ -68,7 +69,7 @@ function handleOf(lab, k) {
     name: `point ${k + 1}`,
     className: `numbered point-${k}`,
     text: String(k + 1),
-    label: `Point ${k + 1} at time 0: drag it, or use the arrow keys; plus and minus change its depth, Delete removes it`,
+    label: `Point ${k + 1} ${HOW}`,
     onMove: (place) => lab.movePoint(k, place),
     onRest: () => lab.rest(),
     onKey: ({ key }) => {
@@ -111,7 +112,10 @@ function squareOf({ points, images }) {
 function drawAt(pen, { points, images, estimated }, at, { x, y }, theme) {
   for (let p = 0; p < points; p++) {
     /** @type {(rows: Float64Array) => [number, number]} */
-    const place = (rows) => [x(valueBetween(rows, 2 * points, 2 * p, at)), y(valueBetween(rows, 2 * points, 2 * p + 1, at))];
+    const place = (rows) => {
+      const [y1, y2] = [0, 1].map((c) => valueBetween(rows, 2 * points, 2 * p + c, at));
+      return [x(y1), y(y2)];
+    };
     pointMark(pen, ...place(images), theme.lines[p], theme);
     ghostMark(pen, ...place(estimated.images), theme.lines[p]);
   }

@@ -2,9 +2,8 @@
 
 import { readable } from "../../common/model/scales.js";
 import { HOLD, NOISE } from "../../common/model/schema.js";
-import { button, element } from "../../common/page/controls.js";
+import { button, element } from "../../common/page/dom.js";
 import { Fieldsets, topic } from "../../common/page/fieldsets.js";
-import { typedField } from "../../common/page/typed.js";
 import { OWN } from "../model/kernels.js";
 import { isComputed, textOfP } from "../model/weight.js";
 import { PointList } from "./point_list.js";
@@ -23,7 +22,11 @@ export const WORDS = {
   },
   points: { depth: { label: "depth", unit: "m", low: 0.5, high: 6, step: 0.05, above: 0 } },
   hidden: { step: 0.5 },
-  weight: { choices: { constant: "constant", scheduled: "scheduled", typed: "typed", lyapunov: "Lyapunov", riccati: "Riccati" } },
+  weight: {
+    choices: {
+      ...{ constant: "constant", scheduled: "scheduled", typed: "typed", lyapunov: "Lyapunov", riccati: "Riccati" },
+    },
+  },
   velocity: { name: "velocity {}", label: "added to v, {}" },
   start: { choices: { rays: "on the first rays", error: "with a given error", zero: "at zero" } },
   noise: NOISE,
@@ -33,17 +36,20 @@ export const WORDS = {
 
 /** What the lab calls a setting when it says which have changed. */
 export const NAMES = {
-  state: "what the state holds", points: "the points", hidden: "when points are hidden", turning: "how the camera turns",
-  spin: "how the body turns", input: "the input", velocity: "the velocity that is added", motion: "the motion that is typed",
+  state: "what the state holds", points: "the points", hidden: "when points are hidden",
+  turning: "how the camera turns", spin: "how the body turns", input: "the input",
+  velocity: "the velocity that is added", motion: "the motion that is typed",
   weight: "the kind of P", size: "P", P: "the P that is typed", P0: "the P at the beginning that is typed",
   final: "P at the end", decrease: "the decrease q", forgetting: "the forgetting λ", start: "where the estimate starts",
   depth: "the depth at which it starts", error: "the error at which it starts", noise: "noise", dropout: "lost samples",
-  view: "how far the camera sees", hold: "what is held between samples", step: "the longest step", window: "the window", pictures: "the charts",
+  view: "how far the camera sees", hold: "what is held between samples", step: "the longest step",
+  window: "the window", pictures: "the charts",
 };
 
 /** The states that can be chosen. */
 function statesOf({ states }) {
-  return Object.fromEntries(Object.keys(states).map((name) => [name, WORDS.state.choices[name] ?? "a form of your own"]));
+  const called = (name) => WORDS.state.choices[name] ?? "a form of your own";
+  return Object.fromEntries(Object.keys(states).map((name) => [name, called(name)]));
 }
 
 export class Panel extends Fieldsets {
@@ -52,13 +58,19 @@ export class Panel extends Fieldsets {
     this.list = new PointList(this, this.model.mostPoints);
     const { kind, size, rest } = this.weight();
     const ours = (holds) => (settings) => settings.state !== OWN && holds(settings);
-    const share = (place, holds) => this.lit(this.numberIf(place, ours(holds), { letter: this.model.letters[place] }), place, "");
+    const share = (place, holds) => {
+      const row = this.numberIf(place, ours(holds), { letter: this.model.letters[place] });
+      return this.lit(row, place, "");
+    };
     const always = () => true;
-    const motion = topic("motion", "More of the motion, A(t) and v(t)", share("spin", ({ state }) => state !== "independent"), ...this.motion());
+    const spin = share("spin", ({ state }) => state !== "independent");
+    const motion = topic("motion", "More of the motion, A(t) and v(t)", spin, ...this.motion());
+    const noise = this.number("noise.size", { label: "noise, bound or σ" });
+    const camera = ["seed", "period", "dropout", "view"];
     const body = [
       this.first(
         this.fieldset("The state holds", this.inSight("state", { choices: statesOf(this.model) })),
-        this.fieldset("Move these", kind, size, share("turning", always), share("input", always), this.number("noise.size", { label: "noise, bound or σ" })),
+        this.fieldset("Move these", kind, size, share("turning", always), share("input", always), noise),
       ),
       topic("points-topic", "Points: depth, hide, add", this.list.body),
       topic("weight", "More of the observer's P", ...rest),
@@ -69,7 +81,7 @@ export class Panel extends Fieldsets {
         this.numberIf("depth", ({ start }) => start === "rays"),
         this.numberIf("error", ({ start }) => start === "error"),
       ),
-      topic("camera", "Camera", this.choice("noise.kind"), ...this.numbers("seed", "period", "dropout", "view"), this.choice("hold")),
+      topic("camera", "Camera", this.choice("noise.kind"), ...this.numbers(...camera), this.choice("hold")),
       topic("pictures", "Charts", this.pictures(), this.duration(), this.number("window")),
     ];
     this.body = element("div", { class: "panel" }, ...body);
@@ -80,7 +92,8 @@ export class Panel extends Fieldsets {
   duration() {
     const { samples } = this.model.states[OWN] ?? {};
     const allowed = (value) => !samples || this.lab.settings.state !== OWN || value <= samples.until;
-    return this.number("duration", { allowed, ...(samples && { reason: `and your samples end at ${readable(samples.times.at(-1))} s` }) });
+    const reason = samples && `and your samples end at ${readable(samples.times.at(-1))} s`;
+    return this.number("duration", { allowed, reason });
   }
 
   weight() {
@@ -107,13 +120,9 @@ export class Panel extends Fieldsets {
   motion() {
     const { letters } = this.model;
     const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
-    const still = button("v = 0", () => this.lab.changeAndSay("v = 0", { input: 0, velocity: [0, 0, 0] }), { "data-control": "no input" });
+    const stop = () => this.lab.changeAndSay("v = 0", { input: 0, velocity: [0, 0, 0] });
+    const still = button("v = 0", stop, { "data-control": "no input" });
     const added = this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), "");
     return [...added, this.typed("motion", "w3 = 0.5 cos(t)"), element("div", { class: "buttons" }, still, aim)];
-  }
-
-  typed(place, hint, prefix) {
-    const { label, most } = this.schema[place];
-    return this.add(typedField(this.lab, { ...this.bound(place, true), label, most, hint, prefix }));
   }
 }

@@ -4,7 +4,7 @@ import { columnOf } from "../../common/model/derived.js";
 import { readable } from "../../common/model/scales.js";
 import { percent } from "../../common/model/words.js";
 import { decades, distancesAround, line, withKept } from "../../common/page/chart_parts.js";
-import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/lines.js";
+import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../common/page/looks.js";
 
 export const LABELS = {
   error: "Norm of the error over time",
@@ -30,18 +30,22 @@ const BUILD = {
       lines.push(line("fitted decay", ends, values, theme.lines[1], FIT));
     }
     if (bound !== null) {
-      lines.push(line("guaranteed decay", [0, end], [size[0], size[0] * Math.exp(-bound * end)], theme.lines[2], BOUND));
+      const values = [size[0], size[0] * Math.exp(-bound * end)];
+      lines.push(line("guaranteed decay", [0, end], values, theme.lines[2], BOUND));
     }
     return { title: "Error |ρ| of the whole state, in m", lines, scale: decades(lines, 1e-8, 1e6) };
   },
   depth(shown, ghost, theme) {
-    const each = (called, { time, points }, rows, lookOf) =>
-      Array.from({ length: points }, (_, k) => line(`${called} of point ${k + 1}`, time, columnOf(rows, points, k), ...lookOf(k)));
+    const each = (called, { time, points }, rows, styleOf) =>
+      Array.from({ length: points }, (_, k) =>
+        line(`${called} of point ${k + 1}`, time, columnOf(rows, points, k), ...styleOf(k)),
+      );
     const kept = ghost ? each("kept depth", ghost, ghost.estimated.depths, () => [theme.kept, KEPT]) : [];
     const certain = each("true depth", shown, shown.depths, (k) => [theme.lines[k], SOLID]);
     const estimated = each("depth", shown, shown.estimated.depths, (k) => [theme.lines[k], DASHES[k]]);
     const lines = [...kept, ...certain, ...estimated];
-    return { title: "Depth in m, true (solid) and estimated", lines, scale: distancesAround(lines, (l) => certain.includes(l)) };
+    const scale = distancesAround(lines, (l) => certain.includes(l));
+    return { title: "Depth in m, true (solid) and estimated", lines, scale };
   },
   points({ time, relative, tolerance, settling }, ghost, theme) {
     const lines = relative.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
@@ -49,7 +53,8 @@ const BUILD = {
       lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
     });
     const settled = settling > 0 && settling < Infinity;
-    const events = settled ? [{ time: time[0] + settling, text: `all in: ${readable(settling)} s`, colour: theme.ink }] : [];
+    const event = { time: time[0] + settling, text: `all in: ${readable(settling)} s`, colour: theme.ink };
+    const events = settled ? [event] : [];
     const title = `Relative error of each point; tolerance ${percent(tolerance, 6)}`;
     return { title, lines, scale: decades(lines, 1e-8, 1e6, tolerance), level: tolerance, events };
   },
@@ -60,7 +65,8 @@ const BUILD = {
     const lines = withKept("smallest eigenvalue", shown, ghost, theme, floored);
     const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
     const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
-    const title = `Gramian (14) over ${readable(window)} s${low ? "; dotted: too little is seen" : ", smallest eigenvalue"}`;
+    const what = low ? "; dotted: too little is seen" : ", smallest eigenvalue";
+    const title = `Gramian (14) over ${readable(window)} s${what}`;
     return { title, lines: [...lines, limit], scale };
   },
 };

@@ -1,7 +1,8 @@
 // The points to drag: depth, when they are hidden, adding and removing.
 
-import { button, element, slider, warning } from "../../common/page/controls.js";
-import { swatch } from "../../common/page/lines.js";
+import { isBeingTyped, slider, warning } from "../../common/page/controls.js";
+import { button, element, listen } from "../../common/page/dom.js";
+import { swatch } from "../../common/page/line_styles.js";
 
 export class PointList {
   constructor(panel, most) {
@@ -28,8 +29,9 @@ export class PointList {
     hide.addEventListener("change", () => lab.hide(k, hide.checked ? lab.someTime() : null));
     const times = ["from", "to"].map((word, end) => this.time(k, word, end));
     const refused = warning({ least: 0, most: panel.schema.hidden.most, reason: "and the end after the beginning" });
-    const span = element("div", { class: "span", role: "group", "aria-label": "not seen from, to, in s" }, "not seen", ...times.map(({ node }) => node), "s", refused.node);
-    for (const { field } of times) for (const type of ["input", "change"]) field.addEventListener(type, () => refused.tell(!span.querySelector("[aria-invalid=true]")));
+    const attributes = { class: "span", role: "group", "aria-label": "not seen from, to, in s" };
+    const span = element("div", attributes, "not seen", ...times.map(({ node }) => node), "s", refused.node);
+    listen(span, { "input change": () => refused.tell(!span.querySelector("[aria-invalid=true]")) });
     const said = { "data-control": `remove ${k + 1}`, "aria-label": `remove point ${k + 1}` };
     const remove = button("×", () => lab.removePoint(k), { class: "remove", ...said });
     const hiding = element("label", { class: "choice" }, hide, element("span", {}, "hide"));
@@ -51,7 +53,9 @@ export class PointList {
   time(k, word, end) {
     const { lab } = this;
     const { step, most } = this.panel.schema.hidden;
-    const field = element("input", { type: "number", step, min: 0, "aria-label": `point ${k + 1} is hidden ${word}, in s` });
+    const field = element("input", {
+      ...{ type: "number", step, min: 0, "aria-label": `point ${k + 1} is hidden ${word}, in s` },
+    });
     field.dataset.control = `hidden ${word} ${k + 1}`;
     field.addEventListener("input", () => {
       const times = [...lab.settings.hidden[k]];
@@ -62,7 +66,7 @@ export class PointList {
     });
     field.addEventListener("change", () => lab.rest());
     const show = (value) => {
-      if (document.activeElement === field && field.getAttribute("aria-invalid") === "true") return;
+      if (isBeingTyped(field)) return;
       if (Number(field.value) !== value || field.value === "") field.value = String(value);
       field.setAttribute("aria-invalid", "false");
     };

@@ -1,7 +1,8 @@
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { readable } from "../../common/model/scales.js";
-import { button, checkbox, element } from "../../common/page/controls.js";
+import { checkbox } from "../../common/page/controls.js";
+import { button, element, setText } from "../../common/page/dom.js";
 import { FormulaSheet, lettered } from "../../common/page/formulas.js";
 import { isZero, keyOf } from "../model/kernels.js";
 
@@ -42,7 +43,8 @@ export class ChoiceOfUnknowns {
   groups() {
     return GROUPS.map(({ title, names }) => {
       const boxes = names.map((name) => this.box(name));
-      return element("div", { class: "ticked", role: "group", "aria-label": title }, element("span", {}, title), ...boxes);
+      const attributes = { class: "ticked", role: "group", "aria-label": title };
+      return element("div", attributes, element("span", {}, title), ...boxes);
     });
   }
 
@@ -78,13 +80,14 @@ export class ChoiceOfUnknowns {
       });
       return element("td", {}, ...presses);
     };
+    const header = (scope, words) => element("th", { scope }, words);
     const row = (camera) => Object.keys(OBJECTS).map((object) => cell(camera, object));
     return element(
       "table",
       { class: "cases" },
       element("caption", {}, "The paper's cases, corollaries 1 to 7"),
-      element("tr", {}, element("td"), ...Object.values(OBJECTS).map((words) => element("th", { scope: "col" }, words))),
-      ...Object.entries(KINDS).map(([camera, words]) => element("tr", {}, element("th", { scope: "row" }, words), ...row(camera))),
+      element("tr", {}, element("td"), ...Object.values(OBJECTS).map((words) => header("col", words))),
+      ...Object.entries(KINDS).map(([camera, words]) => element("tr", {}, header("row", words), ...row(camera))),
     );
   }
 
@@ -108,7 +111,8 @@ export class ChoiceOfUnknowns {
     this.determinant.clear();
     if (refusal) {
       const head = element("p", {}, element("strong", {}, "Impossible."));
-      this.told.replaceChildren(head, element("p", { class: "refused" }, `${refusal[0].toUpperCase()}${refusal.slice(1)}.`));
+      const why = `${refusal[0].toUpperCase()}${refusal.slice(1)}.`;
+      this.told.replaceChildren(head, element("p", { class: "refused" }, why));
       return;
     }
     const choice = this.model.unknowns[keyOf(settings)];
@@ -118,11 +122,12 @@ export class ChoiceOfUnknowns {
     letters.innerHTML = `<math displaystyle="true">${choice.determinant}</math>`;
     const right = choice.determinant.replace(/^<mrow>.*?<mo>=<\/mo>/, "<mrow><mo>=</mo>");
     if (choice.square) numbers.innerHTML = `<math displaystyle="true">${right}</math>`;
-    this.determinant.putNumbers(numbers, "");
+    this.determinant.replaceLetters(numbers, "");
     numbers.append(this.value);
+    const attributes = { class: "determinant", role: "group", "aria-label": "Determinant", tabindex: 0 };
     this.told.replaceChildren(
       element("p", {}, element("strong", {}, this.nameOf(corollary)), ` ${this.kindOf(choice)}`),
-      element("div", { class: "determinant", role: "group", "aria-label": "Determinant", tabindex: 0 }, theta, element("div", {}, letters, numbers)),
+      element("div", attributes, theta, element("div", {}, letters, numbers)),
       element("p", { class: "where" }, `Not observable ${choice.zeroSet}.`),
     );
   }
@@ -133,7 +138,8 @@ export class ChoiceOfUnknowns {
   }
 
   kindOf({ unknown, square, alone }) {
-    const few = square ? "" : `There are three equations for ${unknown.length === 1 ? "one unknown" : "two unknowns"}: they are solved by least squares.`;
+    const count = unknown.length === 1 ? "one unknown" : "two unknowns";
+    const few = square ? "" : `There are three equations for ${count}: they are solved by least squares.`;
     const metres = alone.filter((name) => !isZero(this.lab.settings, name, this.model));
     const carried = metres.length ? `The known ${metres.join(", ")} tells the scale in metres.` : "";
     return [few, carried].filter(Boolean).join(" ");
@@ -143,8 +149,8 @@ export class ChoiceOfUnknowns {
   fill({ settings, guard, problem }) {
     const { ybar, scale } = settings;
     const at = { d_s: scale, ybar3: ybar[2], y1: ybar[0], y2: ybar[1], ...lettered(this.lab.startOf(settings)) };
-    this.determinant.putIn((_, letter) => at[letter]);
+    this.determinant.setNumbers((_, letter) => at[letter]);
     const text = problem ? "" : ` = ${readable(guard.determinants[0])} at the start`;
-    if (this.value.textContent !== text) this.value.textContent = text;
+    setText(this.value, text);
   }
 }

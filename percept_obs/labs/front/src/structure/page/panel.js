@@ -3,13 +3,13 @@
 import { readable } from "../../common/model/scales.js";
 import { HOLD, NOISE } from "../../common/model/schema.js";
 import { changeAt } from "../../common/model/settings.js";
+import { checkbox } from "../../common/page/controls.js";
+import { element } from "../../common/page/dom.js";
+import { Fieldsets, topic } from "../../common/page/fieldsets.js";
+import { ObserverList } from "../../common/page/observer_list.js";
+import { mapTopic } from "../../common/page/settings_map.js";
 import { axesOf } from "../model/axes.js";
 import { isSampled } from "../model/camera.js";
-import { checkbox, element } from "../../common/page/controls.js";
-import { Fieldsets, topic } from "../../common/page/fieldsets.js";
-import { typedField } from "../../common/page/typed.js";
-import { mapTopic } from "../../common/page/settings_map_panel.js";
-import { ObserverList } from "../../common/page/observer_list.js";
 
 /** What the page calls the settings. */
 export const WORDS = {
@@ -33,10 +33,14 @@ export const WORDS = {
 
 /** What the lab calls a setting when it says which have changed. */
 export const NAMES = {
-  velocities: "where the velocities come from", motion: "the motion that is typed", unknown: "what is unknown", earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
-  scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity", v_c_swing: "how the camera's velocity swings",
-  v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3", drift: "the drift of ȳ3",
-  hold: "what is held between samples", step: "the longest step", start: "where the estimate starts", pictures: "the charts", over: "the map over two settings",
+  velocities: "where the velocities come from", motion: "the motion that is typed", unknown: "what is unknown",
+  earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
+  scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity",
+  v_c_swing: "how the camera's velocity swings",
+  v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3",
+  drift: "the drift of ȳ3",
+  hold: "what is held between samples", step: "the longest step", start: "where the estimate starts",
+  pictures: "the charts", over: "the map over two settings",
 };
 
 export class StructurePanel extends Fieldsets {
@@ -44,20 +48,26 @@ export class StructurePanel extends Fieldsets {
     super(lab);
     this.list = new ObserverList(this);
     const { choices, mains, groups } = this.list;
+    const speed = this.lit(this.numberIf("v_c.0", areSet), "v_c1");
+    const noise = this.number("noise.size", { label: "noise in y1, y2" });
     const body = [
       this.first(
         choice.body,
         this.fieldset("Observers", choices),
-        this.fieldset("Move these", ...this.source(), this.lit(this.numberIf("v_c.0", areSet), "v_c1"), ...mains, this.number("noise.size", { label: "noise in y1, y2" })),
+        this.fieldset("Move these", ...this.source(), speed, ...mains, noise),
       ),
       topic("cases", "The paper's cases", choice.table()),
       topic("gains", "All gains", ...groups),
       topic("true", "What is true: velocities, scale, start", ...this.motion()),
       topic(
         ...["camera", "What is measured, and how well"],
-        ...[this.choice("noise.kind"), ...this.numbers("noise.depth", "bias", "drift", "seed"), this.timing("period"), this.timing("duration")],
+        ...[this.choice("noise.kind"), ...this.numbers("noise.depth", "bias", "drift", "seed")],
+        ...[this.timing("period"), this.timing("duration")],
       ),
-      topic("run", "How the observers run", ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")]),
+      topic(
+        ...["run", "How the observers run"],
+        ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")],
+      ),
       topic("pictures", "Charts", this.pictures()),
       mapTopic(this, axesOf),
     ];
@@ -67,7 +77,8 @@ export class StructurePanel extends Fieldsets {
   /** Whether the velocities are set or sampled, where there are samples. */
   source() {
     const { lab, model: { samples } } = this;
-    const besides = (value) => (value === "samples" ? { motion: "", duration: Math.min(lab.settings.duration, samples.times.at(-1)) } : {});
+    const last = () => Math.min(lab.settings.duration, samples.times.at(-1));
+    const besides = (value) => (value === "samples" ? { motion: "", duration: last() } : {});
     return samples ? [this.choice("velocities", { besides })] : [];
   }
 
@@ -87,13 +98,13 @@ export class StructurePanel extends Fieldsets {
       ...rest,
       ...this.litList("v_p"),
       this.add(varying),
-      this.onlyIf(swings, element("div", {}, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing"))),
-      this.add(typedField(lab, { ...this.bound("motion", true), ...this.schema.motion, hint: "v_c1 = 0.2 cos(t)" })),
+      this.onlyIf(swings, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing")),
+      this.typed("motion", "v_c1 = 0.2 cos(t)"),
       ...this.litList("w"),
     ];
     return [
       this.number("scale"),
-      this.onlyIf(areSet, element("div", {}, ...set)),
+      this.onlyIf(areSet, ...set),
       ...this.each("ybar"),
     ];
   }
@@ -107,7 +118,8 @@ export class StructurePanel extends Fieldsets {
       return duration / Math.min(period, step) <= mostSteps && !(isSampled(settings) && duration > samples.until);
     };
     const last = samples ? `, and your samples end at ${readable(samples.times.at(-1))} s` : "";
-    return this.number(place, { allowed, reason: `and the duration is at most ${mostSteps} periods, and so many longest steps${last}` });
+    const reason = `and the duration is at most ${mostSteps} periods, and so many longest steps${last}`;
+    return this.number(place, { allowed, reason });
   }
 }
 

@@ -2,8 +2,9 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { percent } from "../../common/model/words.js";
-import { BOUND, SOLID } from "../../common/page/lines.js";
-import { around, decades, distancesAround, line, linesOf, marksOf, runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
+import { around, decades, distancesAround, line, linesOf, marksOf } from "../../common/page/chart_parts.js";
+import { runLines, sureOf, toleranceOf, withKept } from "../../common/page/chart_parts.js";
+import { BOUND, SOLID } from "../../common/page/looks.js";
 import { innovationOf, quantityOf, rangeOf } from "../model/quantities.js";
 
 export const LABELS = {
@@ -31,7 +32,8 @@ export function chartsOf({ settings, choice, problem, refusal }) {
 const MEASURED = ["image", "depth"];
 
 export function chartOf(name, shown, ghost, theme) {
-  const regions = united(shown.runs.flatMap((run) => run.gaps)).map(([begin, end]) => ({ begin, end, text: "no estimate" }));
+  const gaps = united(shown.runs.flatMap((run) => run.gaps));
+  const regions = gaps.map(([begin, end]) => ({ begin, end, text: "no estimate" }));
   const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];
   return { regions, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
 }
@@ -83,7 +85,8 @@ const BUILD = {
       const least = shown.guard.sizes.map((value) => value / largest);
       lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, BOUND));
     }
-    const title = `|det ${shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)"}|${guarded ? "; dotted: least for an estimate" : ""}`;
+    const product = shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)";
+    const title = `|det ${product}|${guarded ? "; dotted: least for an estimate" : ""}`;
     return { title, lines, scale: decades(lines, 1e-16, 1e6) };
   },
   range(shown, ghost, theme) {

@@ -5,7 +5,7 @@ import { valueBetween } from "../../common/model/playback.js";
 import { affine, imageVelocities, scaled } from "../../common/model/velocities.js";
 import { sceneInWords } from "../../common/model/words.js";
 import { straight } from "../../common/model/space.js";
-import { lookOf } from "../../common/page/lines.js";
+import { styleOf } from "../../common/page/line_styles.js";
 import { keyOf } from "../model/kernels.js";
 import { inverseRange, rangeOf } from "../model/quantities.js";
 
@@ -35,7 +35,10 @@ export const sceneOf = (lab) => ({
   tracksOf(shown, ghost, theme) {
     const along = (result, rows, run) => ({ distances: rangeOf(result, rows), ...inverseRange(result, rows, run) });
     const seen = shown.refusal ? { ...shown, truth: shown.image } : shown;
-    return { tracks: tracksOfPoint(seen, ghost, along, lookOf(theme)), ray: straight };
+    return { tracks: tracksOfPoint(seen, ghost, along, styleOf(theme)), ray: straight };
   },
-  wordsOf: (shown) => sceneInWords(shown.refusal ? { ...shown, truth: shown.image } : shown, (rows) => rangeOf(shown, rows)),
+  wordsOf(shown) {
+    const seen = shown.refusal ? { ...shown, truth: shown.image } : shown;
+    return sceneInWords(seen, (rows) => rangeOf(shown, rows));
+  },
 });

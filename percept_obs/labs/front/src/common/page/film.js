@@ -6,7 +6,7 @@ import { sampleAt } from "../model/tables.js";
 const KEPT = 24;
 const SEEN = 0.8;
 
-export class Frames {
+export class Film {
   constructor(lab) {
     this.lab = lab;
     this.films = lab.widget.get("frames") ?? {};

@@ -1,37 +1,36 @@
-// What every page does: it follows the hand, keeps the way back, and tells Python.
+// What every page does: it follows the hand, keeps the history of its settings, and tells Python.
 
 import { schemaOf } from "../model/schema.js";
 import { same } from "../model/settings.js";
 import { State } from "../model/state.js";
 import { Link } from "./link.js";
-import { surround } from "./surroundings.js";
+
+const NULL = /** @type {any} */ (null);
 
 /**
- * Settings with their history, and the line to Python.  A page of its own gives it a view and figures, and says what
- * happens when settings are touched, when a picture is due, and when Python answers.
+ * Settings with their history, and the link to Python.  A page extends it with a view and figures, with touched(), to
+ * be called when settings have changed, paint(), which draws them, and analysed(), which takes Python's answer.
  */
-export class Following {
+export class LabBase {
+  /** Panel, view, result that is shown, Python's answer with its settings, colours, timer while a hand may go on. */
+  panel = NULL;
+  view = NULL;
+  shown = NULL;
+  answer = NULL;
+  link = NULL;
+  theme = NULL;
+  resting = NULL;
+  width = 800;
+  serial = 0;
+  frame = 0;
+  pending = false;
+  closed = false;
+
   constructor(widget, model, words) {
     this.widget = widget;
     this.model = model;
     this.schema = schemaOf(model.schema, words);
     this.state = new State(structuredClone(widget.get("settings")));
-    /** @type {any} */
-    this.panel = this.view = null;
-    /** @type {any} the result that is shown */
-    this.shown = null;
-    /** @type {Record<string, any> | null} what Python has answered, with the settings that it is about */
-    this.answer = null;
-    /** @type {Link | null} */
-    this.link = null;
-    /** @type {any} the colours that pictures are drawn in */
-    this.theme = null;
-    this.width = 800;
-    this.serial = 0;
-    this.frame = 0;
-    this.pending = this.closed = false;
-    /** @type {any} the timer that runs while the hand may go on */
-    this.resting = null;
     this.leave = () => {};
   }
 
@@ -39,7 +38,7 @@ export class Following {
     return this.state.settings;
   }
 
-  /** Whether what is drawn is of settings before the present ones. */
+  /** True while what is drawn is of settings before the present ones. */
   get late() {
     return false;
   }
@@ -49,7 +48,7 @@ export class Following {
     return [];
   }
 
-  /** Begin to follow, once the page is built: the hand, the page's size and theme, Python. */
+  /** Begin to follow the hand, the page's size and theme, and Python, once the page is built. */
   follow(view) {
     this.view = view;
     this.link = new Link(this.widget, {
@@ -58,21 +57,40 @@ export class Following {
       onError: (text) => this.view.pythonError(text),
       onSilence: (silence) => this.view.silence(silence),
     });
-    this.leave = surround(this.view.root, {
-      figures: this.figures.map(({ figure }) => figure),
-      onSize: (node, size) => this.resized(node, size),
-      onTheme: () => this.retheme(),
-    });
-    this.view.root.classList.toggle("alone", !this.widget.save_changes);
+    this.leave = this.watchPage(view.root);
+    view.root.classList.toggle("alone", !this.widget.save_changes);
     this.panel.show();
     this.schedule();
     this.rest();
   }
 
-  resized(node, size) {
+  /** Follow sizes and whether the page is dark; return the function that ends it. */
+  watchPage(root) {
+    const sized = new ResizeObserver((entries) => {
+      for (const { target, contentRect } of entries) this.resized(target, contentRect);
+    });
+    for (const node of [...this.figures.map(({ figure }) => figure), root]) sized.observe(node);
+    const scheme = window.matchMedia("(prefers-color-scheme: dark)");
+    const themed = () => {
+      const light = document.body.dataset.jpThemeLight;
+      root.classList.toggle("dark", light ? light === "false" : scheme.matches);
+      this.retheme();
+    };
+    themed();
+    const observer = new MutationObserver(themed);
+    observer.observe(document.body, { attributes: true, attributeFilter: ["data-jp-theme-light", "class"] });
+    scheme.addEventListener("change", themed);
+    return () => {
+      sized.disconnect();
+      observer.disconnect();
+      scheme.removeEventListener("change", themed);
+    };
+  }
+
+  resized(node, { width, height }) {
     const picture = this.figures.find(({ figure }) => figure === node);
-    if (picture) picture.size = size;
-    else this.width = size.width;
+    if (picture) picture.size = { width, height };
+    else this.width = width;
     this.schedule();
   }
 
@@ -90,9 +108,7 @@ export class Following {
     this.leave();
   }
 
-  // What the hand does.
-
-  /** Take changed settings; what is chosen rather than moved is a step of its own, and told to Python at once. */
+  /** Change settings; what is chosen rather than moved is a step of its own, and told to Python at once. */
   change(changes, chosen = false) {
     if (chosen) this.state.step({ settings: { ...this.settings, ...changes } });
     else this.state.move(changes);
@@ -117,8 +133,6 @@ export class Following {
   redo() {
     if (this.state.redo()) this.touched(true);
   }
-
-  // What there is to do then.
 
   touched(_chosen) {}
 
