@@ -28,10 +28,10 @@ from percept_obs import (
 )
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.many import with_numbers
-from percept_obs.studies import filling
-from percept_obs.studies.counting import OUTCOMES
-from percept_obs.studies.filling import Unfinished
-from percept_obs.studies.part import STATUS, Plan
+from percept_obs.studies import chunks
+from percept_obs.studies.chunks import Unfinished
+from percept_obs.studies.plan import STATUS, Plan
+from percept_obs.studies.statistics import OUTCOMES
 from percept_obs.validation import environment
 
 xr = pytest.importorskip("xarray")
@@ -214,13 +214,13 @@ def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkey
     whole = ensemble(EQ35, ibo(BOTH), over, duration=0.5)
     compute, calls = Plan.compute, []
 
-    def counted(plan, columns):
-        calls.append(len(columns["seed"]))
+    def counted(plan, chunk):
+        calls.append(chunk.stop - chunk.start)
         if len(calls) == 3:
             raise KeyboardInterrupt
-        return compute(plan, columns)
+        return compute(plan, chunk)
 
-    monkeypatch.setattr(filling.os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(chunks, "workers", lambda: 1)
     monkeypatch.setattr(Plan, "compute", counted)
     with pytest.warns(Unfinished, match="of 8 runs are missing"):
         part = ensemble(EQ35, ibo(BOTH), over, duration=0.5, store=store, chunk=2)
@@ -240,7 +240,7 @@ def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkey
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"over": {"gian": [1.0]}}, "over has gian, which is nothing that varies here; there are gain, "),
+        ({"over": {"gian": [1.0]}}, "over has gian, which cannot vary here; there are gain, "),
         ({"over": {"gain": [1.0, -3.0]}}, "gain = -3 is out of range"),
         ({"over": {"gain": []}}, "finite numbers"),
         ({"over": {"gain": [np.nan]}}, "finite numbers"),

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import as_completed
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from examples import BOTH, NOISY
 
 from percept_obs import ensemble, ibo, scenarios
 from percept_obs.cli import main
+from percept_obs.studies import chunks
 
 distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")
@@ -46,25 +48,19 @@ def alone():
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_killed_worker_costs_time_only(alone, tmp_path):
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        workers = list(client.run(os.getpid).values())
-        killed = []
+    cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": tmp_path}
+    with distributed.LocalCluster(**cluster) as two, distributed.Client(two) as client:
+        pids, killed = list(client.run(os.getpid).values()), []
 
-        def kill(store):
-            if not killed:
-                killed.append(workers[0])
-                os.kill(workers[0], signal.SIGKILL)
+        def first_then_kill(futures):
+            for future in as_completed(futures):
+                yield future
+                if not killed:
+                    killed.append(pids[0])
+                    os.kill(pids[0], signal.SIGKILL)
 
-        from percept_obs.studies import filling
-
-        keep = filling.Store.keep
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(filling.Store, "keep", lambda self, *found: (keep(self, *found), kill(self)))
+            patch.setattr(chunks, "as_completed", first_then_kill)
             found = ensemble(EQ35, ibo(BOTH), **SETTINGS, client=client, store=tmp_path / "kept.zarr")
         assert killed
     xr.testing.assert_identical(found, alone)
@@ -101,10 +97,7 @@ def test_a_killed_sweep_goes_on_where_it_was(alone, tmp_path):
         ('scenario = "eq99"\nobserver = "ibo"\nstore = "a.zarr"', "no scenario 'eq99'; there are ma2005_eq35"),
         ('scenario = "ma2005_eq35"\nobserver = "x"\nstore = "a.zarr"', "no observer 'x'; there are identifier_based"),
         ('scenario = "ma2005_eq35"\nobserver = "identifier_based"', "needs store"),
-        (
-            'scenario = "ma2005_eq35"\nobserver = "identifier_based"\nstore = "a.zarr"\nduration = "long"',
-            "duration",
-        ),
+        ('scenario = "ma2005_eq35"\nobserver = "identifier_based"\nstore = "a.zarr"\nduration = "long"', "duration"),
     ],
 )
 def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, message, capsys):

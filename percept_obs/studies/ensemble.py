@@ -1,35 +1,44 @@
-"""Ensembles: one scenario and one observer, run over whatever may vary, many runs side by side."""
+"""Ensembles: one scenario and one observer, run over whatever may vary, many runs at a time."""
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Any
+from hashlib import sha256
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Language, choose
+from percept_obs.compile import Array, Language, choose, source
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Camera, Scenario, record
-from percept_obs.studies.filling import Store, fill
-from percept_obs.studies.part import Plan
-from percept_obs.studies.results import dataset, settings
-from percept_obs.studies.varying import CAMERA, Grid, camera_with, grid_of, refuse_gains, units
+from percept_obs.recording.many import numbers_of
+from percept_obs.studies.chunks import open_store, run_missing
+from percept_obs.studies.plan import CAMERA, DONE, STATUS, Plan, camera_with, grid_of
+from percept_obs.studies.statistics import OUTCOMES, STATISTICS
 from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import Kind, checked, limit, needed
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Start = Mapping[str, float] | Sequence[float] | None
 Client = Annotated[Any, Kind("a client of Dask", lambda c: c is None or hasattr(c, "get_executor"), "Client()")]
 
 CHUNK = 2048
 """Runs that are computed, and stored, together unless asked otherwise."""
+
+PROBES = 17
+"""Times at which a motion that varies enters the fingerprint of an ensemble."""
 
 MOST_RUNS = 10_000_000
 """Runs that one ensemble may have: about 1 GiB of statistics."""
@@ -139,20 +148,18 @@ def ensemble(
     duration = scenario.duration if duration is None else float(duration)
     limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
     several: Array = np.asarray(range(seeds) if isinstance(seeds, int | np.integer) else seeds)
-    names = units(scenario, observer, motion, camera)
-    unknown = sorted(set(over or {}) - set(names))
-    if unknown:
-        raise ValueError(
-            f"over has {', '.join(unknown)}, which is nothing that varies here; there are {', '.join(names)}"
-        )
+    names = units(scenario, observer, motion)
+    if unknown := sorted(set(over or {}) - set(names)):
+        raise ValueError(f"over has {', '.join(unknown)}, which cannot vary here; there are {', '.join(names)}")
     if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
-    grid = grid_of(over or {}, several)
-    limit(grid.runs, "runs", "take fewer values or seeds", MOST_RUNS)
+    grid = grid_of(over or {}, several, names)
+    runs = math.prod(grid.sizes.values())
+    limit(float(runs), "runs", "take fewer values or seeds", MOST_RUNS)
     if chunk < 1:
         raise ValueError(f"a chunk of {chunk} runs is none; take at least 1")
-    steps = grid.runs * duration / min(step, camera.period)
     plan = Plan(
+        grid,
         scenario,
         observer,
         duration,
@@ -165,29 +172,48 @@ def ensemble(
         after,
         tuple(coordinates),
         None if prior is None else tuple((name, float(value)) for name, value in prior.items()),
-        choose(language, steps),
-        len(several) == 1 and not {"noise", "dropout"} & set(over or {}),
+        choose(language, runs * duration / min(step, camera.period)),
     )
-    _refuse_values(plan, grid)
-    said = settings(plan, grid)
-    kept = np.zeros((grid.runs, len(plan.statistics)))
-    keep = None if store is None else Store(store, said, kept, chunk)
-    fill(plan, grid, kept, chunk, client, keep)
-    found = dataset(plan, grid, kept, names, said)
-    if keep:
-        keep.finish(found)
+    _refuse_values(plan)
+    about = _settings(plan)
+    shape = runs, len(plan.statistics)
+    stored = open_store(store, about["fingerprint"], shape, chunk) if store else None
+    results = np.zeros(shape) if stored is None else stored[:]
+    run_missing(plan, results, chunk, client, stored)
+    found = _dataset(plan, results).assign_attrs(
+        {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about.items()}
+    )
+    if store:
+        found.to_zarr(os.fspath(store), mode="a", consolidated=False)
     return found
 
 
-def _refuse_values(plan: Plan, grid: Grid) -> None:
-    """Refuse what no run could be made of, before any begins."""
+def units(scenario: Scenario, observer: Observer, believed: Motion) -> dict[str, str]:
+    """Names that can vary, with their units."""
+    numbers, form = numbers_of(scenario), observer.form
+    metres, shape = set(map(str, POINT)), {symbol.name for symbol in scenario.surface.values}
+    rates = {symbol.name for entry in scenario.motion.A for symbol in entry.free_symbols}
+
+    def unit(name: str) -> str:
+        return "1/s" if name in rates else "1" if name in shape else "m" if name in metres else "m/s"
+
+    found = {gain.name: gain.unit for gain in observer.gains}
+    found |= {f"start_{s.name}": "1/m" if s is form.coordinates[-1] else "1" for s in form.coordinates}
+    found |= {name: unit(name) for name in numbers} | CAMERA
+    return found | {f"believed_{symbol.name}": unit(symbol.name) for symbol in believed.values}
+
+
+def _refuse_values(plan: Plan) -> None:
+    """Refuse settings that no run could have, before any begins."""
     scenario, camera, observer = plan.scenario, plan.camera, plan.observer
-    values = {name: column for name, (_, column) in grid.columns.items()}
-    refuse_gains(observer, values)
-    for name in set(values) & set(CAMERA):
-        for value in np.unique(values[name]).tolist():
+    ends = {str(name): (float(each.min()), float(each.max())) for name, each in plan.grid.coords.items()}
+    for gain in observer.gains:
+        for value in ends.get(gain.name, ()):  # what lies between is allowed as well
+            observer.with_gains(**{gain.name: value})
+    for name in set(ends) & set(CAMERA):
+        for value in ends[name]:
             camera_with(camera, {name: value}).times(plan.duration)
-    shape = sorted({symbol.name for symbol in scenario.surface.values} & set(values))
+    shape = sorted({symbol.name for symbol in scenario.surface.values} & set(ends))
     if shape and observer.form.values:
         raise DoesNotFit(
             f"{', '.join(shape)} of the surface cannot vary, for the {observer.name} observer was derived with numbers "
@@ -201,7 +227,61 @@ def _refuse_values(plan: Plan, grid: Grid) -> None:
     run = track(first, observer, plan.start, plan.hold, plan.believed, plan.step, "python")
     run.outcome(plan.tolerance, *plan.coordinates)
     if plan.prior is not None:
-        noise = float(values["noise"].max()) ** 2 if "noise" in values else None
-        cramer_rao(first, observer.form, dict(plan.prior), noise)
+        cramer_rao(first, observer.form, dict(plan.prior), ends["noise"][1] ** 2 if "noise" in ends else None)
     if not 0 <= plan.after <= plan.duration:
         raise ValueError(f"after is {plan.after} s; errors count from then on, within the {plan.duration} s of a run")
+
+
+def _settings(plan: Plan) -> dict[str, Any]:
+    """All settings of an ensemble as text and numbers, with a fingerprint of them, the grid and the equations."""
+    scenario, observer = plan.scenario, plan.observer
+
+    def by_name(values: Mapping[Any, float]) -> dict[str, float]:
+        return {symbol.name: value for symbol, value in values.items()}
+
+    about: dict[str, Any] = {
+        "scenario": scenario.name,
+        "position": list(scenario.position),
+        "motion": by_name(scenario.motion.values),
+        "believed": by_name(plan.believed.values),
+        "surface": f"{scenario.surface.name} {by_name(scenario.surface.values)}",
+        "observer": observer.name,
+        "outputs": list(observer.form.measured),
+        "gains": {gain.name: gain.value for gain in observer.gains},
+        "duration": plan.duration,
+        "camera": str(plan.camera),
+        "start": dict(plan.start),
+        "hold": plan.hold,
+        "step": plan.step,
+        "tolerance": plan.tolerance,
+        "after": plan.after,
+        "judged_coordinates": list(plan.coordinates),
+        "prior": None if plan.prior is None else dict(plan.prior),
+        "language": plan.language,
+    }
+    times = np.linspace(0, plan.duration, PROBES)
+    motions = [(repr(m.A), repr(m.b), m.known(times).tolist()) for m in (scenario.motion, plan.believed)]
+    grid = [(str(name), each.dims, each.values.tolist()) for name, each in plan.grid.coords.items()]
+    equations = [source(observer.equations), repr(observer.estimate), repr(observer.start), repr(scenario.surface)]
+    fingerprint = sha256(json.dumps([about, motions, grid, equations]).encode()).hexdigest()
+    return about | {"fingerprint": fingerprint}
+
+
+def _dataset(plan: Plan, results: Array) -> xr.Dataset:
+    """Results as variables on the grid, from an array of shape (number of runs, number of statistics)."""
+    dimensions, shape = tuple(plan.shape), tuple(plan.shape.values())
+    done, variables = results[:, 0] == DONE, {}
+    for name, column in zip(plan.statistics, results.T, strict=True):
+        unit, meaning = STATISTICS[name]
+        about: dict[str, Any] = {"units": unit, "long_name": meaning}
+        values = column if name == "status" else np.where(done, column, np.nan)
+        if flags := {"status": STATUS, "outcome": OUTCOMES}.get(name):
+            values = np.where(np.isfinite(values), values, -1).astype(np.int8)
+            about |= {"flag_values": np.arange(len(flags), dtype=np.int8), "flag_meanings": " ".join(flags)}
+        variables[name] = (dimensions, values.reshape(shape), about)
+    found = plan.grid.assign(variables)
+    if plan.prior is not None:
+        error, least = ((found[name] ** 2).mean("seed", skipna=False) ** 0.5 for name in ("rms", "bound"))
+        about = {"units": "1", "long_name": "rms error over its bound, both in the mean square over the seeds"}
+        found["efficiency"] = (error / least).assign_attrs(about)
+    return found

@@ -127,9 +127,13 @@ def choose_and_report(
             "gains": ", ".join(f"{name} {value:.3g}" for name, value in values.items()),
             "at_edge": ", ".join(_at_edge(values, tried)),
         }
-        rows += _errors(lambda recording, chosen=chosen: follow(recording, chosen), reporting, questions, about)
-    for label, estimate in (batch or {}).items():
-        rows += _errors(estimate, reporting, questions, {"observer": label, "gains": "", "at_edge": ""})
+
+        def estimate(recording: Recording, observer: Observer = chosen) -> Run:
+            return follow(recording, observer)
+
+        rows += _errors(estimate, reporting, questions, about)
+    for label, batch_estimate in (batch or {}).items():
+        rows += _errors(batch_estimate, reporting, questions, {"observer": label, "gains": "", "at_edge": ""})
     return pd.DataFrame(rows, columns=COLUMNS)
 
 

@@ -37,7 +37,7 @@ from percept_obs import (
     with_point,
 )
 from percept_obs.compile import Table, solve
-from percept_obs.studies import filling
+from percept_obs.studies import chunks
 
 SCENARIO = scenarios.ma2005_eq35()
 FORM = PerspectiveSystem(affine(), pinhole()).measure("y1")
@@ -70,7 +70,7 @@ To repeat it, install what is to be compared, and write this page anew:
 
 def alone_on_a_core(*arguments, **settings):
     """An ensemble on one thread, as all others: two threads of one core count more CPU seconds for the same work."""
-    with mock.patch.object(filling, "workers", return_value=1):
+    with mock.patch.object(chunks, "workers", return_value=1):
         return ensemble(*arguments, **settings)
 
 

@@ -1,0 +1,96 @@
+"""Runs of an ensemble, chunk by chunk: on the threads of this machine or on a cluster, kept in a store on the way."""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Generator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from contextlib import closing
+from typing import Any
+
+from percept_obs.compile import Array
+from percept_obs.studies.plan import NOT_RUN, Plan
+from percept_obs.validation import bar, warn, workers
+
+
+class Unfinished(UserWarning):
+    """An ensemble was interrupted; the runs that are missing have the status "not_run"."""
+
+
+def open_store(path: str | os.PathLike[str], fingerprint: str, shape: tuple[int, int], chunk: int) -> Any:
+    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics).
+
+    Raises
+    ------
+    ValueError
+        If the store holds something else.
+    """
+    import zarr
+
+    group: Any = zarr.open_group(os.fspath(path), mode="a")
+    stored = group.attrs.get("fingerprint")
+    if stored not in (None, fingerprint) or (stored is None and len(list(group))):
+        raise ValueError(
+            f"the store {os.fspath(path)} holds something else than this ensemble; name a new one, or call with "
+            "the settings that it was begun with"
+        )
+    if stored is None:
+        group.create_array("progress/runs", shape=shape, chunks=(chunk, shape[1]), dtype=float)
+        group.attrs["fingerprint"] = fingerprint
+    return group["progress/runs"]
+
+
+def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:
+    """Compute the runs that have no results yet.
+
+    Parameters
+    ----------
+    plan : Plan
+    results : array of shape (number of runs, number of statistics)
+    chunk : int
+        Runs that are computed together.
+    client : distributed.Client, optional
+        Dask gives another worker what a worker that dies had begun.
+    stored : Zarr array of the same shape, optional
+
+    Warns
+    -----
+    Unfinished
+        If it was interrupted.
+    """
+    missing = results[:, 0] == NOT_RUN
+    chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
+    todo = [each for each in chunks if missing[each].any()]
+    if client is None:
+        plan.prepare()
+    if client or workers() > 1:
+        computed = _concurrent(plan, todo, client)
+    else:
+        computed = ((each, plan.compute(each)) for each in todo)
+    with closing(computed), bar(None, "runs", len(results), initial=int((~missing).sum()), unit="run") as progress:
+        try:
+            for each, found in computed:
+                results[each] = found
+                if stored is not None:
+                    stored[each] = found
+                progress.update(len(found))
+        except KeyboardInterrupt:
+            missing = results[:, 0] == NOT_RUN
+            warn(Unfinished(f"interrupted: {int(missing.sum())} of {len(results)} runs are missing"))
+
+
+def _concurrent(plan: Plan, todo: Sequence[slice], client: Any) -> Generator[tuple[slice, Array]]:
+    """Yield chunks as they are done, on the threads of this machine or on a cluster."""
+    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
+    # a task's result, unlike scattered data, is made again when the worker that holds it dies
+    there = client.submit(copy.copy, plan, pure=False) if client else plan
+    begun: dict[Future[Array], slice] = {}
+    try:
+        begun |= {executor.submit(Plan.compute, there, each): each for each in todo}
+        for future in as_completed(begun):
+            yield begun.pop(future), future.result()
+    finally:
+        for future in begun:
+            future.cancel()
+        executor.shutdown()

@@ -1,0 +1,357 @@
+"""Plan of an ensemble: the grid of what varies, the settings of all runs, and the statistics of any chunk of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from percept_obs.compile import Array, Indices, Language, vectorised
+from percept_obs.compile.batch import Batch, compiled, run_batch
+from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop, MovingPoint
+from percept_obs.compile.integrator import by_step, instants, step_grid
+from percept_obs.observability import cramer_rao
+from percept_obs.observers.base import Observer
+from percept_obs.observers.parts import first_seen, hats
+from percept_obs.recording import Camera, Scenario, record
+from percept_obs.recording.many import numbers_of, transitions, with_numbers
+from percept_obs.recording.simulation import LONGEST_STEP_SHARE, coefficients
+from percept_obs.studies.statistics import STATISTICS, accumulated, statistics_of
+from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import Motion
+from percept_obs.system.signal import from_the_start
+from percept_obs.system.surfaces import POINT, BehindCamera
+from percept_obs.tracking.grid import Hold
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+NOT_RUN, DONE, NOT_IN_FRONT = range(3)
+STATUS = ("not_run", "done", "not_in_front")
+"""States of a run, in the order of their numbers; without a point in front of the camera throughout there is none."""
+
+CAMERA = {"noise": "1", "period": "s", "dropout": "1"}
+"""Settings of a camera that can vary, with units; the noise is its bound or its standard deviation."""
+
+MOST_AT_ONCE = 2_000_000
+"""Numbers of samples and truths that are kept at once, 16 MB."""
+
+SAFETY_FACTOR = 4.0
+"""Safety factor against crossing zero between samples: distance over its largest change from sample to sample."""
+
+Columns = Mapping[str, Array]
+"""Values of what varies, one for each of L runs, by name; always with "seed"."""
+
+Variances = tuple[tuple[str, float], ...]
+
+
+def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> xr.Dataset:
+    """Coordinates over which an ensemble goes, the seed first; a DataArray brings its dimensions.
+
+    Raises
+    ------
+    ValueError
+        If values are none, not finite, or lengths of a dimension differ.
+    """
+    import xarray as xr
+
+    columns: dict[str, Any] = {"seed": ("seed", seeds, {"units": "1"})}
+    for name, given in over.items():
+        along, values = tuple(getattr(given, "dims", (name,))), np.asarray(given, dtype=float)
+        if values.ndim != len(along) or not values.size or not np.isfinite(values).all():
+            raise ValueError(
+                f"over goes {name!r} through values of shape {values.shape}; give finite numbers, a list of them or a "
+                "DataArray with named dimensions"
+            )
+        columns[name] = (along, values, {"units": units[name]})
+    return xr.Dataset(coords=columns)
+
+
+def camera_with(camera: Camera, values: Mapping[str, float]) -> Camera:
+    """Return the camera with another noise, period or dropout."""
+    changes: dict[str, Any] = {name: values[name] for name in ("period", "dropout") if name in values}
+    if "noise" in values:
+        changes["noise"] = type(camera.noise)(values["noise"])
+    return replace(camera, **changes)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Settings of all runs of an ensemble, and the grid of what varies; see `ensemble`."""
+
+    grid: xr.Dataset
+    scenario: Scenario
+    observer: Observer
+    duration: float
+    camera: Camera
+    start: Mapping[str, float]
+    hold: Hold
+    believed: Motion
+    step: float
+    tolerance: float
+    after: float
+    coordinates: tuple[str, ...]
+    prior: Variances | None
+    language: Language
+
+    @cached_property
+    def shape(self) -> dict[str, int]:
+        """Lengths of the dimensions in the order of the runs' numbers, the seed first."""
+        return {name: self.grid.sizes[name] for each in self.grid.coords.values() for name in each.dims}
+
+    @cached_property
+    def statistics(self) -> tuple[str, ...]:
+        """Names of the statistics of every run, its status first."""
+        means = ("nees", "nis")[: len(accumulated(self.observer).means)]
+        missing = {"nees", "nis", "bound"} - {*means, *(() if self.prior is None else ("bound",))}
+        return tuple(name for name in STATISTICS if name not in missing)
+
+    @cached_property
+    def scenes(self) -> list[str]:
+        """Names of what varies in the scenario."""
+        return [name for name in numbers_of(self.scenario) if name in self.grid.coords]
+
+    @cached_property
+    def loop(self) -> BatchLoop:
+        """The loop to compile; a point under a constant motion that varies is moved by the loop itself."""
+        surface, varied = self.scenario.surface, set(self.grid.coords)
+        moving = MovingPoint(POINT, surface.parameters, (*surface.image, 1 / surface.distance), surface.distance)
+        return BatchLoop(
+            self.observer.equations,
+            accumulated(self.observer, self.coordinates),
+            moving if self.scenes and self.scenario.motion.values else None,
+            held=self.hold != "zero",
+            varying=not self.believed.values,
+            noises_alike=self.grid.sizes["seed"] == 1 and not {"noise", "dropout"} & varied,
+            truths_alike=not self.scenes,
+        )
+
+    def prepare(self) -> None:
+        """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
+        compiled(self.loop, self.language)
+
+    def compute(self, chunk: slice) -> Array:
+        """Statistics of a chunk of runs, shape (L, number of statistics)."""
+        numbers = np.unravel_index(np.arange(chunk.start, chunk.stop), tuple(self.shape.values()))
+        places = dict(zip(self.shape, numbers, strict=True))
+        columns = {
+            str(name): each.values[tuple(places[along] for along in each.dims)]
+            for name, each in self.grid.coords.items()
+        }
+        found = np.empty((chunk.stop - chunk.start, len(self.statistics)))
+        periods = columns.get("period", np.full(len(found), self.camera.period))
+        for period in np.unique(periods).tolist():
+            same, camera = np.flatnonzero(periods == period), replace(self.camera, period=period)
+            own = [name for name in ("seed", "noise", "dropout", *self.scenes) if name in columns]
+            different = len(_distinct({name: columns[name][same] for name in own}, own)[0])
+            each = len(camera.times(self.duration)) * len(self.observer.form.coordinates)
+            at_once = max(BATCH, MOST_AT_ONCE * len(same) // (each * different))
+            for begin in range(0, len(same), at_once):
+                runs = same[begin : begin + at_once]
+                found[runs] = self._batch({name: values[runs] for name, values in columns.items()}, camera)
+        return found
+
+    def _batch(self, columns: Columns, camera: Camera) -> Array:
+        """Statistics of runs whose samples have the same times, shape (L, number of statistics)."""
+        observer, loop, time = self.observer, self.loop, camera.times(self.duration)
+        runs, elapsed = len(columns["seed"]), time - time[0]
+        if loop.moving:
+            scene, truth = np.zeros(runs, dtype=int), np.zeros((1, 1, 1))
+            moves, begins, turning = self._moves(columns, camera.period)
+        else:
+            scene, truth = self._truths(columns, time)
+            moves, begins, turning = np.zeros((runs, 0)), truth[scene, 0], np.zeros(runs)
+        noise, film = self._noise(columns, camera, len(time))
+        grid, index = step_grid(time, self.step)
+        arriving = np.full(len(grid), -1)
+        arriving[index] = np.arange(len(time))
+        known, motion = self._known(columns, grid)
+        gains = np.stack([_column(columns, gain.name, gain.value) for gain in observer.gains], axis=-1)
+        places = list(loop.statistics.measured)
+        start, corrects = self._start(columns, begins[:, places] + noise[film, 0], gains, known[motion, 0])
+        batch = Batch(
+            start,
+            np.broadcast_to(corrects, (runs, len(corrects))),
+            gains,
+            moves,
+            np.stack([film, scene, motion], axis=-1),
+            noise,
+            truth,
+            known,
+            np.diff(grid),
+            arriving,
+            elapsed,
+            camera.reach,
+            self._held(columns, noise[film], time, grid) if loop.held else None,
+        )
+        late = int(np.argmax(from_the_start(elapsed, self.after)))
+        sums = run_batch(loop, batch, self.tolerance, late, self.language)
+        in_front = np.isfinite(begins[:, 0])
+        if loop.moving:
+            in_front = self._in_front(columns, sums, turning, time)
+        found = statistics_of(sums, elapsed, grid - grid[0], late)
+        if self.prior is not None:
+            found["bound"] = self._bounds(columns, camera, self.prior)
+        rest = [np.where(in_front, found[name], np.nan) for name in self.statistics[1:]]
+        return np.stack([np.where(in_front, DONE, NOT_IN_FRONT), *rest], axis=-1)
+
+    def _truths(self, columns: Columns, time: Array) -> tuple[Indices, Array]:
+        """Index of each run's scene, and true coordinates of the scenes, shape (D, K, n); NaN if not in front."""
+        (rows, scene), at = _distinct(columns, self.scenes), time.tobytes()
+        found = [_coordinates(self.scenario, tuple(zip(self.scenes, row, strict=True)), at) for row in rows.tolist()]
+        return scene, np.stack(found)
+
+    def _moves(self, columns: Columns, period: float) -> tuple[Array, Array, Array]:
+        """Points, maps to the next sample and surfaces' numbers; first coordinates; |A| times the period."""
+        scenario, surface = self.scenario, self.scenario.surface
+        values = {name: _column(columns, name, value) for name, value in numbers_of(scenario).items()}
+        point = [values[symbol.name] for symbol in POINT]
+        shape = [values[symbol.name] for symbol in surface.parameters]
+        A, b = coefficients(scenario.motion, np.stack([values[s.name] for s in scenario.motion.parameters], axis=-1))
+        A, b = (np.broadcast_to(each, (len(point[0]), *each.shape[1:])) for each in (A, b))
+        across = transitions(A, b, period).reshape(len(A), -1)
+        assert self.loop.moving
+        with np.errstate(all="ignore"):
+            begins = vectorised((*POINT, *surface.parameters), self.loop.moving.coordinates)(*point, *shape)
+        turning = period * np.abs(A).sum(axis=-1).max(axis=-1)
+        return np.column_stack([*point, across, *shape]), np.stack(begins, axis=-1), turning
+
+    def _in_front(self, columns: Columns, sums: Array, turning: Array, time: Array) -> Array:
+        """True where a point stays in front of the camera; simulated where it may dip behind between samples."""
+        nearest, drop = (sums[:, COLUMNS.index(name)] for name in ("nearest", "drop"))
+        in_front = nearest > 0
+        for k in np.flatnonzero(in_front & ~((nearest > SAFETY_FACTOR * drop) & (turning <= LONGEST_STEP_SHARE))):
+            scene = tuple((name, float(columns[name][k])) for name in self.scenes)
+            in_front[k] = np.isfinite(_coordinates(self.scenario, scene, time.tobytes())).all()
+        return np.asarray(in_front)
+
+    def _bounds(self, columns: Columns, camera: Camera, prior: Variances) -> Array:
+        """Least error of each run, shape (L,); the seed matters only where samples are lost."""
+        varied = [name for name in ("noise", "dropout") if name in columns]
+        seed = ["seed"] if camera.dropout or "dropout" in columns else []
+        rows, which = _distinct(columns, [*self.scenes, *varied, *seed])
+        found = []
+        for row in rows.tolist():
+            values = dict(zip([*self.scenes, *varied, *seed], row, strict=True))
+            scene = tuple((name, values[name]) for name in self.scenes)
+            taken = camera_with(camera, {name: values[name] for name in varied})
+            run = self.duration, taken, int(values.get("seed", 0))
+            found.append(_least_error(self.scenario, scene, *run, self.observer.form, prior, self.after))
+        return np.array(found)[which]
+
+    def _noise(self, columns: Columns, camera: Camera, samples: int) -> tuple[Array, Indices]:
+        """Noise of measured outputs, NaN where a sample is lost, shape (R, K, m), and the index of each run's."""
+        varied = [name for name in ("noise", "dropout") if name in columns]
+        rows, film = _distinct(columns, ["seed", *varied])
+        outputs = len(self.scenario.view.image_coordinates)
+        noise = np.empty((len(rows), samples, len(self.observer.form.measured)))
+        kinds, of_kind = np.unique(rows[:, 1:], axis=0, return_inverse=True)
+        for k, values in enumerate(kinds.tolist()):
+            alike = of_kind.reshape(-1) == k
+            taken = camera_with(camera, dict(zip(varied, values, strict=True)))
+            drawn = taken.drawn(rows[alike, 0].astype(int).tolist(), (samples, outputs))
+            noise[alike] = drawn[..., list(self.loop.statistics.measured)]
+        return noise, film
+
+    def _known(self, columns: Columns, grid: Array) -> tuple[Array, Indices]:
+        """Parameters that the observer believes in, shape (B, T, p), and the index of each run's."""
+        runs, believed, surface = len(columns["seed"]), self.believed, self.scenario.surface
+        if not believed.values:
+            rows = believed.known(instants(grid))
+            shape = [np.full(len(rows), surface.values[symbol]) for symbol in surface.parameters]
+            return np.column_stack([rows, *shape])[None], np.zeros(runs, dtype=int)
+        own = believed is self.scenario.motion  # which is believed in where it varies, too
+
+        def column(name: str, value: float) -> Array:
+            true = _column(columns, name, value) if own else np.full(runs, value)
+            return columns.get(f"believed_{name}", true)
+
+        motion = [column(symbol.name, value) for symbol, value in believed.values.items()]
+        shape = [_column(columns, symbol.name, surface.values[symbol]) for symbol in surface.parameters]
+        return np.stack([*motion, *shape], axis=-1)[:, None], np.arange(runs)
+
+    def _start(self, columns: Columns, first: Array, gains: Array, known: Array) -> tuple[Array, Array]:
+        """States at the first sample, and flags of the measured outputs that it corrects: those with a given start."""
+        observer, form = self.observer, self.observer.form
+        given = {name for name in map(str, form.coordinates) if f"start_{name}" in columns or name in self.start}
+        estimates = [
+            first[:, form.measured.index(name)]
+            if name in form.measured and name not in given
+            else _column(columns, f"start_{name}", self.start.get(name, 0.0))
+            for name in map(str, form.coordinates)
+        ]
+        symbols = (
+            *form.x1,
+            *(gain.symbol for gain in observer.gains),
+            *form.parameters,
+            *hats(form.coordinates),
+            *first_seen(form.x1),
+        )
+        seen = [float(name not in given) for name in form.measured]
+        start = vectorised(symbols, observer.start)(*first.T, *gains.T, *known.T, *estimates, *seen)
+        return np.stack(start, axis=-1), np.array([name in given for name in form.measured])
+
+    def _held(self, columns: Columns, noise: Array, time: Array, grid: Array) -> Array:
+        """Outputs at the instants of the steps, shape (L, N, EACH + 1, m), if the last sample is not held."""
+        within = instants(grid)
+        scene, truth = self._truths(columns, time if self.hold == "first" else within)
+        outputs = truth[scene][..., list(self.loop.statistics.measured)]
+        if self.hold == "first":
+            seen = outputs + noise
+            outputs = np.stack([[_between(within, time, y) for y in each.T] for each in seen]).swapaxes(1, 2)
+        return np.stack([by_step(each) for each in outputs])
+
+
+@lru_cache(maxsize=256)
+def _coordinates(scenario: Scenario, numbers: Variances, times: bytes) -> Array:
+    """True coordinates of a variant of a scenario, NaN if its point does not stay in front of the camera."""
+    at = np.frombuffer(times)
+    try:
+        return with_numbers(scenario, **dict(numbers)).coordinates(at)
+    except BehindCamera:
+        return np.full((len(at), len(scenario.view.coordinates)), np.nan)
+
+
+@lru_cache(maxsize=4096)
+def _least_error(
+    scenario: Scenario,
+    numbers: Variances,
+    duration: float,
+    camera: Camera,
+    seed: int,
+    form: PartitionedSystem,
+    prior: Variances,
+    after: float,
+) -> float:
+    """Root mean square over time of the Cramer-Rao bound of the inverse distance in 1/m; NaN without noise."""
+    if not camera.noise.variance:
+        return np.nan
+    try:
+        recording = record(with_numbers(scenario, **dict(numbers)), duration, camera, seed)
+    except BehindCamera:
+        return np.nan
+    bound = cramer_rao(recording, form, dict(prior))
+    late = from_the_start(bound.elapsed, after)
+    return float(np.sqrt(np.mean(bound.of(form.coordinates[-1].name)[late] ** 2)))
+
+
+def _between(times: Array, known: Array, values: Array) -> Array:
+    """Values on the lines between those that were not lost."""
+    there = np.isfinite(values)
+    return np.interp(times, known[there], values[there]) if there.any() else np.full(len(times), np.nan)
+
+
+def _distinct(columns: Columns, names: Sequence[str]) -> tuple[Array, Indices]:
+    """Distinct rows of some columns, shape (D, number of names), and the index of each run's."""
+    if not names:
+        return np.empty((1, 0)), np.zeros(len(columns["seed"]), dtype=int)
+    rows, which = np.unique(np.stack([columns[name] for name in names], axis=-1), axis=0, return_inverse=True)
+    return rows, which.reshape(-1)
+
+
+def _column(columns: Columns, name: str, value: float) -> Array:
+    """Values of every run, those that vary or those that are the same."""
+    return columns[name] if name in columns else np.full(len(columns["seed"]), value)
