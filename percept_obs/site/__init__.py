@@ -1,4 +1,4 @@
-"""The course as a static site: notebooks with live labs, the papers' equations, the reference, the teacher's guide.
+"""Static site of the course: notebooks with live labs, the papers' equations, the reference, the teacher's guide.
 
 Sphinx builds it, with MyST-NB.  It needs no network, neither to be built nor to be read, and opens from a disk.
 """
@@ -56,7 +56,7 @@ def build(
     target: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
     ledgers: Mapping[str, Ledger] = NAMED,
-    beside: int = 2,
+    parallel: int = 2,
     tell: Callable[[str], object] = print,
 ) -> None:
     """Build the site.
@@ -69,10 +69,10 @@ def build(
         Files as they are read, by their names.
     ledgers : mapping of str to Ledger, optional
         The papers; all, when left out.
-    beside : int
-        How many notebooks are run at once.
+    parallel : int
+        Number of notebooks that run at once.
     tell : function of str, optional
-        Is told what is done; it is printed, when left out.
+        Called with each message about the progress; `print` when left out.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def build(
     """
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder)
-        _notebooks(source, notebooks, beside, tell)
+        _notebooks(source, notebooks, parallel, tell)
         tell("judging the papers' equations")
         for path, text in [*ledger_pages(ledgers), *reference(), *_texts()]:
             _write(source / path, text)
@@ -91,13 +91,13 @@ def build(
 
 
 def _notebooks(
-    source: Path, notebooks: Mapping[str, Mapping[str, Any]], beside: int, tell: Callable[[str], object]
+    source: Path, notebooks: Mapping[str, Mapping[str, Any]], parallel: int, tell: Callable[[str], object]
 ) -> None:
-    """Run the notebooks, and write them with what their labs need."""
+    """Run the notebooks, and write them with the scripts of their labs."""
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {}
-    for name, notebook in run_all(notebooks, beside):
+    for name, notebook in run_all(notebooks, parallel):
         tell(f"ran {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
@@ -108,7 +108,7 @@ def _notebooks(
 
 
 def _texts() -> Pages:
-    """Texts that are written by hand, and the table of front ends."""
+    """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
     for text in TEXTS.iterdir():
         folder = "_static/" if text.name.endswith(".css") else ""
@@ -123,9 +123,8 @@ def _write(path: Path, text: str) -> None:
 def _generate(source: Path, target: Path, names: Mapping[str, Any]) -> None:
     from sphinx.application import Sphinx
 
-    said = io.StringIO()
-    settings, kept = {**SETTINGS, **names}, source / ".doctrees"
-    app = Sphinx(source, None, target, kept, "html", settings, status=None, warning=said, freshenv=True)
+    faults, settings = io.StringIO(), {**SETTINGS, **names}
+    app = Sphinx(source, None, target, source / ".doctrees", "html", settings, None, faults, freshenv=True)
     app.build(force_all=True)
-    if said.getvalue():
-        raise SiteFault(f"the site has faults:\n{said.getvalue()}")
+    if faults.getvalue():
+        raise SiteFault(f"the site has faults:\n{faults.getvalue()}")

@@ -1,4 +1,4 @@
-"""An extension of Sphinx: formulas as MathML, which a browser shows without any script, and docstrings as they are."""
+"""Extension of Sphinx: formulas as MathML, which a browser shows without any script, and docstrings as they are."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Add what this module does to Sphinx."""
+    """Register the extension with Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
     app.connect("autodoc-process-docstring", _keep_bars)
     app.connect("html-page-context", _let_keys_scroll)
@@ -15,7 +15,7 @@ def setup(app: Any) -> dict[str, bool]:
 
 
 def mathml(latex: str, display: str) -> str:
-    r"""MathML of a formula.
+    r"""Return a formula as MathML.
 
     Examples
     --------
@@ -33,9 +33,8 @@ def _inline(self: Any, node: Any) -> None:
 
 
 def _display(self: Any, node: Any) -> None:
-    _write(
-        self, f'<div class="math" tabindex="0" role="group" aria-label="formula">{mathml(node.astext(), "block")}</div>'
-    )
+    formula = mathml(node.astext(), "block")
+    _write(self, f'<div class="math" tabindex="0" role="group" aria-label="formula">{formula}</div>')
 
 
 def _write(self: Any, text: str) -> None:
@@ -46,12 +45,12 @@ def _write(self: Any, text: str) -> None:
 
 
 def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
-    """Let |x| stand for an absolute value, as everywhere else; for Sphinx it is a name to be replaced."""
+    """Escape |x|, an absolute value in docstrings and a substitution for Sphinx."""
     lines[:] = [line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines]
 
 
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Let code and tables that are wider than the page be scrolled by keys as well."""
+    """Let keys scroll code and tables that are wider than the page."""
     if "body" in context:
         wide = r'<(pre|table border="1" class="dataframe")>'
         context["body"] = re.sub(wide, r'<\1 tabindex="0">', context["body"])

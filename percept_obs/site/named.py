@@ -1,6 +1,6 @@
-"""What texts of the site name by a key: notebooks, equations of papers, numbers of the package.
+"""Substitutions in texts of the site: links to notebooks and equations, and numbers of the package.
 
-A text writes ``{{ nb["02"] }}``, ``{{ MA2005["(11)"] }}`` or ``{{ longest_step }}``, and MyST puts in what stands here.
+A text writes ``{{ nb["02"] }}``, ``{{ MA2005["(11)"] }}`` or ``{{ longest_step }}``, and MyST substitutes these.
 """
 
 from collections.abc import Iterable, Mapping
@@ -19,15 +19,15 @@ from percept_obs.tracking.verdict import TOLERANCE
 
 
 class Notebooks(dict[str, str]):
-    """Links to notebooks by their numbers; one that is not on the site stands as its number."""
+    """Links to notebooks by their numbers; a number alone for one that is not on the site."""
 
     def __missing__(self, number: str) -> str:
-        """The number alone."""
+        """Return the number alone."""
         return number
 
 
 def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, Any]:
-    """What keys in texts stand for; an equation of a paper that is not on the site stands without a link.
+    """Return substitutions by their keys; an equation of a paper that is not on the site has no link.
 
     Parameters
     ----------

@@ -6,10 +6,12 @@ import io
 import json
 import re
 from base64 import b64decode
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from copy import deepcopy
+from functools import reduce
 from html import escape
+from operator import getitem
 from typing import TYPE_CHECKING, Any
 
 from percept_obs.figures.base import Figure
@@ -26,11 +28,11 @@ COLOURS = {
     "#e6e6e6": "var(--color-background-border, #e6e6e6)",
     "#ededed": "var(--color-background-secondary, #ededed)",
 }
-"""Colours of a figure that follow the page, light or dark."""
+"""Colours of figures and the page's colours that replace them, light or dark."""
 
 
 class SiteFault(RuntimeError):
-    """A page that cannot be built, or that would be built with a fault."""
+    """Raised when a page cannot be built, or would have a fault."""
 
 
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
@@ -38,14 +40,14 @@ PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages
 
 
 def draw_for_pages() -> None:
-    """Let the figures of the running kernel show themselves as drawings in the page's colours."""
+    """Show figures of the running kernel as drawings in the page's colours."""
     from IPython import get_ipython
 
     get_ipython().display_formatter.formatters["text/html"].for_type(Figure, drawing)
 
 
 def drawing(figure: Figure) -> str:
-    """A figure as SVG within a page, with its text equivalent.
+    """Return a figure as SVG within a page, with its text equivalent.
 
     Examples
     --------
@@ -61,25 +63,23 @@ def drawing(figure: Figure) -> str:
         figure.figure.savefig(written, format="svg", transparent=True, metadata={"Date": None})
     text = written.getvalue()
     text = text[text.index("<svg") :]
-    # Within a page its rules would hold for everything.
+    # Its style rules would hold for the whole page.
     text = re.sub(r"<style[^>]*>.*?</style>|<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     for colour, of_the_page in COLOURS.items():
         text = text.replace(colour, of_the_page)
-    said = (
-        f'<svg role="img" aria-label="{escape(figure.text)}" style="max-width: 100%; height: auto; fill: currentColor"'
-    )
-    return text.replace("<svg", said, 1)
+    style = "max-width: 100%; height: auto; fill: currentColor"
+    return text.replace("<svg", f'<svg role="img" aria-label="{escape(figure.text)}" style="{style}"', 1)
 
 
-def run_all(notebooks: Mapping[str, Mapping[str, Any]], beside: int) -> Iterator[tuple[str, nbformat.NotebookNode]]:
-    """Run notebooks, some at once, and give each by its name as soon as it is there, in their order.
+def run_all(notebooks: Mapping[str, Mapping[str, Any]], parallel: int) -> Iterator[tuple[str, nbformat.NotebookNode]]:
+    """Run notebooks, some at once, and yield each with its name in their order.
 
     Raises
     ------
     SiteFault
-        If a cell fails; it says which notebook, and how.
+        If a cell fails.
     """
-    with ThreadPoolExecutor(beside) as several:
+    with ThreadPoolExecutor(parallel) as several:
         yield from zip(notebooks, several.map(_run, notebooks, notebooks.values()), strict=True)
 
 
@@ -99,19 +99,19 @@ def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
 
 
 def labs_of(notebook: nbformat.NotebookNode) -> dict[str, dict[str, Any]]:
-    """States of the labs of a notebook that was run, by the names of their models."""
+    """Return the states of the labs of a notebook that was run, by the names of their models."""
     return {name: _whole(model) for name, model in _models(notebook).items() if "_esm" in model["state"]}
 
 
 def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.NotebookNode:
-    """Put labs that need no Python in the place of widgets, and of other widgets what they last showed.
+    """Replace widgets by labs that need no Python, and other widgets by their last outputs.
 
     Parameters
     ----------
     notebook : NotebookNode
         One that was run; it is changed.
     script : str
-        HTML that loads what labs need, put before the first one.
+        HTML that loads the labs' scripts, put before the first one.
     """
     from nbformat.v4 import new_output
 
@@ -138,31 +138,24 @@ def _models(notebook: nbformat.NotebookNode) -> Mapping[str, Any]:
 
 
 def _whole(model: Mapping[str, Any]) -> dict[str, Any]:
-    """State of a lab, with its bytes, which a notebook keeps beside it, put back into their places."""
+    """Return the state of a lab with its bytes, which a notebook keeps apart."""
     whole: dict[str, Any] = {name: deepcopy(model["state"][name]) for name in SHOWN if name in model["state"]}
     for buffer in model["buffers"]:
-        place: Any = whole
-        *way, last = buffer["path"]
-        for part in way:
-            place = place[part]
-        place[last] = b64decode(buffer["data"])
+        *path, last = buffer["path"]
+        reduce(getitem, path, whole)[last] = b64decode(buffer["data"])
     return whole
 
 
 def _last_shown(models: Mapping[str, Any], name: str) -> Iterator[str]:
-    """What a widget's outputs show, and those of the widgets in it."""
+    """Yield the outputs of a widget and of the widgets in it as HTML."""
     state = models[name]["state"]
     for output in state.get("outputs", ()):
         data = output.get("data", {})
         if "text/html" in data:
-            yield _joined(data["text/html"])
+            yield "".join(data["text/html"])  # text, or a list of lines
         elif "text/latex" in data:
-            yield f"<p>{mathml(_joined(data['text/latex']), 'block')}</p>"
+            yield f"<p>{mathml(''.join(data['text/latex']), 'block')}</p>"
         else:
-            yield f"<pre>{escape(_joined(data.get('text/plain', output.get('text', ''))))}</pre>"
+            yield f"<pre>{escape(''.join(data.get('text/plain', output.get('text', ''))))}</pre>"
     for child in state.get("children", ()):
         yield from _last_shown(models, child.removeprefix("IPY_MODEL_"))
-
-
-def _joined(text: str | Sequence[str]) -> str:
-    return text if isinstance(text, str) else "".join(text)

@@ -1,4 +1,4 @@
-"""Pages that follow from the package itself: the ledgers, an equation each, and the public names."""
+"""Pages made from the package: the ledgers, an equation each, and the reference of the public names."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
-from types import ModuleType
 
 from percept_obs.papers import Entry, Ledger, Verdict, judge
 from percept_obs.papers.mathml import shown
 
 Pages = Iterator[tuple[str, str]]
-"""Paths below the site's source, and what stands there."""
+"""Paths below the site's source, and their texts."""
 
 MODULES = (
     "percept_obs",
@@ -23,14 +22,36 @@ MODULES = (
     "percept_obs.points",
     "percept_obs.structure",
     "percept_obs.observability",
+    "percept_obs.tracking",
+    "percept_obs.studies.all_observers",
+    "percept_obs.studies.chatter",
+    "percept_obs.studies.comparison",
+    "percept_obs.studies.consistency",
+    "percept_obs.studies.diagnosis",
+    "percept_obs.studies.fields",
+    "percept_obs.studies.least_squares",
+    "percept_obs.studies.likelihood",
+    "percept_obs.studies.sensitivity",
+    "percept_obs.studies.sweep",
+    "percept_obs.studies.trust",
+    "percept_obs.studies.tuning",
+    "percept_obs.system.derivation",
     "percept_obs.recording",
+    "percept_obs.recording.poses",
+    "percept_obs.recording.pose_files",
     "percept_obs.recording.scenarios",
+    "percept_obs.recording.stereo_mat",
+    "percept_obs.recording.track_files",
+    "percept_obs.recording.utias",
+    "percept_obs.recording.worked",
+    "percept_obs.checking",
+    "percept_obs.exercises",
     "percept_obs.papers",
 )
-"""Modules whose public names have pages."""
+"""Modules whose public names have pages: those of `__all__`, or else all that are defined there."""
 
 NOT_IN_CONTENTS = "---\norphan: true\n---"
-"""Begins a page that the contents beside every page leave out."""
+"""Header of a page that is left out of the table of contents."""
 
 MARK = {
     Verdict.HOLDS: "✓",
@@ -42,12 +63,12 @@ MARK = {
 
 
 def contents(title: str, intro: str, entries: Iterable[str]) -> str:
-    """A page that leads to others."""
+    """Return a page that leads to others."""
     return "\n".join([f"# {title}", "", intro, "", "```{toctree}", ":maxdepth: 1", "", *entries, "```", ""])
 
 
 def ledger_pages(ledgers: Mapping[str, Ledger]) -> Pages:
-    """The papers: a page a ledger, a page an equation."""
+    """Yield a page for each ledger and for each of its equations."""
     judge(tuple(ledgers.values()))
     intro = "What the papers print, equation by equation, and what a computation says of it."
     yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in ledgers])
@@ -56,7 +77,7 @@ def ledger_pages(ledgers: Mapping[str, Ledger]) -> Pages:
 
 
 def slug(text: str) -> str:
-    """A text as a part of an address.
+    """Return a text as a part of an address.
 
     Examples
     --------
@@ -67,7 +88,7 @@ def slug(text: str) -> str:
 
 
 def ledger_addresses(ledger: Ledger) -> dict[str, str]:
-    """The name of each entry's page by its place; places that differ in signs only are numbered."""
+    """Return the name of each entry's page by its place; places that differ in signs only are numbered."""
     counted: Counter[str] = Counter()
     names = {}
     for entry in ledger.entries:
@@ -101,39 +122,32 @@ def _entry(name: str, ledger: Ledger, entry: Entry, before: str, after: str) -> 
 
 
 def reference() -> Pages:
-    """The public names: a page a module."""
+    """Yield a page of the public names of each module."""
     intro = "All public names, by module. Every example is run by the package's tests."
     yield "reference/index.md", contents("Reference", intro, [slug(name) for name in MODULES])
     for name, values in public().items():
         text = inspect.getdoc(import_module(name)) or ""
         lines = [name, "=" * len(name), "", text, "", f".. currentmodule:: {name}", ""]
-        for names, value in values:
-            lines += _described(names, value)
+        for (longest, *short), value in values:
+            title = f"{longest} ({', '.join(short)})" if short else longest
+            kind = "autoclass" if inspect.isclass(value) else "autofunction" if callable(value) else "autodata"
+            members = ["   :members:"] if inspect.isclass(value) else []
+            lines += [title, "-" * len(title), "", f".. {kind}:: {longest}", *members, ""]
         yield f"reference/{slug(name)}.rst", "\n".join(lines)
 
 
 def public() -> dict[str, list[tuple[list[str], object]]]:
-    """Public values by the first module that has them, each with its names, the longest first."""
+    """Return public values by the first module that has them, each with its names, the longest first."""
     found: dict[str, list[tuple[list[str], object]]] = {}
     seen: set[int] = set()
-    for name in MODULES:
-        found[name] = [(names, value) for names, value in _named(import_module(name)) if id(value) not in seen]
-        seen |= {id(value) for _, value in found[name]}
+    for module in MODULES:
+        names: dict[int, list[str]] = {}
+        values = vars(import_module(module))
+        own = [name for name, value in values.items() if getattr(value, "__module__", "") == module and name[0] != "_"]
+        for name in values.get("__all__", own):
+            if getattr(values[name], "__module__", "").startswith("percept_obs") and id(values[name]) not in seen:
+                names.setdefault(id(values[name]), []).append(name)
+        seen |= names.keys()
+        ordered = [sorted(same, key=len, reverse=True) for same in names.values()]
+        found[module] = [(same, values[same[0]]) for same in ordered]
     return found
-
-
-def _named(module: ModuleType) -> list[tuple[list[str], object]]:
-    names: dict[int, list[str]] = {}
-    for name in getattr(module, "__all__", [name for name in vars(module) if not name.startswith("_")]):
-        value = getattr(module, name)
-        if getattr(value, "__module__", "").startswith("percept_obs"):
-            names.setdefault(id(value), []).append(name)
-    ordered = [sorted(same, key=len, reverse=True) for same in names.values()]
-    return [(same, getattr(module, same[0])) for same in ordered]
-
-
-def _described(names: list[str], value: object) -> list[str]:
-    name, *short = names
-    title = f"{name} ({', '.join(short)})" if short else name
-    kind = "autoclass" if inspect.isclass(value) else "autofunction" if callable(value) else "autodata"
-    return [title, "-" * len(title), "", f".. {kind}:: {name}", *["   :members:"] * inspect.isclass(value), ""]

@@ -21,6 +21,8 @@ from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked
 
+__all__ = ["best_setting", "compare", "relative_distance_errors", "summary"]
+
 if TYPE_CHECKING:
     import pandas as pd
 

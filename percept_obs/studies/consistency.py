@@ -13,6 +13,8 @@ from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
+__all__ = ["Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
+
 Array = NDArray[np.float64]
 
 DEVIATIONS = 2.0

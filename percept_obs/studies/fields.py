@@ -13,6 +13,8 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.validation import checked, limit, positive
 
+__all__ = ["AngleNoise", "FieldBound", "PixelNoise", "field_bound"]
+
 
 @checked
 @dataclass(frozen=True)

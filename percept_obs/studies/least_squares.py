@@ -18,6 +18,8 @@ from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
+__all__ = ["LeastSquares", "moving_window_least_squares"]
+
 LARGEST_CONDITION = 1e6
 """Condition number of the normal equations beyond which a window determines no point."""
 

@@ -19,6 +19,8 @@ from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked
 
+__all__ = ["choose_and_report", "side_by_side"]
+
 if TYPE_CHECKING:
     import pandas as pd
 

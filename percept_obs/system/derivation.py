@@ -10,6 +10,8 @@ import sympy as sp
 
 from percept_obs.compile import definitions
 
+__all__ = ["Derivation", "Step"]
+
 
 @dataclass(frozen=True)
 class Step:
