@@ -41,16 +41,15 @@ def copy_notebooks(directory: Path, readers: str = "students") -> None:
 def lab(options: argparse.Namespace) -> int:
     """Copy the notebooks and open the first one in JupyterLab."""
     directory: Path = options.directory
+    _refuse_a_file(directory)
     try:
-        if directory.exists() and not directory.is_dir():
-            return _complain(f"{directory} is a file; name a folder, or a new one", 2)
         copy_notebooks(directory, options.readers)
     except OSError as error:
-        return _complain(f"cannot copy the notebooks: {error}", 2)
+        raise _Mistake(f"cannot copy the notebooks: {error}") from None
     if options.copy_only:
         return 0
     if util.find_spec("jupyterlab") is None:
-        return _complain(f"JupyterLab is missing; get it with: {sys.executable} -m pip install jupyterlab", 1)
+        raise _Mistake(f"JupyterLab is missing; get it with: {sys.executable} -m pip install jupyterlab", 1)
 
     # As an address rather than a file: so the link that JupyterLab prints leads to the notebook as well.
     address = f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"
@@ -73,15 +72,14 @@ def site(options: argparse.Namespace) -> int:
     from percept_obs.site import NEEDS, SiteFault, build
     from percept_obs.validation import needed
 
-    if options.directory.exists() and not options.directory.is_dir():
-        return _complain(f"{options.directory} is a file; name a folder, or a new one", 2)
+    _refuse_a_file(options.directory)
     found = sorted((entry for entry in notebooks().iterdir() if entry.name.endswith(".ipynb")), key=lambda e: e.name)
     copies = {entry.name: COPIES[options.readers](json.loads(entry.read_bytes())) for entry in found}
     try:
         needed("site", *NEEDS)
         build(options.directory, copies)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
-        return _complain(str(error), 1)
+        raise _Mistake(str(error), 1) from None
     return 0
 
 
@@ -89,12 +87,9 @@ def check(options: argparse.Namespace) -> int:
     """Print a verdict on each of the papers' equations, or on some, and how it is known."""
     from percept_obs.papers import find, judge, page, report
 
-    try:
-        ledgers = find(options.places, options.paper)
-    except ValueError as error:
-        return _complain(str(error), 2)
+    ledgers = find(options.places, options.paper)
     if options.html and options.html.is_dir():
-        return _complain(f"cannot write the page: {options.html} is a folder; name a file", 2)
+        raise _Mistake(f"cannot write the page: {options.html} is a folder; name a file")
     began = perf_counter()
     held = judge(ledgers)
     if options.places:
@@ -107,7 +102,7 @@ def check(options: argparse.Namespace) -> int:
         try:
             write_whole(options.html, page(ledgers).encode())
         except OSError as error:
-            return _complain(f"cannot write the page: {error}", 2)
+            raise _Mistake(f"cannot write the page: {error}") from None
     return 0 if held else 1
 
 
@@ -127,13 +122,10 @@ def compare(options: argparse.Namespace) -> int:
     refusals = {make: make.refusal(form) for make in OBSERVERS}
     observers = [make(form) for make, refusal in refusals.items() if not refusal]
     camera = Camera(noise=Uniform(options.noise))
-    try:
-        samples = options.seeds * options.duration / camera.period
-        limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
-        recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
-        table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
-    except ValueError as error:
-        return _complain(str(error), 2)
+    samples = options.seeds * options.duration / camera.period
+    limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
+    recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
+    table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
@@ -162,69 +154,77 @@ def sweep(options: argparse.Namespace) -> int:
         with connected as client:
             print(sweep(options.file, client))
     except OSError as error:
-        return _complain(f"cannot read the file or reach the cluster: {error}", 2)
-    except (ValueError, ModuleNotFoundError) as error:
-        return _complain(str(error), 2)
+        raise _Mistake(f"cannot read the file or reach the cluster: {error}") from None
+    except ModuleNotFoundError as error:
+        raise _Mistake(str(error)) from None
     return 0
 
 
+class _Mistake(ValueError):
+    """Raised with a message and an exit code."""
+
+    def __init__(self, message: str, code: int = 2) -> None:
+        super().__init__(message)
+        self.code = code
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code: 0 well, 1 failed, 2 asked for wrongly."""
+    """Run one command and return its exit code: 0 for success, 1 for a failure, 2 for a wrong request."""
     parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    lab_parser = commands.add_parser("lab", help="open the notebooks in JupyterLab", description=lab.__doc__)
-    lab_parser.add_argument(
-        "directory",
-        nargs="?",
-        type=Path,
-        default=Path("percept_obs_notebooks"),
-        metavar="DIR",
-        help="where your copies live (default: ./%(default)s); nothing there is overwritten",
+    def command(run: Callable[[argparse.Namespace], int], purpose: str) -> Callable[..., argparse.Action]:
+        added = commands.add_parser(run.__name__, help=purpose, description=run.__doc__)
+        added.set_defaults(run=run)
+        return added.add_argument
+
+    readers: dict[str, Any] = {
+        "dest": "readers",
+        "choices": tuple(COPIES),
+        "default": "students",
+        "help": "students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
+    }
+    add = command(lab, "open the notebooks in JupyterLab")
+    here, copies = (
+        Path("percept_obs_notebooks"),
+        "where your copies live (default: ./%(default)s); nothing is overwritten",
     )
-    _ask_for_readers(lab_parser)
-    lab_parser.add_argument("--copy-only", action="store_true", help="copy the notebooks, do not open them")
-    lab_parser.add_argument("--no-browser", action="store_true", help="start JupyterLab without a browser")
-    lab_parser.set_defaults(run=lab)
+    add("directory", nargs="?", type=Path, default=here, metavar="DIR", help=copies)
+    add("--for", **readers)
+    add("--copy-only", action="store_true", help="copy the notebooks, do not open them")
+    add("--no-browser", action="store_true", help="start JupyterLab without a browser")
 
-    site_parser = commands.add_parser("site", help="write the course as pages", description=site.__doc__)
-    site_parser.add_argument("directory", type=Path, metavar="DIR", help="where the pages are to stand")
-    _ask_for_readers(site_parser)
-    site_parser.set_defaults(run=site)
+    add = command(site, "write the course as pages")
+    add("directory", type=Path, metavar="DIR", help="folder of the pages")
+    add("--for", **readers)
 
-    check_parser = commands.add_parser("check", help="judge the papers' equations", description=check.__doc__)
-    check_parser.add_argument(
-        "places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)'
-    )
-    check_parser.add_argument("--paper", default="", metavar="NAME", help="part of a name, such as Ma (default: all)")
-    check_parser.add_argument("--html", type=Path, metavar="FILE", help="also write a page with the formulas")
-    check_parser.set_defaults(run=check)
+    add = command(check, "judge the papers' equations")
+    add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')
+    add("--paper", default="", metavar="NAME", help="part of a name, such as Ma (default: all)")
+    add("--html", type=Path, metavar="FILE", help="also write a page with the formulas")
 
-    compare_parser = commands.add_parser("compare", help="run all observers", description=compare.__doc__)
-    compare_parser.add_argument("--example", choices=("35", "36"), default="35", help="(35) or (36)")
-    compare_parser.add_argument("--outputs", choices=("y1", "y2", "y1+y2"), default="y1", help="what is measured")
-    compare_parser.add_argument("--seeds", type=_positive(int), default=50, help="number of recordings")
-    compare_parser.add_argument("--noise", type=_positive(float), default=0.01, help="bound of the noise")
-    compare_parser.add_argument("--duration", type=_positive(float), default=80.0, help="seconds")
-    compare_parser.set_defaults(run=compare)
+    add = command(compare, "run all observers")
+    add("--example", choices=("35", "36"), default="35", help="(35) or (36)")
+    add("--outputs", choices=("y1", "y2", "y1+y2"), default="y1", help="measured outputs")
+    add("--seeds", type=_positive(int), default=50, help="number of recordings")
+    add("--noise", type=_positive(float), default=0.01, help="bound of the noise")
+    add("--duration", type=_positive(float), default=80.0, help="seconds")
 
-    sweep_parser = commands.add_parser("sweep", help="run an ensemble", description=sweep.__doc__)
-    sweep_parser.add_argument("file", type=Path, metavar="FILE", help="a TOML file that says what is run")
-    sweep_parser.add_argument("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
-    sweep_parser.set_defaults(run=sweep)
+    add = command(sweep, "run an ensemble")
+    add("file", type=Path, metavar="FILE", help="a TOML file that describes the ensemble")
+    add("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
 
     options = parser.parse_args(arguments)
-    return options.run(options)
+    try:
+        return options.run(options)
+    except ValueError as error:
+        print(f"percept-obs: {error}", file=sys.stderr)
+        return getattr(error, "code", 2)
 
 
-def _ask_for_readers(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--for",
-        dest="readers",
-        choices=tuple(COPIES),
-        default="students",
-        help="students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
-    )
+def _refuse_a_file(directory: Path) -> None:
+    if directory.exists() and not directory.is_dir():
+        raise _Mistake(f"{directory} is a file; name a folder, or a new one")
 
 
 def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:
@@ -234,16 +234,10 @@ def _positive(number: type[int] | type[float]) -> Callable[[str], int | float]:
         except ValueError:
             value = 0
         if not 0 < value < float("inf"):
-            whole = ", without a fraction" if number is int else ""
-            raise argparse.ArgumentTypeError(f"{text} is not a positive number{whole}")
+            raise argparse.ArgumentTypeError(f"{text} is not a positive number{', whole' * (number is int)}")
         return value
 
     return read
-
-
-def _complain(message: str, code: int) -> int:
-    print(f"percept-obs: {message}", file=sys.stderr)
-    return code
 
 
 if __name__ == "__main__":

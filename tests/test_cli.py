@@ -18,7 +18,7 @@ def shipped_as(name):
     return json.dumps({"cells": [cell]}, indent=1) + "\n"
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def shipped(tmp_path, monkeypatch):
     folder = tmp_path / "shipped"
     folder.mkdir()
@@ -36,7 +36,7 @@ def launches(monkeypatch):
     class Program:
         def __init__(self, command, cwd):
             seen.append((command, cwd))
-            self.interrupts = 1
+            self.waits = iter([KeyboardInterrupt])
 
         def __enter__(self):
             return self
@@ -45,30 +45,27 @@ def launches(monkeypatch):
             pass
 
         def wait(self):
-            if self.interrupts:
-                self.interrupts -= 1
-                raise KeyboardInterrupt
+            for interrupt in self.waits:
+                raise interrupt
             return 7
 
     monkeypatch.setattr(subprocess, "Popen", Program)
     return seen
 
 
-def test_the_shipped_notebooks_are_found():
-    assert (cli.notebooks() / cli.FIRST_NOTEBOOK).is_file()
-
-
-def test_notebooks_are_copied_into_a_new_folder(shipped, launches, tmp_path, capsys):
-    mine = tmp_path / "new" / "mine"
-    assert cli.main(["lab", "--copy-only", str(mine)]) == 0
-    assert {file.name: file.read_text() for file in mine.iterdir()} == {
-        "00_start.ipynb": shipped_as("00_start.ipynb"),
-        "01_next.ipynb": shipped_as("01_next.ipynb"),
+def test_notebooks_are_copied_and_a_second_call_keeps_what_the_user_wrote(launches, tmp_path, capsys):
+    first, second = (tmp_path / "new" / "mine" / name for name in ("00_start.ipynb", "01_next.ipynb"))
+    assert cli.main(["lab", "--copy-only", str(first.parent)]) == 0
+    assert {file.name: file.read_text() for file in first.parent.iterdir()} == {
+        name: shipped_as(name) for name in ("00_start.ipynb", "01_next.ipynb")
     }
-    assert capsys.readouterr().out.splitlines() == [
-        f"copied  {mine / '00_start.ipynb'}",
-        f"copied  {mine / '01_next.ipynb'}",
-    ]
+    assert capsys.readouterr().out.splitlines() == [f"copied  {first}", f"copied  {second}"]
+    first.write_text("mine")
+    second.unlink()
+    assert cli.main(["lab", "--copy-only", str(first.parent)]) == 0
+    assert first.read_text() == "mine"
+    assert second.read_text() == shipped_as("01_next.ipynb")
+    assert capsys.readouterr().out.splitlines() == [f"kept    {first}", f"copied  {second}"]
     assert launches == []
 
 
@@ -88,32 +85,20 @@ def test_only_teachers_get_the_solutions(options, text, shipped, tmp_path):
     assert "".join(copied["source"]) == text
 
 
-def test_a_second_call_keeps_what_the_user_wrote_and_brings_back_what_is_gone(shipped, tmp_path, capsys):
-    cli.main(["lab", "--copy-only", str(tmp_path)])
-    (tmp_path / "00_start.ipynb").write_text("mine")
-    (tmp_path / "01_next.ipynb").unlink()
-    capsys.readouterr()
-
-    assert cli.main(["lab", "--copy-only", str(tmp_path)]) == 0
-    assert (tmp_path / "00_start.ipynb").read_text() == "mine"
-    assert (tmp_path / "01_next.ipynb").read_text() == shipped_as("01_next.ipynb")
-    assert capsys.readouterr().out.splitlines() == [
-        f"kept    {tmp_path / '00_start.ipynb'}",
-        f"copied  {tmp_path / '01_next.ipynb'}",
-    ]
-
-
-def test_without_a_name_the_folder_is_made_here(shipped, tmp_path, monkeypatch):
+def test_without_a_name_the_folder_is_made_here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert cli.main(["lab", "--copy-only"]) == 0
     assert (tmp_path / "percept_obs_notebooks" / "00_start.ipynb").is_file()
 
 
-@pytest.mark.parametrize(("below", "reason"), [("", "notes.txt is a file"), ("deeper", "notes.txt")])
-def test_a_file_is_not_a_folder(shipped, launches, tmp_path, capsys, below, reason):
+@pytest.mark.parametrize(
+    ("command", "below", "reason"),
+    [("lab", "", "notes.txt is a file"), ("lab", "deeper", "notes.txt"), ("site", "", "notes.txt is a file; name a")],
+)
+def test_a_file_is_not_a_folder(launches, tmp_path, capsys, command, below, reason):
     file = tmp_path / "notes.txt"
     file.write_text("mine")
-    assert cli.main(["lab", str(file / below)]) == 2
+    assert cli.main([command, str(file / below)]) == 2
     assert reason in capsys.readouterr().err
     assert file.read_text() == "mine"
     assert launches == []
@@ -126,23 +111,16 @@ def test_a_package_without_notebooks_says_so(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "mine").exists()
 
 
-def test_jupyterlab_opens_the_first_notebook_and_outlives_control_c(launches, shipped, tmp_path, monkeypatch):
-    monkeypatch.setattr(cli.os, "geteuid", lambda: 1000, raising=False)
-    assert cli.main(["lab", str(tmp_path)]) == 7
-    [(command, directory)] = launches
-    assert command[:3] == [sys.executable, "-m", "jupyterlab"]
-    assert command[3:] == ["--ServerApp.root_dir=.", "--LabApp.default_url=/lab/tree/00_start.ipynb"]
-    assert directory == tmp_path
+@pytest.mark.parametrize(("user", "options"), [(1000, []), (0, ["--no-browser"])])
+def test_jupyterlab_opens_the_first_notebook_and_outlives_control_c(launches, tmp_path, monkeypatch, user, options):
+    monkeypatch.setattr(cli.os, "geteuid", lambda: user, raising=False)
+    assert cli.main(["lab", *options, str(tmp_path)]) == 7
+    first = ["--ServerApp.root_dir=.", "--LabApp.default_url=/lab/tree/00_start.ipynb"]
+    command = [sys.executable, "-m", "jupyterlab", *first, *options, *([] if user else ["--allow-root"])]
+    assert launches == [(command, tmp_path)]
 
 
-def test_no_browser_and_root_are_passed_on(shipped, launches, tmp_path, monkeypatch):
-    monkeypatch.setattr(cli.os, "geteuid", lambda: 0, raising=False)
-    cli.main(["lab", "--no-browser", str(tmp_path)])
-    [(command, _)] = launches
-    assert command[-2:] == ["--no-browser", "--allow-root"]
-
-
-def test_a_missing_jupyterlab_is_named_and_how_to_get_it(shipped, launches, tmp_path, monkeypatch, capsys):
+def test_a_missing_jupyterlab_is_named_and_how_to_get_it(launches, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(util, "find_spec", lambda name: None)
     assert cli.main(["lab", str(tmp_path)]) == 1
     assert "pip install jupyterlab" in capsys.readouterr().err
@@ -157,9 +135,7 @@ def test_check_prints_the_report_and_fails_when_an_equation_does(monkeypatch, ca
     )
     monkeypatch.setitem(sys.modules, "percept_obs.papers", papers)
     assert cli.main(["check"]) == code
-    printed = capsys.readouterr().out
-    assert printed.startswith("the ledger\n")
-    assert re.search(r"0 judged in \d+\.\d s", printed)
+    assert re.match(r"the ledger\n\n0 judged in \d+\.\d s", capsys.readouterr().out)
 
 
 def test_check_prints_one_equation_with_its_parts_and_writes_a_page(tmp_path, capsys):

@@ -19,8 +19,8 @@ from percept_obs import (
     rigid,
     scenarios,
 )
-from percept_obs.compile.integrator import instants
-from percept_obs.recording import seeded, step_grid
+from percept_obs.compile.integrator import instants, step_grid
+from percept_obs.recording import seeded
 
 STILL = affine(np.zeros((3, 3)), np.zeros(3))
 TIME = np.array([0.0, 0.1, 0.3])

@@ -65,7 +65,7 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     Examples
     --------
     >>> import numpy as np
-    >>> from percept_obs.recording import step_grid
+    >>> from percept_obs.compile.integrator import step_grid
     >>> grid, index = step_grid(np.array([0.0, 1.0]), longest=0.4)
     >>> grid.round(2).tolist(), index.tolist()
     ([0.0, 0.33, 0.67, 1.0], [0, 3])

@@ -12,31 +12,40 @@ from percept_obs.checking import Review, check
 
 @dataclass(frozen=True)
 class Attempt:
-    """What is said of an answer; it shows itself in a notebook.
+    """Reply to an answer; it shows itself in a notebook.
 
     Parameters
     ----------
     right : bool or None
         None if there is no answer yet.
-    words : str
+    reply : str
         One sentence or more.
+
+    See Also
+    --------
+    derive, choose, reach : Make one.
+
+    Examples
+    --------
+    >>> print(Attempt(False, "This is asked for as well: y2'."))
+    This is asked for as well: y2'.
     """
 
     right: bool | None
-    words: str
+    reply: str
 
     def __str__(self) -> str:
-        return self.words
+        return self.reply
 
     def _repr_markdown_(self) -> str:
-        return {True: "✓ ", False: "✗ ", None: ""}[self.right] + self.words
+        return {True: "✓ ", False: "✗ ", None: ""}[self.right] + self.reply
 
 
 UNANSWERED = "Not answered yet. Put your answer in the place of the dots, and run both cells."
 
 
 def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
-    """Check a formula that was asked for; as `percept_obs.check`, but dots are no answer, and no line may be missing.
+    """Check a formula by `percept_obs.check`; dots are no answer yet, and no line may be missing.
 
     Parameters
     ----------
@@ -57,6 +66,10 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     ValueError
         If formulas and target do not fit.
 
+    See Also
+    --------
+    percept_obs.check : Checks a formula.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, pinhole
@@ -69,26 +82,26 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
     review = check(mine, target)
-    given = {line.row for line in review.lines}
-    lines = review.target.lines
-    wanted = {row for row, line in enumerate(lines) if not asked or line.name in asked}
-    if not wanted <= given:
-        missing = ", ".join(lines[row].name or f"line {row + 1}" for row in sorted(wanted - given))
-        return Attempt(False, f"This is asked for as well: {missing}.")
-    return review
+    answered = {line.row for line in review.lines}
+    missing = [
+        line.name or f"line {row + 1}"
+        for row, line in enumerate(review.target.lines)
+        if row not in answered and (not asked or line.name in asked)
+    ]
+    return Attempt(False, f"This is asked for as well: {', '.join(missing)}.") if missing else review
 
 
 def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
-    """Compare a prediction with what the experiment finds.
+    """Compare a prediction with the result of an experiment.
 
     Parameters
     ----------
     mine : str or ...
         The letter of an option.
     found : str
-        What the experiment finds, in words; said only after a choice.
+        Result of the experiment in words; shown only after a choice.
     **options : bool
-        Whether each option is what the experiment finds; exactly one is.
+        True for the option that the experiment confirms; exactly one is.
 
     Returns
     -------
@@ -119,15 +132,15 @@ def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
 
 
 def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float) -> Attempt:
-    """Try an answer such as a set of gains, and compare what comes out with what is allowed.
+    """Judge an answer, such as a set of gains, by the numbers of an experiment.
 
     Parameters
     ----------
     mine : anything that `judge` takes, or ...
     judge : function
-        Runs the experiment and gives its numbers by name.
+        Runs the experiment and returns its numbers by name.
     **most : float
-        The largest value that is allowed, for each of these names.
+        Largest allowed value for each of these names.
 
     Returns
     -------
@@ -149,5 +162,5 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     if missing := sorted(most.keys() - numbers.keys()):
         raise ValueError(f"the experiment gives no {', '.join(missing)}; it gives {', '.join(numbers)}")
     right = all(numbers[name] <= limit for name, limit in most.items())
-    told = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
-    return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(told)}.")
+    results = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
+    return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(results)}.")

@@ -13,22 +13,18 @@ from typing import Any
 Notebook = Mapping[str, Any]
 """A notebook as its file has it."""
 
-WORDS = "*Write your answer here.*"
-LATER = "*Write your answer here, then compare it with the teachers' copy.*"
+OWN_WORDS = "*Write your answer here.*"
+COMPARED = "*Write your answer here, then compare it with the teachers' copy.*"
 ANSWER = re.compile(r"<details>.*?</details>", re.DOTALL)
 
 
 def stub(solution: str) -> str:
-    """What stands in the place of a solution: its answer's name, and dots for the answer.
+    """Return the stub of a solution: its answer's name, and dots for the answer.
 
     Parameters
     ----------
     solution : str
         Code that ends by giving the answer a name.
-
-    Returns
-    -------
-    str
 
     Raises
     ------
@@ -47,21 +43,21 @@ def stub(solution: str) -> str:
 
 
 def students_copy(notebook: Notebook) -> dict[str, Any]:
-    """A notebook without its solutions, and without the folded answers to its questions; hints stay.
+    """Return a notebook without its solutions and the folded answers to its questions; hints stay.
 
     Parameters
     ----------
     notebook : mapping
         As its file has it; it is not changed.
 
-    Returns
-    -------
-    dict
-
     Raises
     ------
     ValueError
         If a solution does not end by giving the answer a name.
+
+    See Also
+    --------
+    teachers_copy : With the solutions.
 
     Examples
     --------
@@ -73,18 +69,32 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
 
 
 def teachers_copy(notebook: Notebook) -> dict[str, Any]:
-    """A notebook with everything that its file has."""
+    """Return a notebook with everything that its file has.
+
+    Parameters
+    ----------
+    notebook : mapping
+
+    See Also
+    --------
+    students_copy : Without the solutions.
+
+    Examples
+    --------
+    >>> teachers_copy({"cells": []})
+    {'cells': []}
+    """
     return dict(notebook)
 
 
 COPIES: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"students": students_copy, "teachers": teachers_copy}
-"""How a notebook is copied, by who reads it."""
+"""Functions that copy a notebook, by its readers."""
 
 
 def _for_students(cell: Notebook) -> dict[str, Any]:
     tags, text = cell["metadata"].get("tags", ()), "".join(cell["source"])
     if "solution" in tags:
-        text = stub(text) if cell["cell_type"] == "code" else WORDS
+        text = stub(text) if cell["cell_type"] == "code" else OWN_WORDS
     elif cell["cell_type"] == "markdown" and "hint" not in tags:
-        text = ANSWER.sub(LATER, text)
+        text = ANSWER.sub(COMPARED, text)
     return {**cell, "source": text.splitlines(keepends=True)}

@@ -1,6 +1,5 @@
 """Recordings of cameras, from a simulation or from the world."""
 
-from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import NO_NOISE, Camera, Gaussian, Noise, Scene, Uniform, seeded
 from percept_obs.recording.conversion import seen_on
 from percept_obs.recording.frames import Frames, render
@@ -24,5 +23,4 @@ __all__ = [
     "render",
     "seeded",
     "seen_on",
-    "step_grid",
 ]

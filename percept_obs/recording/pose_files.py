@@ -111,6 +111,19 @@ def write_tum(path: PathLike, poses: Poses, clock: Clock = SECONDS) -> None:
     poses : Poses
     clock : Clock
         Of the file.
+
+    See Also
+    --------
+    read_tum : Reads the file.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from percept_obs.recording.worked import worked_folder
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_tum(pathlib.Path(folder) / "poses.txt", read_tum(worked_folder() / "poses.txt"))
+    ...     print((pathlib.Path(folder) / "poses.txt").read_text().splitlines()[0])
+    #timestamp tx ty tz qx qy qz qw
     """
     import pandas as pd
 

@@ -153,6 +153,17 @@ class CameraPath:
         As in `Poses`, smoothed if the derivative smooths.
     velocity, angular_velocity : arrays of shape (K, 3)
         v in m/s and w in rad/s, along the camera's axes.
+
+    See Also
+    --------
+    Poses.path : Makes one of poses.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> upright = np.tile([0, 0, 0, 1.0], (5, 1))
+    >>> Poses(np.arange(5.0), np.zeros((5, 3)), upright).path().sees([[0.1, 0, 2]])[4].tolist()
+    [[0.1, 0.0, 2.0]]
     """
 
     time: Array

@@ -1,4 +1,4 @@
-"""Ma's examples, by name."""
+"""Scenarios of Ma's paper: a point in motion, seen on an imaging surface."""
 
 from __future__ import annotations
 
@@ -16,7 +16,16 @@ _START = (1.0, 1.5, 2.5)
 
 @checked
 def ma2005_eq35(surface: ImagingSurface | None = None) -> Scenario:
-    """A point that comes near the focus of expansion once, and stays excited (Ma 2005, (35), p. 70).
+    """Return a point that comes near the focus of expansion once, and stays excited (Ma 2005, (35), p. 70).
+
+    Parameters
+    ----------
+    surface : ImagingSurface, optional
+        The pinhole when left out.
+
+    See Also
+    --------
+    ma2005_eq36, planar : The other scenarios.
 
     Examples
     --------
@@ -29,7 +38,16 @@ def ma2005_eq35(surface: ImagingSurface | None = None) -> Scenario:
 
 @checked
 def ma2005_eq36(surface: ImagingSurface | None = None) -> Scenario:
-    """A point that moves away without end (Ma 2005, (36), p. 71).
+    """Return a point that moves away without end (Ma 2005, (36), p. 71).
+
+    Parameters
+    ----------
+    surface : ImagingSurface, optional
+        The pinhole when left out.
+
+    See Also
+    --------
+    ma2005_eq35, planar : The other scenarios.
 
     Examples
     --------
@@ -47,9 +65,13 @@ def _ma2005(number: str, third_row: list[float], surface: ImagingSurface | None)
 
 @checked
 def planar() -> Scenario:
-    """A point that circles on a plane through the camera, seen on the line y2 = 0.5 (Ma 2005, Fig. 2, p. 65).
+    """Return a point that circles on a plane through the camera, seen on the line y2 = 0.5 (Ma 2005, Fig. 2, p. 65).
 
     The paper gives no numbers: here the point keeps Y = Z / 2 and circles around (1, 2, 4) in 15.7 s.
+
+    See Also
+    --------
+    ma2005_eq35, ma2005_eq36 : The other scenarios.
 
     Examples
     --------

@@ -62,6 +62,16 @@ class StereoTracks:
         When a landmark is seen without interruption, in the order in which they begin and end.
     landmarks : array of shape (L, 3) or None
         Places in the world, in metres.
+
+    See Also
+    --------
+    read_stereo_mat : Reads them.
+
+    Examples
+    --------
+    >>> tracks = read_stereo_mat("dataset3.mat")  # doctest: +SKIP
+    >>> tracks.recordings("UTIAS")[0].distances["stereo"][0]  # doctest: +SKIP
+    0.8313
     """
 
     poses: Poses
@@ -182,10 +192,8 @@ def read_stereo_mat(
 
     Examples
     --------
-    ::
-
-        tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)
-        recordings = tracks.recordings("KITTI 0036", pixel_sigma=0.5)
+    >>> tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)  # doctest: +SKIP
+    >>> recordings = tracks.recordings("KITTI 0036", pixel_sigma=0.5)  # doctest: +SKIP
     """
     file = Path(path)
     if not file.is_file():

@@ -59,6 +59,15 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
         If the file there is not the recording, byte for byte.
     DatasetUnavailable
         If the file has to be fetched and cannot be.
+
+    See Also
+    --------
+    load_utias : Reads it.
+
+    Examples
+    --------
+    >>> find_utias("data").name  # doctest: +SKIP
+    'dataset3.mat'
     """
     if path is not None:
         return _checked(Path(path), "path=")
@@ -75,12 +84,24 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
     the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth.
     A measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.
 
-    For the path and what is raised see `find_utias`.
+    Parameters
+    ----------
+    path : path, optional
+        See `find_utias`, also for the exceptions.
 
     Returns
     -------
     tuple of Recording
         44 tracks of 3.0 to 8.6 s.
+
+    See Also
+    --------
+    percept_obs.points.utias.load_utias_points : All landmarks as one state.
+
+    Examples
+    --------
+    >>> len(load_utias())  # doctest: +SKIP
+    44
     """
     return utias_tracks(path).recordings("UTIAS", PIXEL_SIGMA)
 
@@ -94,8 +115,20 @@ def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
     recorded gyroscope is not used: it agrees poorly with the motion of the image.  A track is a landmark seen
     at consecutive samples for at least 3 s, without a gap of more than 0.30 s.
 
-    These are 1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements; for the path see
-    `find_utias`.
+    Parameters
+    ----------
+    path : path, optional
+        See `find_utias`, also for the exceptions.
+
+    Returns
+    -------
+    StereoTracks
+        1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
+
+    Examples
+    --------
+    >>> len(utias_tracks().tracks)  # doctest: +SKIP
+    44
 
     Notes
     -----

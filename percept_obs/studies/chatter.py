@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percept_obs.compile import Array, Indices
+from percept_obs.compile.integrator import step_grid
 from percept_obs.observers.base import Observer, with_point
-from percept_obs.recording import Recording, Scenario, step_grid
+from percept_obs.recording import Recording, Scenario
 from percept_obs.tracking.following import track
 from percept_obs.validation import checked
 

@@ -1,4 +1,4 @@
-"""A worked example of a recording of one's own: poses.txt, and in tracks.csv everything that can stand in a table."""
+"""Worked example of a recording of one's own: poses.txt, and tracks.csv with all kinds of columns."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ WORKED_CAMERA = PixelCamera((484.5, 484.5), (321.7, 247.5), (640, 480), (-0.28, 
 
 
 def worked_folder() -> Path:
-    """The folder with poses.txt and tracks.csv: a camera that slides to and fro past two points for four seconds.
+    """Return the folder with poses.txt and tracks.csv: a camera slides to and fro past two points for four seconds.
 
     Examples
     --------
