@@ -19,8 +19,19 @@ MODULES = (
     "percept_obs.labs",
     "percept_obs.figures",
     "percept_obs.observers",
+    "percept_obs.observers.family",
+    "percept_obs.observers.gains",
+    "percept_obs.observers.parts",
+    "percept_obs.observers.integral_sliding_mode",
     "percept_obs.points",
+    "percept_obs.points.gramian",
+    "percept_obs.points.ray",
+    "percept_obs.points.scenarios",
+    "percept_obs.points.utias",
     "percept_obs.structure",
+    "percept_obs.structure.competitors",
+    "percept_obs.structure.pixels",
+    "percept_obs.structure.scenarios",
     "percept_obs.observability",
     "percept_obs.tracking",
     "percept_obs.studies.all_observers",
@@ -48,7 +59,7 @@ MODULES = (
     "percept_obs.exercises",
     "percept_obs.papers",
 )
-"""Modules whose public names have pages: those of `__all__`, or else all that are defined there."""
+"""Modules whose public names have pages: those of `__all__`, or else all that are defined in the module or below."""
 
 NOT_IN_CONTENTS = "---\norphan: true\n---"
 """Header of a page that is left out of the table of contents."""
@@ -143,7 +154,11 @@ def public() -> dict[str, list[tuple[list[str], object]]]:
     for module in MODULES:
         names: dict[int, list[str]] = {}
         values = vars(import_module(module))
-        own = [name for name, value in values.items() if getattr(value, "__module__", "") == module and name[0] != "_"]
+        own = [
+            name
+            for name, value in values.items()
+            if name[0] != "_" and getattr(value, "__module__", "").startswith(module)
+        ]
         for name in values.get("__all__", own):
             if getattr(values[name], "__module__", "").startswith("percept_obs") and id(values[name]) not in seen:
                 names.setdefault(id(values[name]), []).append(name)
