@@ -24,8 +24,7 @@ from percept_obs import (
     track,
 )
 from percept_obs.points import constant, independent_points, lyapunov, riccati, rigid_body, scheduled
-from percept_obs.points.scenarios import moving_body
-from percept_obs.points.simulation import LeavesEveryBound
+from percept_obs.points.scenarios import LeavesEveryBound, moving_body
 from percept_obs.studies.comparison import relative_distance_errors
 from percept_obs.tracking.following import DoesNotFit
 

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
+from itertools import count
 
 import numpy as np
 import sympy as sp
 
-from percept_obs.compile import Table, solve
-from percept_obs.compile.equations import Equations
-from percept_obs.compile.integrator import EACH, LONGEST_STEP
+from percept_obs.compile import Array, vectorised
+from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.recording import Scenario
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import OverTime, Signal
-from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.system.surfaces import POINT
 from percept_obs.validation import checked, positive
-
-kappa = sp.Symbol("kappa", real=True)
 
 VELOCITIES = (("v_c1", "v_c2", "v_c3"), ("b1", "b2", "b3"))
 """Names of the velocity that is steered, of a rigid and of an affine motion."""
+
+MOST_EVALUATIONS = 20_000
+"""Evaluations of a steered motion: a few seconds of computing."""
 
 
 @checked
@@ -152,7 +152,7 @@ def steered(
     velocity : sequence of three str, optional
         See `steering`.
     step : float
-        Seconds from one integration step to the next.
+        Seconds from one sample of the velocity to the next; a spline connects them.
 
     Returns
     -------
@@ -178,6 +178,7 @@ def steered(
     >>> bool(straight > 2 * turned)
     True
     """
+    from scipy.integrate import solve_ivp
     from scipy.interpolate import CubicSpline
 
     motion, surface = scenario.motion, scenario.surface
@@ -185,38 +186,32 @@ def steered(
     if not motion.parameters or set(motion.values) != set(motion.parameters):
         raise ValueError(f"the {motion.name} motion varies or has no parameters; steer a constant affine(A, b)")
     found = steering(PerspectiveSystem(replace(motion, signal=None), surface), velocity)
-    begin = [motion.values[symbol] for symbol in found.velocity]
-    if not np.any(begin):
+    start = [motion.values[symbol] for symbol in found.velocity]
+    if not np.any(start):
         raise ValueError("the velocity is zero, and turning does not change that; give the camera a speed")
-    equations = _closed_loop(motion.A, motion.b, motion.parameters, surface, found.velocity)
-    count = int(np.ceil(scenario.duration / step - 1e-9)) + 1  # one step more than the duration needs
-    fixed = [{**motion.values, **surface.values}[symbol] for symbol in equations.parameters]
-    table = Table(np.full(count, step), np.empty((count, EACH + 1, 0)), np.array([fixed]), np.empty((count + 1, 0)))
-    trace = solve(equations, [*scenario.position, *begin], table, [gain])
-    if trace.diverged is not None:
-        when = f"{trace.diverged * step:.3g} s"
-        raise ValueError(
-            f"steered with gain = {gain} the motion leaves every bound after {when}; take a smaller gain, or a shorter "
-            "duration of the scenario"
-        )
-    rows = np.tile([motion.values[symbol] for symbol in motion.parameters], (count + 1, 1))
-    rows[:, [motion.parameters.index(symbol) for symbol in found.velocity]] = trace.states[:, 3:]
-    smooth = CubicSpline(step * np.arange(count + 1, dtype=float), rows)
-    moving = replace(motion, signal=Signal(OverTime(lambda times: np.asarray(smooth(times)))))
+    state = (*POINT, *found.velocity)
+    turning = gain * found.turning.xreplace(dict(zip(surface.image_coordinates, surface.image, strict=True)))
+    fixed = {s: value for s, value in {**motion.values, **surface.values}.items() if s not in found.velocity}
+    rate = vectorised(state, [*(motion.A * sp.ImmutableMatrix(POINT) + motion.b), *turning], fixed)
+    times = step * np.arange(int(np.ceil(scenario.duration / step - 1e-9)) + 2, dtype=float)  # beyond the end
+    refused = ValueError(
+        f"steered with gain = {gain} the motion leaves every bound or turns too fast within {scenario.duration:.4g} s; "
+        "take a smaller gain, or a shorter duration of the scenario"
+    )
+    evaluations = count(1)
+
+    def flow(time: float, x: Array) -> Array:
+        if next(evaluations) > MOST_EVALUATIONS:
+            raise refused
+        return np.array(rate(*x))
+
+    ends, begin = (0.0, float(times[-1])), [*scenario.position, *start]
+    with np.errstate(all="ignore"):  # LSODA, for a large gain makes the equations stiff
+        path = solve_ivp(flow, ends, begin, "LSODA", times, rtol=1e-9, atol=1e-12)
+    if not path.success or not np.isfinite(path.y).all():
+        raise refused
+    rows = np.tile([motion.values[symbol] for symbol in motion.parameters], (len(times), 1))
+    rows[:, [motion.parameters.index(symbol) for symbol in found.velocity]] = path.y[3:].T
+    smooth = CubicSpline(times, rows)
+    moving = replace(motion, signal=Signal(OverTime(lambda t: np.asarray(smooth(t)))))
     return replace(scenario, name=f"{scenario.name}, steered", motion=moving)
-
-
-@lru_cache(maxsize=32)
-def _closed_loop(
-    A: sp.ImmutableMatrix,
-    b: sp.ImmutableMatrix,
-    parameters: tuple[sp.Symbol, ...],
-    surface: ImagingSurface,
-    velocity: tuple[sp.Symbol, ...],
-) -> Equations:
-    """Equations of a point and of the velocity that its image steers."""
-    found = Steering(PerspectiveSystem(Motion("steered", A, b, parameters), surface), velocity)
-    seen = dict(zip(surface.image_coordinates, surface.image, strict=True))
-    turning = (kappa * found.turning).xreplace(seen)
-    others = tuple(symbol for symbol in found.system.parameters if symbol not in velocity)
-    return Equations((*POINT, *velocity), (*(A * sp.ImmutableMatrix(POINT) + b), *turning), (), others, (kappa,))

@@ -6,7 +6,7 @@ from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, constant, lyapunov, riccati, scheduled
 from percept_obs.points.run import PointsRun
-from percept_obs.points.simulation import LeavesEveryBound, PointsScenario
+from percept_obs.points.scenarios import LeavesEveryBound, PointsScenario
 from percept_obs.points.tracking import FirstSight
 
 __all__ = [
