@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from examples import BOTH, NOISY, ONE, ZERO
-from matplotlib.figure import Figure as MatplotlibFigure
 
 from percept_obs import figures, record, scenarios
 from percept_obs.observers import de_luca, extended_kalman, identifier_based, sliding_mode
@@ -96,14 +95,6 @@ def test_the_text_of_chatter_says_how_each_solver_got_on(chattering):
     assert f"sign: error at a step of 0.01 s {errors['sign']['y3'][0]:.2g}" in text
     assert f"sign: RK45 gave up at {stopped.time[-1]:.2g} s after {stopped.evaluations[-1]} evaluations" in text
     assert f"fraction: RK45 arrived at 2 s after {efforts['fraction'].evaluations[-1]} evaluations" in text
-
-
-def test_figures_draw_on_the_axes_they_are_given(table, chattering):
-    for draw in (lambda axes: figures.comparison(table, axes), lambda axes: figures.chatter(*chattering, axes)):
-        pair = MatplotlibFigure().subplots(1, 2)
-        assert draw(pair).axes == tuple(pair)
-        with pytest.raises(ValueError, match="has 3 axes; 2 are needed"):
-            draw(MatplotlibFigure().subplots(1, 3))
 
 
 def test_bad_input_is_refused_in_words(table, chattering):

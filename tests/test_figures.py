@@ -1,6 +1,9 @@
 """Figures draw a run's own numbers, leave gaps where there are none, and say in their text what a reader sees."""
 
+import ast
+import doctest
 import html
+import inspect
 import re
 from dataclasses import replace
 
@@ -210,13 +213,6 @@ def test_the_text_has_ranges_settling_time_error_levels_and_lost_samples(runs):
     lost = runs("dropouts")
     gaps = int(np.isnan(lost.recording.outputs).any(axis=1).sum())
     assert f"{gaps} of {len(lost.time)} samples were lost" in figures.signals(lost).text
-
-
-def test_labels_have_symbols_letters_and_units(runs):
-    expected = ["$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"]
-    assert [ax.get_ylabel() for ax in figures.signals(runs("dropouts")).axes] == expected
-    assert figures.signals(runs("chained")).axes[2].get_ylabel() == "$y_{3} = 1/Y$ (1/m)"
-    assert figures.signals(runs("plane")).axes[2].get_ylabel() == "$y_{3} = 1/l$ (1/m)"
 
 
 # ---- what an observer claims
@@ -582,7 +578,87 @@ def test_unknown_windows_are_gaps_and_counted(runs):
         figures.excitation(replaced(one, smallest=np.full(len(late), np.nan)))
 
 
-# ---- what a figure is
+# ---- laws of all figures
+
+LABELS = {
+    "bound_map": ["$y_{1}$", "$y_{2}$"],
+    "cases": ["time (s)", "$d_{s}$ (1/m)", "$v_{c2}$ (m/s)", "$v_{c3}$ (m/s)"],
+    "chatter": ["step of integration (s)", "time (s)", "rms error of $y_{3}$ (1/m)", "step that the solver took (s)"],
+    "comparison": ["settling time (s)", "rms error of 1/distance (1/m)"],
+    "consistency": ["time (s)", "normalised innovation"],
+    "depth_errors": ["relative error of the depth after 2 s; the dots are medians"],
+    "distance": ["time (s)", "depth $Z$ (m)", "relative error (%)"],
+    "entries": ["time (s)", "depth moves by (%)"],
+    "error_norm": ["time (s)", "norm of the error $|\\rho|$"],
+    "excitation": ["end of the 5 s window (s)", r"smallest eigenvalue of $\int w\,w^{\mathsf{T}}dt$"],
+    "fields": ["to the right (°)", "up (°)"],
+    "gramian": ["beginning of the window (s)", "smallest eigenvalue"],
+    "image_plane": ["$y_{1}$", "$y_{2}$"],
+    "observability": ["time (s)", "instant", "1 s windows", "derivatives", "std. deviation"],
+    "quantities": ["time (s)", "$d_{s}$ (1/m)", "$v_{c2}$ (m/s)", "$v_{c3}$ (m/s)"],
+    "runs_over_time": ["time (s)", "$y_{3} = 1/Z$ (1/m)", "|error of $y_{3}$|"],
+    "scan": ["time offset", "left of the samples (1/1000)"],
+    "scene": ["$Z$ (m)", "$X$ (m)"],
+    "settings_map": ["noise", "gain"],
+    "signals": ["time (s)", "$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"],
+    "trust": ["time (s)", "depth $Z$ (m)"],
+    "velocities": ["time (s)", "velocity along x (m/s)"],
+}
+"""Labels of the axes in each figure's example: first along x, then along y."""
+
+
+def example(name):
+    """Return a function that draws a figure as the last line of its docstring's example does."""
+    *before, last = doctest.DocTestParser().get_examples(getattr(figures, name).__doc__)
+    values = {}
+    for line in before:
+        exec(line.source, values)
+    (call,) = (
+        node
+        for node in ast.walk(ast.parse(last.source))
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == f"figures.{name}"
+    )
+    text = ast.unparse(call).removesuffix(")")
+    return lambda **axes: eval(f"{text}, **axes)", values | {"axes": axes})
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "chatter")) for name in figures.__all__[1:]]
+)
+def test_each_figure_has_a_text_and_labels_with_units_and_draws_on_given_axes(name):
+    import matplotlib.pyplot as plt
+
+    draw, known = example(name), plt.get_fignums()
+    figure = draw()
+    paint(figure)
+    assert [t for ax in figure.axes if (t := ax.get_xlabel())] + [
+        t for ax in figure.axes if (t := ax.get_ylabel())
+    ] == LABELS[name]
+    assert f'<img alt="{html.escape(figure.text)}"' in figure._repr_html_()
+    assert figure.text.endswith(".")
+    parameters = inspect.signature(getattr(figures, name)).parameters
+    if "axes" in parameters:
+        given = MatplotlibFigure().subplots(len(figure.axes), squeeze=False).ravel()
+        again = draw(axes=given)
+        assert again.axes == tuple(given)
+        with pytest.raises(ValueError, match=f"{len(given) + 1} axes; {len(given)} are needed"):
+            draw(axes=MatplotlibFigure().subplots(len(given) + 1))
+    elif "ax" in parameters:
+        ax = MatplotlibFigure().add_subplot(projection=figure.axes[0].name)
+        again = draw(ax=ax)
+        assert again.axes == (ax,)
+    else:
+        again = draw()
+    assert again.text == figure.text
+    assert plt.get_fignums() == known
+
+
+@pytest.mark.parametrize(("name", "letter"), [("dropouts", "Z"), ("chained", "Y"), ("plane", "l")])
+def test_the_label_of_the_inverse_distance_has_the_letter_of_the_surface(runs, name, letter):
+    assert figures.signals(runs(name)).axes[2].get_ylabel() == f"$y_{{3}} = 1/{letter}$ (1/m)"
+
+
+# ---- pictures
 
 
 def test_in_jupyter_a_figure_is_a_picture_with_alternative_text(runs):
@@ -608,15 +684,6 @@ def test_pyplots_axes_are_shown_once(runs):
     assert not plt.fignum_exists(figure.number)
 
 
-def test_figures_of_their_own_stay_out_of_pyplot(runs):
-    import matplotlib.pyplot as plt
-
-    before = plt.get_fignums()
-    figures.signals(runs("plane"))
-    figures.scene(runs("plane"))
-    assert plt.get_fignums() == before
-
-
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
     figure = figures.excitation(windowed(form("y1"), runs("chained").recording, 5))
@@ -625,17 +692,6 @@ def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
     assert path.stat().st_size > 1000
     if ending != "pdf":  # which compresses it
         assert figure.text.encode() in path.read_bytes()
-
-
-def test_figures_draw_on_the_axes_they_are_given(runs):
-    run = runs("plane")
-    four = MatplotlibFigure().subplots(2, 2)
-    assert figures.signals(run, axes=four).axes == tuple(four.ravel())
-    two = MatplotlibFigure().subplots(2)
-    assert figures.runs_over_time(run, axes=two).axes == tuple(two)
-    assert figures.distance(run, axes=two).axes == tuple(two)
-    solid = MatplotlibFigure().add_subplot(projection="3d")
-    assert figures.scene(run, ax=solid).axes == (solid,)
 
 
 # ---- bad input
@@ -647,7 +703,6 @@ def test_figures_draw_on_the_axes_they_are_given(runs):
         (lambda run: figures.signals(run("plane").recording), "a Run is needed"),
         (lambda run: figures.signals([run("plane"), run("plane")]), "a Run is needed"),
         (lambda run: figures.signals(run("plane"), tolerance=0), "tolerance is 0"),
-        (lambda run: figures.signals(run("plane"), axes=MatplotlibFigure().subplots(2)), "has 2 axes; 4 are needed"),
         (lambda run: figures.image_plane(run("three outputs")), "has 3 image coordinates"),
         (lambda run: figures.image_plane(run("diverged, without truth").recording, -1), "threshold is -1"),
         (lambda run: figures.image_plane("run"), "a Run or a Recording is needed"),

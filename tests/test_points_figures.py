@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure as MatplotlibFigure
 
 from percept_obs import Camera, Recording, figures, luenberger, record, track
 from percept_obs.points.gramian import decay_bound, gramian
@@ -69,20 +68,6 @@ def test_depth_errors_have_medians_and_count_what_is_behind_the_camera():
     assert np.max(ax.lines[2].get_xdata()) < ax.get_xlim()[1]
     assert "good: 3 sightings, median 2.0%, at most 3.0%." in figure.text
     assert "lost: 3 sightings, median inf%, 2 of them behind the camera." in figure.text
-
-
-@pytest.mark.slow
-def test_figures_draw_on_the_axes_they_are_given(recording, run):
-    draws = (
-        lambda ax: figures.image_plane(recording, ax=ax),
-        lambda ax: figures.error_norm(run, ax=ax),
-        lambda ax: figures.gramian(gramian(recording, 2), ax=ax),
-        lambda ax: figures.depth_errors({"a": [0.1]}, 2, ax),
-    )
-    for draw in draws:
-        ax = MatplotlibFigure().subplots()
-        assert draw(ax).axes == (ax,)
-        assert "alt=" in draw(None)._repr_html_()
 
 
 def test_bad_input_is_refused_in_words(recording, run):

@@ -115,8 +115,6 @@ def test_what_does_not_belong_together_is_refused(recording, run):
     ):
         with pytest.raises(ValueError, match=message):
             figures.quantities(runs, labels)
-    with pytest.raises(ValueError, match="3 are needed"):
-        figures.quantities(run, axes=figures.runs_over_time(run).axes)
 
 
 @pytest.mark.parametrize("observer", [ismo, ekf])
