@@ -89,6 +89,13 @@ def as_array(numbers, width=None):
     return flat if width is None else flat.reshape(-1, width)
 
 
+def copied_runs(answer, settings, **names):
+    """Runs of the code that the page copies, by the observers' names; `names` are those that the code lacks."""
+    exec(answer["code"], names)
+    several = len(settings["observers"]) > 1
+    return {name: names[f"run_{name}" if several else "run"] for name in settings["observers"]}
+
+
 PARTED = 1e-4
 NUDGE = 1e-12
 """How far samples are moved, relative to 1 or their size, to see how far a run carries a rounding error."""

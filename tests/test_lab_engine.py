@@ -10,6 +10,7 @@ from lab_settings import (
     SMOOTH_CASES,
     as_array,
     assert_follows_python,
+    copied_runs,
     python_runs,
     random_settings,
     run_in_node,
@@ -192,11 +193,9 @@ def test_excitation_agrees(lab, answers, case):
 def test_the_copied_code_makes_the_same_run(lab, answers, case):
     settings, answer = answers[case]
     lab.settings = settings
-    namespace = {}
-    exec(answer["code"], namespace)
+    copied = copied_runs(answer, settings)
     for name, run in lab.run().items():
-        copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
-        np.testing.assert_allclose(copied.estimate, run.estimate, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=0, atol=1e-12)
 
 
 def test_a_point_behind_the_camera_is_told(lab, node):

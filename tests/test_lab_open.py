@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from hostile_messages import TYPED
-from lab_settings import as_array, run_in_node, whole_model
+from lab_settings import as_array, copied_runs, run_in_node, whole_model
 from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
@@ -120,14 +120,12 @@ def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(l
     for settings in tasks:
         lab.write_down(settings)
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        namespace = {"cubic": cubic, "watched": watched, "slanted": slanted}
-        exec(answer["code"], namespace)
+        copied = copied_runs(answer, settings, cubic=cubic, watched=watched, slanted=slanted)
         for name, run in lab.runs(settings).items():
             assert_same_recording(answer, run.recording)
             assert_same_run(answer["runs"][name], run, 1e-9)
             assert answer["summary"]["verdicts"][name] == run.verdict()
-            copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
-            np.testing.assert_allclose(copied.estimate, run.estimate, rtol=1e-8, atol=1e-9)
+            np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=1e-8, atol=1e-9)
 
 
 SPUN = "v_c1 = -0.22 - 0.1 sin(2t); w = [0.1 t, 0, w3]; v_p2 = 0.3 exp(-t)"
@@ -144,12 +142,11 @@ def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, nod
     changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
     tasks = [structure.check({**structure.settings, **change}) for change in changes]
     for settings, answer in zip(tasks, run_in_node(node, structure, tasks), strict=True):
-        namespace = {"cubic": cubic}
-        exec(answer["code"], namespace)
-        for name, run in structure_runs(settings, {"cubic": structure._own["cubic"]}).items():
+        copied = copied_runs(answer, settings, cubic=cubic)
+        for name, run in structure_runs(settings, {"cubic": structure._user_observers["cubic"]}).items():
             found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
             np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
-            np.testing.assert_allclose(namespace[f"run_{name}"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+            np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=1e-8, atol=1e-9)
 
 
 def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
@@ -209,7 +206,7 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
         (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
         (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
         (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
-        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P: there is no formula"),
+        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
         (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
         (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
         (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
@@ -446,18 +443,16 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
         assert lab.settings["velocities"] == "samples"
         tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
         for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-            namespace = {"motion": given}
-            exec(answer["code"], namespace)
+            copied = copied_runs(answer, settings, motion=given)
             for name, run in structure_runs(settings, samples=lab._samples).items():
                 assert_same_recording(answer, run.recording)
                 found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
                 np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
                 assert answer["summary"]["verdicts"][name] == run.verdict(settings["tolerance"])
-                copied = namespace["run" if len(settings["observers"]) == 1 else f"run_{name}"]
-                assert copied.verdict(settings["tolerance"]) == run.verdict(settings["tolerance"])
+                assert copied[name].verdict(settings["tolerance"]) == run.verdict(settings["tolerance"])
                 # the lab takes a function as samples every 10 ms
                 near = 1e-4 if given is moved else 1e-9
-                np.testing.assert_allclose(copied.estimate, run.estimate, rtol=near, atol=near)
+                np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=near, atol=near)
     scale = labs[0].check({**labs[0].settings, "unknown": ["d_s", "v_c1", "v_c2"]})
     (answer,) = run_in_node(node, labs[0], [scale])
     with pytest.raises(ImpossibleChoice, match="none is known that is not zero") as refused:

@@ -7,12 +7,13 @@ import pickle
 import numpy as np
 import pytest
 import sympy as sp
+from lab_settings import whole_model
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.shared.lab import BadSettings
 from percept_obs.labs.shared.schema import Kind, Number, Row
 
-LABS = {make.__name__: make for make in (observer_lab, structure_lab, points_lab)}
+LABS = {"observer_lab": observer_lab, "structure_lab": structure_lab, "points_lab": points_lab}
 HOSTILE = [
     *(None, True, 5, -1, 1e9, float("nan"), float("inf"), 1 + 2j, "1", "", "x' = 1", b"1"),
     *([], [None], [[]], [[1, 2], [3]], ["y1", "y1"], [1, 2, float("nan")], [True] * 3, ["1"] * 3, [[[0.0] * 3] * 3]),
@@ -22,10 +23,15 @@ HOSTILE = [
 ]
 
 
-@pytest.fixture(scope="module", params=LABS)
-def lab(request):
-    """Each lab, with a run so short that its analysis compiles nothing."""
-    return LABS[request.param](duration=2.0)
+@pytest.fixture(scope="module")
+def opened():
+    """Each lab by its name, with a run so short that its analysis compiles nothing."""
+    return {name: make(duration=2.0) for name, make in LABS.items()}
+
+
+@pytest.fixture(params=LABS)
+def lab(opened, request):
+    return opened[request.param]
 
 
 def refusal_of(act):
@@ -121,3 +127,114 @@ def test_a_kind_of_its_own_says_what_it_expects_and_how_it_reads():
     with pytest.raises(NotImplementedError):
         Kind().read("it", 1)
     assert pickle.loads(pickle.dumps(Number(low=1))).low == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "reason"),
+    [
+        ("observer_lab", {"colour": "red"}, "there is no setting colour"),
+        ("observer_lab", {"scenario": "nowhere"}, "scenario is 'nowhere'; it must be one of ma2005_eq35"),
+        ("observer_lab", {"surface": "cube"}, "it must be one of pinhole, chained, plane, sphere"),
+        ("observer_lab", {"surface": "sphere", "outputs": ["y1"]}, r"it must be one of \['y1', 'y2'\]"),
+        ("observer_lab", {"outputs": ["y3"]}, "a list with at least one of y1, y2"),
+        ("observer_lab", {"outputs": []}, "a list with at least one of y1, y2"),
+        ("observer_lab", {"observers": []}, "at least one of identifier_based"),
+        ("observer_lab", {"observers": ["identifier_based"] * 2}, "each once"),
+        ("observer_lab", {"pictures": ["film"]}, "at least one of outputs"),
+        ("observer_lab", {"gains": {"luck": {}}}, "gains has no luck; there are identifier_based"),
+        ("observer_lab", {"gains": {"identifier_based": {"gain": -1.0}}}, "G > 0 is needed"),
+        (
+            "observer_lab",
+            {"gains": {"identifier_based": {"strength": 1.0}}},
+            "has no strength; there are gain",
+        ),
+        ("observer_lab", {"observers": ["range_identification"], "outputs": ["y1"]}, "measure every image coordinate"),
+        ("observer_lab", {"switches": {"spica": "sign"}}, "switches has no spica; there are sliding_mode"),
+        (
+            "observer_lab",
+            {"switches": {"sliding_mode": "never"}},
+            "one of fraction, sign, hyperbolic tangent",
+        ),
+        ("observer_lab", {"A": [1, 2, 3]}, "A 1 is 1; it must be a list of 3, each a number from -1000 to 1000"),
+        ("observer_lab", {"b": ["one", 2, 3]}, "b b1 is 'one'; it must be a number from -1000"),
+        ("observer_lab", {"X0": [0.0, float("nan"), 1.0]}, "X0 Y is nan; it must be a number"),
+        (
+            "observer_lab",
+            {"normal": [0.0, 1.0, 0.0]},
+            "normal n3 is 0.0; it must be .* not 0; the plane must not hold the optical axis",
+        ),
+        ("observer_lab", {"noise": {"kind": "pink", "size": 0.1}}, "it must be one of uniform, gaussian"),
+        ("observer_lab", {"noise": {"kind": "uniform", "size": -1}}, "it must be a number from 0 to 1"),
+        ("observer_lab", {"hold": "second"}, "it must be one of zero, first, exact"),
+        ("observer_lab", {"start": {"mode": "guess", "values": [0, 0, 0]}}, "it must be one of own, zero, chosen"),
+        ("observer_lab", {"period": 0}, "it must be a number from 0.001 to 1"),
+        ("observer_lab", {"seed": 1.5}, "whole number"),
+        ("observer_lab", {"seed": True}, "whole number"),
+        ("observer_lab", {"kept": {"seed": -1}}, "whole number"),
+        ("points_lab", {"state": "gas"}, "state is 'gas'; it must be one of body, independent, origin"),
+        ("points_lab", {"weight": "heavy"}, "it must be one of constant, scheduled, typed, lyapunov, riccati"),
+        ("points_lab", {"start": "guess"}, "it must be one of rays, error, zero"),
+        ("points_lab", {"points": []}, "a list of 1 to 12, each a list of 3"),
+        ("points_lab", {"points": [[0.0, 0.0, 1.0]] * 13}, "a list of 1 to 12, each a list of 3"),
+        ("points_lab", {"points": [[0.0, 0.0]]}, "points 1 is .* it must be a list of 3"),
+        ("points_lab", {"points": [[0.0, 0.0, float("nan")]]}, "points 1 Z is nan; it must be a number"),
+        ("points_lab", {"hidden": [None]}, "an entry for each of the 3 points"),
+        (
+            "points_lab",
+            {"hidden": [None, [3, 2], None]},
+            "hidden 2 is .* it must begin at 0 s or later",
+        ),
+        ("points_lab", {"hidden": [None, [3], None]}, "hidden 2 is .* it must be a list of 2"),
+        ("points_lab", {"velocity": [0, 0]}, "velocity is .* it must be a list of 3"),
+        ("points_lab", {"size": 0}, "it must be a number from 0.0001 to 10000"),
+        ("points_lab", {"turning": float("inf")}, "it must be a number from -10 to 10"),
+        ("points_lab", {"duration": 0.5}, "it must be a number from 1 to 120"),
+        ("structure_lab", {"unknown": ["v_c4"]}, "a list with some of d_s, v_c1"),
+        ("structure_lab", {"unknown": ["d_s", "d_s"]}, "each once"),
+        ("structure_lab", {"earlier": 1}, "must be True or False"),
+        ("structure_lab", {"gains": {"ideal": {"feedback": -1.0}}}, "k1 > 0 is needed"),
+        ("structure_lab", {"ybar": [0.3, 0.3, 0.0]}, "it must be positive, for the point is in front"),
+        ("structure_lab", {"ybar": [0.3, 0.3]}, "ybar is .* it must be a list of 3"),
+        ("structure_lab", {"v_c": [0.0, float("nan"), 0.0]}, "v_c v_c2 is nan; it must be a number"),
+        ("structure_lab", {"scale": 0}, "it must be a number from 0.001 to 1000"),
+        ("structure_lab", {"noise": {"kind": "uniform", "size": 0.1}}, "noise depth is None"),
+        ("structure_lab", {"duration": 100, "step": 1e-4}, "1e[+]06 steps are too many"),
+        ("structure_lab", {"start": "chosen"}, "it must be one of own, zero"),
+        ("structure_lab", {"tolerance": 0}, "it must be a number from 1e-06"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused_with_a_reason_and_change_nothing(opened, name, wrong, reason):
+    before = opened[name].settings
+    with pytest.raises(ValueError, match=reason):
+        opened[name].settings = {**before, **wrong}
+    assert opened[name].settings == before
+
+
+def test_settings_survive_json_and_are_completed(lab):
+    before = lab.settings
+    there = json.loads(json.dumps(before, allow_nan=False))
+    lab.settings = {"seed": there["seed"]}
+    assert set(lab.settings) == set(there)
+    lab.settings = there
+    assert lab.settings == before
+    assert json.dumps(lab.model, allow_nan=False)
+
+
+# A sign has no width to smooth it over, and no slope that would turn noise into a bias.
+UNUSED = {
+    ("range_identification", "sign", "boundary_layer"),
+    ("integral_sliding_mode", "sign", "boundary_layer"),
+    ("sliding_mode", "sign", "noise_variance"),
+    ("sign", "", "boundary_layer"),  # the structure lab's name of an integral sliding mode observer
+}
+
+
+@pytest.mark.parametrize("name", ["observer_lab", "structure_lab"])
+def test_every_gain_is_linked_to_a_letter_of_the_equations(opened, name):
+    for observer, texts in whole_model(opened[name])["observers"].items():
+        for switch, variants in texts["equations"].items():
+            text = "".join(variants[-1]["lines"])
+            assert variants[-1]["zero"] == []
+            for gain in texts["ways"][switch]:
+                unused = (observer, switch, gain) in UNUSED
+                assert (f'data-letter="{gain}"' in text) != unused, (observer, switch, gain)

@@ -1,6 +1,5 @@
 """The page of the lab of many points computes what Python does, and says the same of it."""
 
-import json
 import warnings
 from functools import cache
 
@@ -11,7 +10,6 @@ from points_settings import CASES, random_settings
 from sample_sizes import sampled
 
 from percept_obs.labs.points.lab import points_lab, run_of
-from percept_obs.labs.points.settings import PICTURES
 from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
 from percept_obs.points.gramian import gramian
 from percept_obs.points.manoeuvre import Manoeuvre
@@ -139,47 +137,8 @@ def test_the_state_has_the_points_at_their_places(state):
     np.testing.assert_allclose(form.locate(state_of(form, places)), places, atol=1e-12)
 
 
-def test_settings_survive_json_and_come_back_complete(lab):
-    there = json.loads(json.dumps(lab.settings, allow_nan=False))
-    assert lab.check({key: there[key] for key in ("seed", "points")}) == there
-    assert json.loads(json.dumps(lab.model, allow_nan=False))["pictures"] == list(PICTURES)
-
-
 def test_points_without_a_word_on_hiding_are_not_hidden(lab):
     assert lab.check({"points": [[0.0, 0.0, 2.0]]})["hidden"] == [None]
-
-
-@pytest.mark.parametrize(
-    ("wrong", "reason"),
-    [
-        ({"colour": "red"}, "there is no setting colour"),
-        ({"state": "gas"}, "state is 'gas'; it must be one of body, independent, origin"),
-        ({"weight": "heavy"}, "it must be one of constant, scheduled, typed, lyapunov, riccati"),
-        ({"hold": "second"}, "it must be one of zero, first, exact"),
-        ({"start": "guess"}, "it must be one of rays, error, zero"),
-        ({"points": []}, "a list of 1 to 12, each a list of 3"),
-        ({"points": [[0.0, 0.0, 1.0]] * 13}, "a list of 1 to 12, each a list of 3"),
-        ({"points": [[0.0, 0.0]]}, "points 1 is .* it must be a list of 3"),
-        ({"points": [[0.0, 0.0, float("nan")]]}, "points 1 Z is nan; it must be a number"),
-        ({"hidden": [None]}, "an entry for each of the 3 points"),
-        ({"hidden": [None, [3, 2], None]}, "hidden 2 is .* it must begin at 0 s or later and end after that"),
-        ({"hidden": [None, [3], None]}, "hidden 2 is .* it must be a list of 2"),
-        ({"velocity": [0, 0]}, "velocity is .* it must be a list of 3"),
-        ({"size": 0}, "it must be a number from 0.0001 to 10000"),
-        ({"turning": float("inf")}, "it must be a number from -10 to 10"),
-        ({"noise": {"kind": "pink", "size": 0.1}}, "it must be one of uniform, gaussian"),
-        ({"noise": {"kind": "uniform", "size": -1}}, "it must be a number from 0 to 1"),
-        ({"pictures": []}, "at least one of error, depth, points, gramian"),
-        ({"duration": 0.5}, "it must be a number from 1 to 120"),
-        ({"seed": 1.5}, "whole number"),
-        ({"kept": {"seed": -1}}, "whole number"),
-    ],
-)
-def test_what_makes_no_sense_is_refused_and_changes_nothing(lab, wrong, reason):
-    before = lab.settings
-    with pytest.raises(ValueError, match=reason):
-        lab.settings = {**before, **wrong}
-    assert lab.settings == before
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""What Python adds to a run in words: excitation, error dynamics, the bias of noise, a filter's consistency."""
+"""Sentences of Python on a run: excitation, error dynamics, bias by noise, consistency of a filter."""
 
 from collections.abc import Callable
 from functools import lru_cache, reduce
@@ -18,14 +18,14 @@ from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import number
 
 INSTANTS = 200
-"""At how many instants of the window the error dynamics are linearised, at most."""
+"""Largest number of instants of the window at which the error dynamics are linearised."""
 
 Chosen = tuple[Observer, str]
 """An observer with its default gains, and its way to switch."""
 
 
 def excitation_in_words(form: PartitionedSystem, recording: Recording, window: float) -> str:
-    """What the outputs alone tell over any window of this length, in seconds."""
+    """Sentence on the excitation over all windows of this length, in seconds."""
     if form.culprits:
         return f"There is no canonical form, and so no w: {', '.join(form.culprits)} do not enter linearly."
     least = windowed(form.canonical_form(), recording, window).least
@@ -36,13 +36,13 @@ def excitation_in_words(form: PartitionedSystem, recording: Recording, window: f
 
 
 def has_words(chosen: Chosen) -> bool:
-    """Whether anything can be said of an observer, so that it is worth the seconds of a run in Python."""
+    """Return True if there are sentences on an observer, so that it is worth the seconds of a run in Python."""
     observer, _ = chosen
     return observer.covariance is not None or observer.fastest is not None or _can_be_linearised(chosen)
 
 
 def run_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
-    """What is to be said of one observer's run; nothing where it diverged."""
+    """Sentences on an observer's run; none where it diverged."""
     if run.diverged_at is not None:
         return []
     if run.recording.truth is None:
@@ -65,7 +65,7 @@ def _consistency_in_words(run: Run) -> str:
 
 
 def _can_be_linearised(chosen: Chosen) -> bool:
-    """Whether the estimate is a part of the state, and the flow smooth where the error is zero."""
+    """Return True if the estimate is a part of the state, and the flow smooth where the error is zero."""
     observer, way = chosen
     form = observer.form
     estimate = hats((*form.x1, *form.x2))
@@ -74,7 +74,7 @@ def _can_be_linearised(chosen: Chosen) -> bool:
 
 @lru_cache
 def _at_the_truth(chosen: Chosen) -> Callable[..., list[np.ndarray]]:
-    """The flow's Jacobian, and its derivative by the variance taken out, where the estimate is the truth."""
+    """The flow's Jacobian, and its derivative by noise_variance, where the estimate is the truth."""
     observer, _ = chosen
     form, equations = observer.form, observer.equations
     truth = (*form.x1, *form.x2)
@@ -88,27 +88,27 @@ def _at_the_truth(chosen: Chosen) -> Callable[..., list[np.ndarray]]:
 
 
 def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
-    """How a small error grows or shrinks, and where noise pushes it, from the flow linearised at the truth."""
+    """Sentences on the growth of a small error and its bias by noise, from the flow linearised at the truth."""
     observer, recording = run.observer, run.recording
     assert recording.truth is not None
     names = [s.name for s in observer.form.coordinates]
     order = [names.index(name) for name in (*observer.form.measured, *observer.form.hidden)]
     size = len(names)
     late = np.flatnonzero(run.time >= run.time[-1] - window)
-    part = late[np.unique(np.linspace(0, len(late) - 1, INSTANTS).astype(int))]
-    known = np.broadcast_to(recording.motion.known(run.time[part]), (len(part), 12))
+    at = late[np.unique(np.linspace(0, len(late) - 1, INSTANTS).astype(int))]
+    known = np.broadcast_to(recording.motion.known(run.time[at]), (len(at), 12))
     shape = [recording.view.values[s] for s in recording.view.parameters]
     gains = {gain.name: gain.value for gain in observer.gains}
-    others = run.state[part, size:]
-    entries = _at_the_truth(chosen)(*recording.truth[part][:, order].T, *others.T, *known.T, *shape, *gains.values())
+    others = run.state[at, size:]
+    entries = _at_the_truth(chosen)(*recording.truth[at][:, order].T, *others.T, *known.T, *shape, *gains.values())
     J = np.stack(entries[: size**2], axis=-1).reshape(-1, size, size)
     with np.errstate(all="ignore"):  # what grows beyond all numbers is said so below
-        steps = expm(J[:-1] * np.diff(run.time[part])[:, None, None])
+        steps = expm(J[:-1] * np.diff(run.time[at])[:, None, None])
         carried = np.eye(size) if not len(steps) else reduce(lambda before, step: step @ before, steps)
     factor = float(np.linalg.norm(carried, 2)) if np.isfinite(carried).all() else np.inf
     roots = ", ".join(f"{root:.3g}" for root in np.linalg.eigvals(J[-1]))
-    part = number(factor, 2)
-    does = "keeps its size" if part == "1" else f"{'shrinks' if factor < 1 else 'may grow'} to {part} of its size"
+    share = number(factor, 2)
+    does = "keeps its size" if share == "1" else f"{'shrinks' if factor < 1 else 'may grow'} to {share} of its size"
     sentences = [
         f"{observer.name}: its error dynamics end with the eigenvalues {roots} per second; over the last {window:g} s "
         f"a small error {does}."

@@ -14,7 +14,7 @@ import traitlets
 
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
-from percept_obs.labs.observer.registry import offer_of, refuse_other_motion, surface_of, with_numbers
+from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
 from percept_obs.labs.observer.settings import (
     HOLDS,
     PICTURES,
@@ -34,12 +34,12 @@ from percept_obs.labs.observer.tracks import (
     typed_text,
     with_affine_motion,
 )
-from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen
+from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
-from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
-from percept_obs.labs.shared.user_observers import brought
+from percept_obs.labs.shared.typed_motion import read_motion
+from percept_obs.labs.shared.user_observers import read_observers
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
@@ -60,7 +60,7 @@ class ObserverLab(Lab):
     Parameters
     ----------
     scenario : str, Scenario or Recording
-        What to open with: the name of a scenario, or one of your own.  A motion in expressions of time is typed into
+        Opens the lab: the name of a scenario, or one of your own.  A motion in expressions of time is typed into
         the lab; one that is sampled, or a function, is taken as samples that stay as they are after the last one.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
@@ -86,6 +86,7 @@ class ObserverLab(Lab):
 
     schema = SCHEMA
     title = "One point, a camera, and observers"
+    blocks = BLOCKS
     frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
 
     def __init__(
@@ -106,23 +107,22 @@ class ObserverLab(Lab):
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
-        asked, own = (None, {}) if observers is None else brought(observers, BY_NAME)
-        refuse_other_motion(own)
-        made_for = surface_of(own) if surface is None else None
-        if made_for:
-            surface, outputs = made_for
+        asked, users = (None, {}) if observers is None else read_observers(observers, BY_NAME)
+        refuse_other_motion(users)
+        if surface is None and (view := view_of(users)):
+            surface, outputs = view
             settings = {"outputs": outputs, **settings}
         given = [] if surface is None or isinstance(surface, str) else [surface]
         seen = [*given, *(s.surface for s in scenes.values()), *(_seen_on(n, r) for n, r in tracks.items())]
-        self._offer, names = offer_of(seen, own, asked or STANDARD["observers"])
+        self._registry, names = registry_of(seen, users, asked or STANDARD["observers"])
         if given:
             settings = _shaped(given[0], names[0]) | settings
             surface = names[0]
         on = dict(zip((*scenes, *tracks), names[len(given) :], strict=True))
         self._tables = {n: t for n, s in scenes.items() if not typed_text(s.motion) and (t := table_of(s))}
         known = {n: {"motion": typed_text(s.motion), **as_settings(s, on[n])} for n, s in scenes.items()}
-        self._recordings = {n: with_affine_motion(n, r, self._offer, on[n]) for n, r in tracks.items()}
-        self.schema = schema_of(self._offer, {**known, **tracks})
+        self._recordings = {n: with_affine_motion(n, r, self._registry, on[n]) for n, r in tracks.items()}
+        self.schema = schema_of(self._registry, {**known, **tracks})
         opening = str(self.schema["scenario"].read("scenario", scenario))
         fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
         chosen = {"observers": asked, "surface": surface}
@@ -131,13 +131,14 @@ class ObserverLab(Lab):
             {**settings, **{name: value for name, value in chosen.items() if value is not None}},
             {**STANDARD, **self._own_opening(), **fit, "scenario": opening},
             {**STANDARD, **self._own_opening()},
-            texts=self._offer.packed,
+            texts=self._registry.packed,
             scenarios={n: {"title": s.name, **known[n], **self._sampled(n)} for n, s in scenes.items()},
             recordings={
-                n: track_for_the_page(r, tracks[n].motion.name, on[n], self._offer) for n, r in self._recordings.items()
+                n: track_for_the_page(recording, tracks[n].motion.name, on[n], self._registry)
+                for n, recording in self._recordings.items()
             },
-            own=self._offer.for_the_page(),
-            varies={n: VARIES.format("motion") for n, make in self._offer.observers.items() if make.constant_motion},
+            own=self._registry.for_the_page(),
+            varies={n: VARIES.format("motion") for n, make in self._registry.observers.items() if make.constant_motion},
             pictures=PICTURES,
             bound={"noise": {kind: make(1.0).variance for kind, make in NOISES.items()}, "hidden": HIDDEN_VARIANCE},
             **for_the_page(),
@@ -157,10 +158,6 @@ class ObserverLab(Lab):
     def _sampled(self, name: str) -> Settings:
         return {"track": table_for_the_page(self._tables[name])} if name in self._tables else {}
 
-    def typed(self, text: str) -> Typed:
-        """The motion that a text describes; a ValueError if it cannot be read."""
-        return read_motion(text, BLOCKS)
-
     def run(self) -> dict[str, Run]:
         """Runs of the same settings in Python, by the observers' names."""
         return self.runs(self.settings)
@@ -169,36 +166,34 @@ class ObserverLab(Lab):
         """Raise a ValueError for settings that do not go together."""
         recording = self._recordings.get(settings["scenario"])
         surface, outputs = settings["surface"], settings["outputs"]
-        allowed = self._offer.outputs(surface)
+        allowed = self._registry.outputs(surface)
         if recording is not None:
             allowed = [o for o in allowed if set(o) <= set(recording.names)]
             Choice("zero", HOLDS[:2]).read("hold of a recording", settings["hold"])
         if outputs not in allowed:
-            told = ", ".join(map(str, allowed))
-            raise ValueError(f"outputs is {outputs!r}; on the {surface} surface it must be one of {told}")
+            choices = ", ".join(map(str, allowed))
+            raise ValueError(f"outputs is {outputs!r}; on the {surface} surface it must be one of {choices}")
         self._refuse_motion(settings)
-        refused = self._offer.refused(surface, outputs)
+        refused = self._registry.refused(surface, outputs)
         if recording is not None:
-            refused |= refused_for(recording.motion, self._offer, "recording's")
+            refused |= refused_for(recording.motion, self._registry, "recording's")
         elif self._varies(settings):
-            refused |= refused_for(self._motion_of(settings), self._offer, "motion")
-        for name in settings["observers"]:
-            if name in refused:
-                raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
-        if recording is not None and not recording.view.fits(self._offer.surfaces[surface]):
+            refused |= refused_for(self._motion_of(settings), self._registry, "motion")
+        refuse_observers(settings, refused)
+        if recording is not None and not recording.view.fits(self._registry.surfaces[surface]):
             raise ValueError(f"the recording was seen on the {recording.view.name}, not on the {surface}")
         if recording is not None and settings["believed"] is not None:
             raise ValueError("a recording's motion varies and is measured; believed must be None with it")
 
     def _refuse_motion(self, settings: Settings) -> None:
-        """Refuse a typed motion that cannot be read, has no numbers, or stands beside another one."""
+        """Raise a ValueError for a typed motion that cannot be read, is not finite, or has a scenario with its own."""
         if settings["motion"].strip():
             scenario = settings["scenario"]
             if scenario in self._recordings or scenario in self._tables:
                 raise ValueError(
                     f"motion is {settings['motion']!r}, but {scenario!r} has its own; choose another scenario"
                 )
-            typed_in(settings, "motion", BLOCKS).refuse_poles(settings["duration"], lambda _: _numbers(settings))
+            self.refuse_poles(settings, lambda _: _numbers(settings))
 
     def _varies(self, settings: Settings) -> bool:
         return bool(settings["motion"].strip()) or settings["scenario"] in self._tables
@@ -220,24 +215,24 @@ class ObserverLab(Lab):
             recording = self.recorded(settings)
         except (BehindCamera, TooMuchWork) as error:
             return {"sentences": [str(error)]}
-        talked_of = {
+        states = {
             name: len(chosen[0].equations.state)
             for name, chosen in observers.items()
             if recording.truth is None or has_words(chosen)
         }
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
-        told, beyond = within_reach(steps, talked_of, self._work(settings))
+        followed, beyond = within_reach(steps, states, self._work(settings))
         window = min(settings["window"], float(np.ptp(recording.time)))
-        sentences = [excitation_in_words(self._offer.form(*seen), recording, window)]
+        sentences = [excitation_in_words(self._registry.form(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)
-            found = self.runs({**settings, "observers": told})
+            found = self.runs({**settings, "observers": followed})
         for name, run in found.items():
             sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
 
     def too_much(self, settings: Settings) -> str:
-        """Why Python does not follow runs of these settings; empty if it does."""
+        """Reason why Python does not follow runs of these settings; empty if it does."""
         if settings["scenario"] in self._recordings:
             return ""
         return too_much(self._work(settings), settings["duration"], settings["period"])
@@ -248,7 +243,7 @@ class ObserverLab(Lab):
         return motion_work(self._motion_of(settings), settings["duration"], settings["period"])
 
     def runs(self, settings: Settings) -> dict[str, Run]:
-        """Runs that settings stand for, by the observers' names."""
+        """Runs of settings, by the observers' names."""
         recording, start, believed = self.recorded(settings), _start(settings), _believed(settings)
         return {
             name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language="python")
@@ -256,17 +251,17 @@ class ObserverLab(Lab):
         }
 
     def recorded(self, settings: Settings) -> Recording:
-        """What the camera records, as far as the point stays in front of it."""
+        """Recording of the camera, as far as the point stays in front of it."""
         if recording := self._recordings.get(settings["scenario"]):
             return recording
         keys = ("surface", *SHAPES.values(), "X0", "noise", "dropout", "seed", "period", "duration")
-        told = json.dumps({key: settings[key] for key in keys})
-        return _simulated(told, self._motion_of(settings), self._offer.surfaces[settings["surface"]])
+        used = json.dumps({key: settings[key] for key in keys})
+        return _simulated(used, self._motion_of(settings), self._registry.surfaces[settings["surface"]])
 
     def _chosen(self, settings: Settings, name: str) -> tuple[Observer, str]:
-        """An observer with its default gains, and how it switches."""
+        """An observer with its default gains, and its switch."""
         way = str(settings["switches"].get(name, ""))
-        return self._offer.observer(settings["surface"], settings["outputs"], name, way), way
+        return self._registry.observer(settings["surface"], settings["outputs"], name, way), way
 
     def _tuned(self, settings: Settings, name: str) -> Observer:
         """An observer with the gains of the settings."""
@@ -278,7 +273,7 @@ observer_lab = ObserverLab
 
 
 def runs(settings: Settings) -> dict[str, Run]:
-    """Runs that settings of a lab of the package's own stand for, by the observers' names."""
+    """Runs of settings of the package's own lab, by the observers' names."""
     return _plain_lab().runs(settings)
 
 
@@ -341,7 +336,7 @@ def _scene(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> tuple
 
 
 def _believed(settings: Settings) -> Motion | None:
-    """What observers believe, unless it is the true motion."""
+    """The motion that observers believe; None for the true one."""
     return affine(settings["believed"]["A"], settings["believed"]["b"]) if settings["believed"] else None
 
 

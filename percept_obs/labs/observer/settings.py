@@ -1,11 +1,11 @@
-"""What may be set in the observer lab."""
+"""Settings of the observer lab."""
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from percept_obs.labs.observer.registry import Offer
+from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
@@ -22,7 +22,7 @@ MAPPED = (
     *("X0.0", "X0.1", "X0.2", "believed.b.0", "believed.b.1", "believed.b.2"),
     *("start.values.0", "start.values.1", "start.values.2", "xi"),
 )
-"""What a map may go over besides gains: settings, and what several say together (front/src/observer/model/axes.js)."""
+"""Axes of a map besides gains: settings, and combinations of several (front/src/observer/model/axes.js)."""
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 
@@ -35,7 +35,7 @@ def _translation(about: str = "") -> Row:
 
 
 def as_settings(scenario: Scenario, surface: str = "") -> Settings:
-    """A scenario's motion, point, surface and duration; of a motion that varies what it is at time 0.
+    """Settings of a scenario: motion, point, surface and duration; a motion that varies is taken at time 0.
 
     Parameters
     ----------
@@ -107,26 +107,26 @@ SCHEMA = Schema(
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
 
 
-def schema_of(offer: Offer, scenarios_and_recordings: Mapping[str, Any]) -> Schema:
-    """The settings of a lab that offers something of its own."""
-    own = offer.own_switch
+def schema_of(registry: Registry, scenarios_and_recordings: Mapping[str, Any]) -> Schema:
+    """Settings of a lab with the surfaces and observers of a registry."""
+    switches = {n: Choice(make.switches[0], make.switches) for n, make in registry.observers.items() if make.switches}
     return Schema(
         SCHEMA
         | {
             "scenario": Choice(STANDARD["scenario"], tuple(scenarios_and_recordings)),
-            "surface": offering(SCHEMA["surface"], offer.surfaces),
-            "observers": offering(SCHEMA["observers"], offer.observers),
-            "gains": gains(_gains_of(offer), offer.with_every_gain),
-            "over": over(_gains_of(offer), MAPPED),
-            "switches": Group({n: Choice(way, offer.observers[n].switches) for n, way in own.items()}, partial=True),
+            "surface": offering(SCHEMA["surface"], registry.surfaces),
+            "observers": offering(SCHEMA["observers"], registry.observers),
+            "gains": gains(_gains_of(registry), registry.with_every_gain),
+            "over": over(_gains_of(registry), MAPPED),
+            "switches": Group(switches, partial=True),
         }
     )
 
 
-def _gains_of(offer: Offer) -> dict[str, dict[str, float]]:
-    printed = offer.part()["observers"].items()
+def _gains_of(registry: Registry) -> dict[str, dict[str, float]]:
+    printed = registry.part()["observers"].items()
     return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
 
 
 STANDARD: dict[str, Any] = SCHEMA.opening | as_settings(scenarios.ma2005_eq35())
-"""What every preset begins with."""
+"""Settings that every preset begins with."""

@@ -1,6 +1,6 @@
-"""What the page needs to simulate and to observe: texts and formulas of the point, the surfaces, the observers.
+"""Texts and formulas of the point, the surfaces and the observers, from which the page simulates and observes.
 
-Printed when the package is built, see printing.py; what somebody brings is printed when the lab opens, see offer.py.
+Printed when the package is built, see printing.py; those of a user when the lab opens, see registry.py.
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,7 +13,7 @@ from percept_obs.compile import definitions, function_source, source
 from percept_obs.labs.shared.markup import dotted, formula, markup
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.shared.surfaces import SURFACES
-from percept_obs.labs.shared.user_observers import Maker, observers_for_the_page, of_an_observer
+from percept_obs.labs.shared.user_observers import Maker, loops_for_the_page, texts_of_observer
 from percept_obs.observability.maps import map_kernel
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
@@ -26,14 +26,14 @@ from percept_obs.system.surfaces import POINT, ImagingSurface
 BY_NAME = {make.key: make for make in OBSERVERS}
 
 WAYS = MappingProxyType({name: make.switches or ("",) for name, make in BY_NAME.items()})
-"""Ways in which each observer switches, its own first; one without a name for those that do not."""
+"""Switches of each observer, its own first; an empty name for an observer without."""
 
 OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if ways[0]})
-"""The switch that each observer that switches has unless another is chosen."""
+"""Default switch of each observer that has several."""
 
 MOTION = affine()
 BLOCKS = MappingProxyType({"A": MOTION.A, "b": MOTION.b})
-"""What a motion is made of, by the letters that may be typed."""
+"""Blocks of a motion by the letters that may be typed."""
 
 
 def key_of(surface: str, outputs: Iterable[str]) -> str:
@@ -56,7 +56,7 @@ def form_on(surface: ImagingSurface, outputs: tuple[str, ...]) -> PartitionedSys
 
 @lru_cache(maxsize=256)
 def observer_on(make: Maker, surface: ImagingSurface, outputs: tuple[str, ...], way: str = "") -> Observer:
-    """An observer with its default gains, and its own way to switch unless another is named."""
+    """An observer with its default gains, and its default switch unless another is named."""
     switch = {"switch": way or make.switches[0]} if make.switches else {}
     return make(form_on(surface, outputs), **switch)
 
@@ -77,25 +77,25 @@ def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = ""
 
 
 def ways_of(name: str) -> dict[str, Observer]:
-    """An observer of the package for all image coordinates, in every way in which it switches."""
+    """An observer of the package for all image coordinates, with each of its switches."""
     return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
 
 
 @lru_cache
 def model_for_the_page() -> Texts:
-    """What does not depend on the form: the point's loop, the surfaces, the observers."""
+    """Texts that do not depend on the form: the point's loop, the surfaces, the observers."""
     return {
         "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
         "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
         "surfaces": {
             name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
         },
-        "observers": {name: of_an_observer(make, ways_of(name)) for name, make in BY_NAME.items()},
+        "observers": {name: texts_of_observer(make, ways_of(name)) for name, make in BY_NAME.items()},
     }
 
 
 def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, ...]]) -> Texts:
-    """A surface: where a point is seen, what may be measured of it, and how well that tells the distance."""
+    """Functions of a surface: image, ray, focus of expansion, flow, and the bound over the image."""
     outputs = tuple(outputs)
     system = system_on(surface)
     shape = surface.parameters
@@ -114,17 +114,17 @@ def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, .
 
 
 def form_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
-    """A form, and the loops of its observers; one that does not exist is among the `refused`, with the reason."""
+    """A form with the loops of its observers, and the reasons why others are refused."""
     names = [s.name for s in form.coordinates]
     letters = {s.name: s for s in form.parameters}
-    told: Texts = {"w": None, "circle": None, "formulas": [formula(dotted(s), e, letters) for s, e in _rates(form)]}
+    formulas: Texts = {"w": None, "circle": None, "formulas": [formula(dotted(s), e, letters) for s, e in _rates(form)]}
     if not form.culprits:
-        told = _of_canonical(form.canonical_form(), letters)
+        formulas = _of_canonical(form.canonical_form(), letters)
     return {
         "measured": [names.index(s.name) for s in form.x1],
         "hidden": [names.index(s.name) for s in form.x2],
-        **told,
-        **observers_for_the_page(form, makers),
+        **formulas,
+        **loops_for_the_page(form, makers),
     }
 
 
@@ -151,7 +151,7 @@ def _of_canonical(form: CanonicalForm, letters: Mapping[str, sp.Symbol]) -> Text
 
 
 def texts_for_the_page() -> Parts:
-    """Everything that the lab offers: the model's own texts, and every form."""
+    """Texts of the model and of every form, by their places."""
     yield "", model_for_the_page()
     for surface in SURFACES:
         for outputs in system_of(surface).output_choices:

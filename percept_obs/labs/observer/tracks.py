@@ -1,4 +1,4 @@
-"""Recordings of a real camera, and motions that vary, in the numbers that the page takes."""
+"""Recordings of a real camera, and motions that vary, as tables for the page."""
 
 from dataclasses import replace
 from typing import Any
@@ -8,7 +8,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.labs.observer.registry import Offer
+from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BLOCKS
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Settings
@@ -22,7 +22,7 @@ LONGEST = 200.0
 VARIES = "it needs a motion with constant coefficients, but the {} varies"
 
 
-def track_for_the_page(recording: Recording, motion: str, surface: str, offer: Offer) -> dict[str, Any]:
+def track_for_the_page(recording: Recording, motion: str, surface: str, registry: Registry) -> dict[str, Any]:
     """A recording in numbers, with the name of its own motion; times count from its first sample.
 
     A lost sample is null, since JSON knows no NaN.
@@ -35,31 +35,31 @@ def track_for_the_page(recording: Recording, motion: str, surface: str, offer: O
         "motion": table_for_the_page(recording.motion, float(recording.time[0])),
         **fitting(recording, surface),
         "kind": motion,
-        "refused": refused_for(recording.motion, offer, "recording's"),
+        "refused": refused_for(recording.motion, registry, "recording's"),
     }
 
 
 def fitting(recording: Recording, surface: str) -> Settings:
-    """Settings that a recording brings with it."""
+    """Settings that fit a recording."""
     duration = float(np.ptp(recording.time))
     return {"surface": surface, "outputs": list(recording.names), "duration": duration, "window": min(duration, 2.0)}
 
 
-def refused_for(motion: Motion, offer: Offer, whose: str) -> dict[str, str]:
+def refused_for(motion: Motion, registry: Registry, whose: str) -> dict[str, str]:
     """Observers that cannot follow a motion, with the reasons."""
     if motion.signal is None or motion.signal.constant:
         return {}
-    return {name: VARIES.format(whose) for name, make in offer.observers.items() if make.constant_motion}
+    return {name: VARIES.format(whose) for name, make in registry.observers.items() if make.constant_motion}
 
 
-def with_affine_motion(name: str, recording: Recording, offer: Offer, surface: str) -> Recording:
-    """The same recording with the motion's A and b sampled, so that the lab's observers fit it."""
+def with_affine_motion(name: str, recording: Recording, registry: Registry, surface: str) -> Recording:
+    """A recording with the motion's A and b in samples, so that the lab's observers fit it."""
     motion, times = recording.motion, recording.time
     constant = motion.signal is not None and motion.signal.constant
     if motion.signal is not None and motion.signal.times is not None:
         inside = (motion.signal.times > times[0]) & (motion.signal.times < times[-1])
         times = np.unique(np.concatenate([times, motion.signal.times[inside]]))
-    return replace(recording, view=offer.surfaces[surface], motion=sampled(motion, times[:1] if constant else times))
+    return replace(recording, view=registry.surfaces[surface], motion=sampled(motion, times[:1] if constant else times))
 
 
 def sampled(motion: Motion, times: np.ndarray) -> Motion:
@@ -72,12 +72,12 @@ def sampled(motion: Motion, times: np.ndarray) -> Motion:
 
 
 def typed_text(motion: Motion) -> str:
-    """A motion in expressions of time as somebody would type it; empty if it is none, or cannot be read."""
+    """Text of a motion in expressions of time, as it may be typed; empty if there is none."""
     if motion.parameters != (TIME,):
         return ""
     symbols = [symbol for block in BLOCKS.values() for symbol in block]
-    given = zip(symbols, (*motion.A, *motion.b), strict=True)
-    text = "; ".join(f"{symbol} = {sp.sstr(entry)}" for symbol, entry in given if entry.has(TIME))
+    entries = zip(symbols, (*motion.A, *motion.b), strict=True)
+    text = "; ".join(f"{symbol} = {sp.sstr(entry)}" for symbol, entry in entries if entry.has(TIME))
     try:  # sympy writes more than is read; what is not is sampled
         return text if len(text) <= MOST and read_motion(text, BLOCKS) else ""
     except ValueError:

@@ -1,4 +1,4 @@
-"""What Python adds to a run of many points in words: inequalities, the guaranteed decay, what the points would tell."""
+"""Sentences of Python on a run of many points: inequalities, guaranteed decay, observability."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ BOUND_WINDOW = 4.0
 """Seconds of the windows over which the decay is bounded; longer ones promise less, for corrections hide more."""
 
 STILL = 1e-6
-"""rad/s below which a ray rests."""
+"""rad/s below which a ray counts as at rest."""
 
 
 def in_words(run: PointsRun, window: float) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def in_words(run: PointsRun, window: float) -> dict[str, Any]:
 
 
 def _guaranteed(run: PointsRun, seen: bool, window: float) -> tuple[float | None, str]:
-    """What the proof of Theorem 3.4 promises of this run."""
+    """Rate of decay that the proof of Theorem 3.4 guarantees, and a sentence on it."""
     if not seen:
         return None, "Theorem 3.4 guarantees no decay here, for it needs (14)."
     try:
@@ -53,7 +53,7 @@ def _guaranteed(run: PointsRun, seen: bool, window: float) -> tuple[float | None
 
 
 def _turning(run: PointsRun) -> str:
-    """How fast rays turn, which no constant P outruns."""
+    """Sentence on the turning of rays, which bounds the decay with a constant P."""
     recording = run.recording
     assert recording.truth is not None
     turning = ray_turning(points_form(recording), recording.time, recording.truth).mean(axis=0)

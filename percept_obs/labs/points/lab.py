@@ -28,7 +28,7 @@ from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import is_sampled, refuse_longer, times_of
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
+from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import (
@@ -80,6 +80,7 @@ class PointsLab(Lab):
 
     schema = SCHEMA
     title = "Many points of one state"
+    blocks = BLOCKS
 
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form
@@ -110,15 +111,11 @@ class PointsLab(Lab):
         """The run of the same settings in Python."""
         return run_of(self.settings, self._form)
 
-    def typed(self, text: str) -> Typed:
-        """The motion that a text describes; a ValueError if it cannot be read."""
-        return read_motion(text, BLOCKS)
-
     def typed_for_the_page(self, text: str) -> Settings:
         """Texts of a typed P, or of each state's coefficients under a typed motion."""
         if gives_P(text):
             return weight_for_the_page(read_weight(text))
-        typed = self.typed(text)
+        typed = read_motion(text, BLOCKS)
         moved = typed_velocities(typed, velocities())
         states = {state: coefficients_for_the_page(state, moved) for state in STATES}
         functions = {str(f.func) for entry in typed.changed.values() for f in entry.atoms(sp.Function)}
@@ -150,11 +147,20 @@ class PointsLab(Lab):
                 raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
             if is_sampled(self._form.motion):
                 refuse_longer(self._form.motion, settings["duration"])
-        _refuse_motion(settings)
+        self._refuse_motion(settings)
         refuse_P(settings)
         for k, times in enumerate(hidden, 1):
             if times is not None and not times[0] < times[1]:
                 raise ValueError(f"hidden {k} is {times!r}; it must begin at 0 s or later and end after that")
+
+    def _refuse_motion(self, settings: Settings) -> None:
+        if not settings["motion"].strip():
+            return
+        if gives_P(settings["motion"]):
+            raise ValueError('motion gives P; choose weight="typed" and type it there')
+        moved = tuple(entry for vector in _manoeuvre(settings).velocities for entry in vector)
+        function = vectorised((TIME,), moved)
+        self.refuse_poles(settings, lambda times: np.stack(function(times), axis=-1))
 
     def analyse(self) -> Settings:
         """Sentences on the present settings, and the rate of decay that is guaranteed."""
@@ -175,24 +181,12 @@ class PointsLab(Lab):
 points_lab = PointsLab
 
 
-def _refuse_motion(settings: Settings) -> None:
-    """Refuse a typed motion that has no numbers, or gives P."""
-    if not settings["motion"].strip():
-        return
-    if gives_P(settings["motion"]):
-        raise ValueError('motion gives P; choose weight="typed" and type it there')
-    typed = typed_in(settings, "motion", BLOCKS)
-    moved = tuple(entry for vector in _manoeuvre(settings).velocities for entry in vector)
-    function = vectorised((TIME,), moved)
-    typed.refuse_poles(settings["duration"], lambda times: np.stack(function(times), axis=-1))
-
-
 def _manoeuvre(settings: Settings) -> Manoeuvre:
     return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
 
 
 def _spread(points: int) -> list[list[float]]:
-    """So many places in front of the camera: those that the lab opens with, and more around them."""
+    """Positions of points in front of the camera: those that the lab opens with, and more around them."""
     more = [[0.5 * math.cos(2.4 * k), 1 + 0.4 * math.sin(2.4 * k), 2.5 + 0.1 * k] for k in range(3, points)]
     return [*SCHEMA.opening["points"], *more][:points]
 
@@ -208,7 +202,7 @@ def form_of_settings(settings: Settings, own: PointsForm | None = None) -> Point
 
 
 def recording_of(settings: Settings, own: PointsForm | None = None) -> Recording:
-    """What the camera records of the settings' points."""
+    """Recording of the settings' points."""
     form = form_of_settings(settings, own)
     state = state_of(form, settings["points"]).tolist()
     scenario = PointsScenario("from the lab", form, state, settings["duration"])
@@ -222,7 +216,7 @@ def recording_of(settings: Settings, own: PointsForm | None = None) -> Recording
 
 
 def run_of(settings: Settings, own: PointsForm | None = None) -> PointsRun:
-    """The run that lab settings stand for."""
+    """The run of settings."""
     recording = recording_of(settings, own)
     form = points_form(recording)
     assert recording.truth is not None

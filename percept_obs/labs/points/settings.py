@@ -1,4 +1,4 @@
-"""What may be set in the lab of many points."""
+"""Settings of the lab of many points."""
 
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
 from percept_obs.labs.points.typed_weight import MOST_OF_P

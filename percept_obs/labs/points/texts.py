@@ -1,4 +1,4 @@
-"""What the page needs to simulate and to observe many points: layouts, the block of one point, known coefficients."""
+"""Texts from which the page simulates and observes many points: layouts, the block of a point, coefficients."""
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
@@ -26,7 +26,7 @@ LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("
 SURFACE = pinhole()
 
 BLOCKS = MappingProxyType({name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "v", "w_b")})
-"""What may be typed of a motion: how resting points turn and move in the camera's frame, and how the body turns."""
+"""Vectors that may be typed: turning and velocity of resting points in the camera's frame, turning of the body."""
 
 
 def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
@@ -60,7 +60,7 @@ def state_of(form: PointsForm, places: Any) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def model_for_the_page() -> Texts:
-    """Everything that does not depend on the settings."""
+    """Texts that do not depend on the settings."""
     block = point_block(SURFACE)
     distance = sp.Symbol("distance", real=True)
     place = tuple(entry * distance for entry in SURFACE.ray)
@@ -76,7 +76,7 @@ def model_for_the_page() -> Texts:
 
 
 def texts_for_the_page() -> Parts:
-    """Everything that the lab offers."""
+    """Texts of the lab by their places."""
     yield "", model_for_the_page()
 
 
@@ -116,7 +116,7 @@ def _state_for_the_page(name: str) -> Texts:
 
 
 def own_state_for_the_page(form: PointsForm) -> Texts:
-    """The one layout of somebody's own form, and its coefficients.
+    """The one layout of a user's form, and its coefficients.
 
     Raises
     ------
@@ -154,14 +154,14 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
 
 
 def _layout(form: PointsForm, extra: int, points: int) -> Texts:
-    """Where a state's coefficients stand when it has so many of the points."""
+    """Positions of a state's coefficients when it has so many of the points."""
     states = 3 * points + extra
     return {**_arrays(form, states, points), "names": list(form.names[:states])}
 
 
 def _arrays(form: PointsForm, states: int, points: int) -> Texts:
-    part = arrays(form, np.arange(states), np.arange(points))
-    return {name: getattr(part, name).tolist() for name in part._fields if name not in ("shape", "block")}
+    found = arrays(form, np.arange(states), np.arange(points))
+    return {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
 
 
 def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:
@@ -195,7 +195,7 @@ def _equations() -> list[Texts]:
 
 
 def _motion_in_lines() -> list[str]:
-    """What camera and body are known to do, with a letter for each share."""
+    """Equations of the known motion of camera and body, with a letter for each share."""
     letters = {symbol.name: LETTERS.get(symbol.name, symbol) for symbol in SHARES}
     constant = [letters[f"v{k}"] for k in (1, 2, 3)]
     w, W, r, v = sp.symbols("w W r v")

@@ -59,7 +59,7 @@ def read_weight(text: str) -> Diagonal:
     """
     readings = read(text, {"t": TIME, "P": SIZE})
     if [reading.name for reading in readings] != ["P"]:
-        names = ", ".join(reading.name or "an expression" for reading in readings)
+        names = ", ".join(reading.name or "an expression" for reading in readings) or "no value"
         raise ValueError(f"P gives {names}; it must be one expression, such as P = 1 + exp(-t)")
     value = readings[0].formula
     entries = tuple(value) if isinstance(value, sp.MatrixBase) else (value,)

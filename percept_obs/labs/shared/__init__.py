@@ -1,1 +1,1 @@
-"""What all labs share."""
+"""Common parts of the labs."""

@@ -42,7 +42,7 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
 
 
 def equations_in_scalars(observer: Observer) -> list[dict[str, Any]]:
-    """The same of an observer, written out for the form that it has."""
+    """Equations of an observer as `equations_of` gives them, written out for its form."""
     return _without_zeros(observer, partial(in_scalars, observer))
 
 
@@ -96,12 +96,12 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     return lines
 
 
-def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, doubt: Any, R: Any) -> Matrices:
+def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, Q: Any, R: Any) -> Matrices:
     """The extended Kalman filter for an output y = c^T x: flow, innovation, its variance s, gain k, update."""
     k, e, s = (sp.MatrixSymbol(letter, *shape) for letter, shape in (("k", x.shape), ("e", (1, 1)), ("s", (1, 1))))
     return {
         "x'": f,
-        "P'": F * P + P * F.T + doubt,
+        "P'": F * P + P * F.T + Q,
         "e": y - c.T * x,
         "s": c.T * P * c + R,
         "k": P * c * s**-1,
@@ -122,7 +122,7 @@ def cascade_equations(x: Any, P: Any, F: Any, f: Any, C: Any, y: Any, W: Any, Q:
 
 
 def _listed(formulas: list[str]) -> list[str]:
-    return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]
+    return [each for k, text in enumerate(formulas) for each in ([words(","), text] if k else [text])]
 
 
 def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
@@ -130,10 +130,10 @@ def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = 
     x, F, P, c = (sp.MatrixSymbol(name, n, width) for name, width in (("xhat", 1), ("F", n), ("P", n), ("c", 1)))
     # f names the system's rate as a whole, (w^T x2 + phi, g)
     rate, y = sp.MatrixSymbol("f", n, 1), sp.MatrixSymbol("y", 1, 1)
-    doubts = (("process_noise", sp.Identity(n)), ("hidden_process_noise", sp.MatrixSymbol("I_2", n, n)))
-    doubt = sum((letters[q] * ones for q, ones in doubts if letters[q] not in zero), sp.ZeroMatrix(n, n))
+    noises = (("process_noise", sp.Identity(n)), ("hidden_process_noise", sp.MatrixSymbol("I_2", n, n)))
+    Q = sum((letters[q] * ones for q, ones in noises if letters[q] not in zero), sp.ZeroMatrix(n, n))
     R = sp.MatrixSymbol(letters["noise_variance"].name, 1, 1)
-    rows = kalman_equations(x, P, F, rate, c, y, doubt, R)
+    rows = kalman_equations(x, P, F, rate, c, y, Q, R)
     at_estimate = sp.Function("f")(sp.Symbol("xhat"))
     ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
     hidden = [] if letters["hidden_process_noise"] in zero else ["with", ones, "for measured and hidden"]

@@ -1,4 +1,4 @@
-"""What every lab shares: the page's bundle and texts, state in traitlets, errors that show, one lab a cell.
+"""Base class of the labs: bundle and texts of the page, state in traitlets, errors that show, one lab a cell.
 
 To add a lab: a folder with a subclass of `Lab`, a `Schema` of its settings, and the texts that ``printing.py`` prints
 for its page.  Beside it a folder in ``front/src`` with a subclass of ``Live``, named in ``front/src/main.js``.
@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import warnings
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from inspect import cleandoc
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import anywidget
@@ -20,10 +21,11 @@ import traitlets
 from IPython.display import display
 from IPython.utils.capture import capture_output
 
+from percept_obs.compile import Array
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import Typed
+from percept_obs.labs.shared.typed_motion import Blocks, read_motion
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
 from percept_obs.validation import write_whole
@@ -43,16 +45,16 @@ TYPED = ("motion", "P", "P0")
 """The settings that are typed as expressions of time."""
 
 MOST_READ = 2000
-"""Letters of a text that the page may ask to be read."""
+"""Largest number of characters of a text that is read for the page."""
 
 MOST_WRITTEN = 50
-"""How many typed motions are kept ready for the page."""
+"""Largest number of typed motions that are kept for the page."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
 
 def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
-    """What a camera records until the point leaves the half-space in front of it.
+    """Recording of a camera until the point leaves the half-space in front of it.
 
     Raises
     ------
@@ -69,12 +71,19 @@ def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recordin
     return record(scenario, times[count - 1], camera, seed)
 
 
+def refuse_observers(settings: Settings, refused: Mapping[str, str]) -> None:
+    """Raise a ValueError if an observer of the settings is among those that are refused, with the reason."""
+    for name in settings["observers"]:
+        if name in refused:
+            raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
+
+
 class BadSettings(traitlets.TraitError, ValueError):
-    """Settings that make no sense; as a TraitError, so that traitlets takes back what came with them."""
+    """Settings that are refused; a TraitError, so that traitlets takes back what came with them."""
 
 
 class _Checked(traitlets.TraitType[Settings, Settings]):
-    """Settings that the lab has checked, also those that equal the present ones, as True equals 1."""
+    """Settings that the lab checks, also those that equal the present ones, as True equals 1."""
 
     def validate(self, lab: Any, value: Any) -> Settings:
         try:
@@ -86,7 +95,7 @@ class _Checked(traitlets.TraitType[Settings, Settings]):
 
 
 class Lab(anywidget.AnyWidget):
-    """A widget whose page computes by itself, from texts that were printed for it and a model that Python adds.
+    """A widget whose page computes by itself, from texts that are printed for it and a model from Python.
 
     The page sends `settings` and `summary` together when the hand rests; Python answers with `analysis`, which carries
     the summary's serial.  Nothing is sent as a message of its own, so that a busy kernel skips to the latest state.
@@ -95,35 +104,37 @@ class Lab(anywidget.AnyWidget):
     Parameters
     ----------
     settings : dict
-        Settings to open with, as far as they differ from the next.
+        Settings to open with, where they differ from `opening`.
     opening : dict
-        Settings to open with otherwise.
+        Complete settings to open with.
     standard : dict
-        What every preset begins with.
+        Settings that every preset begins with.
     texts : bytes
-        What was printed for the page, where it is not what the package ships.
+        Printed texts of the page, where they are not those of the package.
     **model
-        What the page needs besides.
+        Data of the page besides its texts.
     """
 
     _esm = BUNDLE
     schema: Schema
     title = "A lab"
+    blocks: Blocks = MappingProxyType({})
+    """Vectors and matrices that may be typed, by their letters."""
     works_alone = True
-    """Whether the page can do without Python."""
+    """True if the page works without Python."""
     from_the_page: tuple[str, ...] = ("asked", "settings", "summary")
-    """What the page may set."""
+    """Traits that the page may set."""
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
-    texts = traitlets.Bytes(help="What was printed for the page, compressed.").tag(sync=True)
-    model = traitlets.Dict(help="What the page needs besides.").tag(sync=True)
+    texts = traitlets.Bytes(help="Printed texts of the page, compressed.").tag(sync=True)
+    model = traitlets.Dict(help="Data of the page besides its texts.").tag(sync=True)
     settings: Any = _Checked({}, help="Everything that defines what is shown.").tag(sync=True)
-    summary = traitlets.Dict(help="What the page found: verdicts, numbers at some times.").tag(sync=True)
-    analysis = traitlets.Dict(help="What Python adds to it when the hand rests.").tag(sync=True)
+    summary = traitlets.Dict(help="Results of the page: verdicts, numbers at some times.").tag(sync=True)
+    analysis = traitlets.Dict(help="Analysis by Python when the hand rests.").tag(sync=True)
     asked = traitlets.Unicode(help="A motion that somebody typed, to be read.").tag(sync=True)
     written = traitlets.Dict(help="Typed motions, each as a function for the page, or why it cannot be read.").tag(
         sync=True
     )
-    error = traitlets.Unicode(help="What went wrong in Python; the page shows it.").tag(sync=True)
+    error = traitlets.Unicode(help="Error in Python, which the page shows.").tag(sync=True)
 
     def __init__(
         self, kind: str, settings: Settings, opening: Settings, standard: Settings, texts: bytes = b"", **model: Any
@@ -152,16 +163,22 @@ class Lab(anywidget.AnyWidget):
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
 
-    def typed(self, text: str) -> Typed:
-        """The motion that a text describes; a ValueError if it cannot be read."""
-        raise ValueError("no motion is typed in this lab")
+    def refuse_poles(self, settings: Settings, numbers: Callable[[Array], Array]) -> None:
+        """Raise a ValueError for a typed motion that cannot be read, or is not finite; see `Typed.refuse_poles`."""
+        try:
+            typed = read_motion(settings["motion"], self.blocks)
+        except ValueError as error:
+            raise ValueError(f"motion: it must be expressions of t, but {error}") from None
+        typed.refuse_poles(settings["duration"], numbers)
 
     def typed_for_the_page(self, text: str) -> Settings:
-        """What the page needs of a typed motion; a ValueError if it cannot be read."""
-        return self.typed(text).for_the_page()
+        """Texts of a typed motion; a ValueError if it cannot be read."""
+        if not self.blocks:
+            raise ValueError("no motion is typed in this lab")
+        return read_motion(text, self.blocks).for_the_page()
 
     def write_down(self, settings: Settings) -> None:
-        """Have the typed motions of settings ready for the page."""
+        """Print the typed motions of settings for the page."""
         kept = settings.get("kept") or {}
         for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
             if text.strip() and "source" not in self.written.get(text, {}):
@@ -181,14 +198,14 @@ class Lab(anywidget.AnyWidget):
             self._write(change["new"])
 
     def analyse(self) -> Settings:
-        """Look deeper at the settings that the page has come to rest on."""
+        """Analysis of the present settings, which the page shows when the hand rests."""
         return {}
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write the lab into a page of its own, which opens without Python, without a server and without a network.
 
         The page opens with the present settings.  It holds the printed equations of every choice, so that all controls
-        work; what Python adds when the hand rests is left out.
+        work; the analysis by Python is left out.
 
         Parameters
         ----------
@@ -220,7 +237,7 @@ class Lab(anywidget.AnyWidget):
         write_whole(target, page_of(self.get_state(), self.title).encode())
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
-        """Take the page's state; what goes wrong is shown in the lab and raised for the log."""
+        """Take the page's state; an error is shown in the lab and raised for the log."""
         try:
             with capture_output():  # progress bars have no cell to stand in, and would fill the log
                 super().set_state({name: sync_data[name] for name in self.from_the_page if name in sync_data})
@@ -231,13 +248,13 @@ class Lab(anywidget.AnyWidget):
             self.error = ""
 
     def _repr_mimebundle_(self, **options: Any) -> Any:
-        """What a cell shows; the lab remembers in which cells it stands."""
+        """Output of a cell; the lab remembers in which cells it is shown."""
         cell, _ = _running_cell()
         self._shown_in |= {cell}
         return super()._repr_mimebundle_(**options)
 
     def _ipython_display_(self) -> None:
-        """Show the lab, and behind it what is seen in its place once its kernel has ended."""
+        """Show the lab, and a hint for when its kernel has ended."""
         data, metadata = self._repr_mimebundle_()
         display(data | {"text/plain": self.title}, metadata=metadata, raw=True)
         display({"text/html": ended(self.title), "text/plain": ""}, raw=True)

@@ -1,4 +1,4 @@
-"""Formulas as MathML in which letters carry the names of what sets them."""
+"""Formulas as MathML whose letters carry the names of gains and settings."""
 
 import re
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ BETTER = (
     ("&#x1D540;", "I"),
     ("<mo>&dd;</mo>", "<mi>d</mi>"),
 )
-"""What is written in place of what sympy prints."""
+"""Replacements of what sympy prints."""
 
 
 def formula(left: object, right: object, letters: Mapping[str, sp.Symbol] | None = None) -> str:
@@ -56,9 +56,9 @@ def after(symbol: sp.Basic) -> str:
     return f"<msup><mrow>{markup(symbol)}</mrow><mo>+</mo></msup>"
 
 
-def row(*parts: str) -> str:
-    """MathML of parts side by side; a part that is no MathML is words."""
-    return f"<mrow>{''.join(part if part.startswith('<') else words(part) for part in parts)}</mrow>"
+def row(*texts: str) -> str:
+    """MathML of texts side by side; a text that is not MathML becomes words."""
+    return f"<mrow>{''.join(text if text.startswith('<') else words(text) for text in texts)}</mrow>"
 
 
 def words(text: str) -> str:

@@ -1,4 +1,4 @@
-"""An observer in the texts that the page runs and shows: what is known of it, its gains, its loop."""
+"""Texts of an observer that the page runs and shows: facts, gains, loop."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,7 +14,7 @@ from percept_obs.observers.parts import first_seen, hats
 
 
 def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:
-    """What is known about an observer, its gains, and its equations in the letters of the paper.
+    """Facts, gains and equations of an observer, in the letters of the paper.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, 
 
 
 def with_all_gains(ways: Mapping[str, Observer]) -> Observer:
-    """The observer that has the gains of every way in which it switches."""
+    """The observer with the switch that has all gains."""
     return max(ways.values(), key=lambda observer: len(observer.gains))
 
 
 def gain_for_the_page(gain: Gain) -> Texts:
-    """A gain, and a function that says whether a value is allowed."""
+    """A gain, and a function that tests whether a value is allowed."""
     return {
         "name": gain.name,
         "letter": markup(gain.symbol),
@@ -50,7 +50,7 @@ def gain_for_the_page(gain: Gain) -> Texts:
 
 
 def kernel_for_the_page(observer: Observer) -> Texts:
-    """An observer's loop, start and estimate for one structure, and what limits them."""
+    """Loop, start, estimate, gaps and step limit of an observer of one form."""
     form, equations = observer.form, observer.equations
     known = (*form.x1, *form.parameters, *equations.gains)
     claimed, fastest = observer.covariance, observer.fastest

@@ -1,8 +1,8 @@
-"""What is printed for the page when the package is built: one compressed file a lab, beside the bundle.
+"""Files of texts that are printed for the page when the package is built: one compressed file a lab.
 
-The first line lists all lines that longer texts are made of, since loops share most of theirs.  Then a line a part: its
-place in the page's model, a tab, JSON.  The page takes the file as it is and parses a part when it is first needed, and
-so does Python.  Written by ``python -m percept_obs.labs.printing``.
+The first line lists the lines of all longer texts, since loops share most of theirs.  Then a line a part: its place in
+the page's model, a tab, JSON.  Page and Python parse a part when it is first needed.  Written by
+``python -m percept_obs.labs.printing``.
 """
 
 import gzip
@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 FRONT = Path(__file__).parents[1] / "front"
-"""The page's side of all labs: sources, the bundle that is built from them, and what is printed for it."""
+"""Folder of the page: sources, bundle, printed texts."""
 
 Texts = dict[str, Any]
 Parts = Iterable[tuple[str, Texts]]
 """Texts by their place: "" for what stands in the model itself, "forms/pinhole y1" for an entry of its forms."""
 
 LINES = "\n"
-"""The key under which numbers of lines stand for a text."""
+"""Key of a text that is given by the numbers of its lines."""
 
 
 def file_of(kind: str) -> Path:
@@ -29,12 +29,12 @@ def file_of(kind: str) -> Path:
 
 
 def packed(parts: Parts) -> bytes:
-    """Texts as a file holds them; the same texts are the same bytes."""
+    """Contents of a file with these texts; equal texts give equal bytes."""
     return _file((), {}, parts, level=9)
 
 
 def with_texts(kind: str, added: dict[str, Texts]) -> bytes:
-    """What was printed for a lab, with some places printed anew; quick rather than small."""
+    """Contents of a lab's file with texts added or replaced; quick rather than small."""
     return _file(*_rows_of(kind), added.items(), level=1) if added else file_of(kind).read_bytes()
 
 
@@ -52,15 +52,15 @@ def part(kind: str, place: str = "") -> Texts:
 
 
 def _file(lines: Iterable[str], rows: Mapping[str, str], parts: Parts, level: int) -> bytes:
-    """A file of rows that are there and of parts beside or in place of them."""
+    """Contents of a file with these rows, and with parts added or replaced."""
     numbers = {line: number for number, line in enumerate(lines)}
     added = {place: json.dumps(_numbered(texts, numbers), allow_nan=False) for place, texts in parts}
-    told = [f"{place}\t{row}" for place, row in {**rows, **added}.items()]
-    return gzip.compress("\n".join([json.dumps(list(numbers)), *told]).encode(), level, mtime=0)
+    rows_of_file = [f"{place}\t{row}" for place, row in {**rows, **added}.items()]
+    return gzip.compress("\n".join([json.dumps(list(numbers)), *rows_of_file]).encode(), level, mtime=0)
 
 
 def _numbered(texts: Any, numbers: dict[str, int]) -> Any:
-    """The same with numbers for the lines of every text that has several."""
+    """Texts with line numbers in place of every text of several lines."""
     if isinstance(texts, dict):
         return {name: _numbered(each, numbers) for name, each in texts.items()}
     if isinstance(texts, list | tuple):

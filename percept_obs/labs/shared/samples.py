@@ -1,4 +1,4 @@
-"""Motions in samples that somebody brings to a lab: whether they suit a run, and how the page has them."""
+"""Sampled motions of a user in a lab: checks, and tables for the page."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from percept_obs.system.signal import slack_of
 from percept_obs.validation import limit
 
 MOST_SAMPLES = 10_000
-"""100 s at 100 Hz: a kink for each, at which page and Python end a step."""
+"""100 s at 100 Hz; page and Python end a step at each sample."""
 
 
 def is_sampled(motion: Motion) -> bool:
-    """Whether numbers of a motion are known at some times."""
+    """Return True if a motion is sampled."""
     return motion.signal is not None and motion.signal.times is not None
 
 
@@ -52,7 +52,7 @@ def table_for_the_page(motion: Motion, begun: float = 0.0) -> Settings:
 
 
 def samples_for_the_page(motion: Motion) -> Settings:
-    """The same of samples that suit a run, and up to when a run may last."""
+    """A sampled motion in numbers, and the longest duration of a run."""
     return {**table_for_the_page(motion), "until": _until(motion)}
 
 

@@ -1,4 +1,4 @@
-"""Labs in pages without Python and without a network: what a lab is made of stands in the page itself, compressed."""
+"""Pages that hold labs, without Python and without a network."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from typing import Any
 from percept_obs.labs.shared.printed import FRONT
 
 STARTER = FRONT / "alone.js"
-"""What turns the places of a page into labs."""
+"""Script that turns the places of a page into labs."""
 
 SHOWN = ("kind", "model", "settings", "written", "frames")
-"""What of a lab's state its page is made from, besides its texts."""
+"""Traits of a lab that its page holds, besides its texts."""
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'"
-"""With it a browser refuses every request that a page might make."""
+"""Content policy under which a browser refuses every request of the page."""
 
 PAGE = """<!doctype html>
 <html lang="en">
@@ -43,7 +43,7 @@ PAGE = """<!doctype html>
 
 
 ENDED = "percept-obs-ended"
-"""DOM class of what a notebook shows in the place of a lab whose kernel has ended."""
+"""DOM class of the hint in place of a lab whose kernel has ended."""
 
 _LOST = ".jp-OutputArea:not(:has(.percept-lab)):has(.jp-OutputArea-output.jupyter-widgets)"
 _IN_ITS_PLACE = f"""<div class="{ENDED}">
@@ -59,7 +59,7 @@ body:has(.percept-lab) .{ENDED}, .jp-OutputArea .{ENDED} {{{{ display: none; }}}
 
 
 def ended(title: str) -> str:
-    """What a notebook shows in the place of a lab that it does not hold; hidden as long as the lab is there."""
+    """Hint in place of a lab whose kernel has ended; hidden as long as the lab is there."""
     return _IN_ITS_PLACE.format(title=escape(title))
 
 
@@ -75,21 +75,21 @@ def page_of(state: Mapping[str, Any], title: str) -> str:
 
 
 def place_of(state: Mapping[str, Any]) -> str:
-    """The place of a lab in a page, with what the page needs to know of it."""
-    told = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
+    """HTML of a lab's place in a page, with its data."""
+    data = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
     # The end of a script would end it within a text, too.
-    inside = json.dumps(told, allow_nan=False, default=_in_letters).replace("<", "\\u003c")
+    inside = json.dumps(data, allow_nan=False, default=_as_base64).replace("<", "\\u003c")
     return f'<div data-percept-obs><script type="application/json">{inside}</script></div>'
 
 
 def library_of(states: Iterable[Mapping[str, Any]]) -> str:
-    """The script that a page with these labs needs once: the bundle, and what was printed for them."""
+    """Script that a page with these labs needs once: the bundle and their texts."""
     texts = {_name_of(state["texts"]): b64encode(state["texts"]).decode() for state in states}
     bundle = gzip.compress((FRONT / "lab.js").read_bytes(), mtime=0)
     return f"window.perceptObs = {json.dumps({'bundle': b64encode(bundle).decode(), 'texts': texts})};"
 
 
-def _in_letters(data: bytes) -> dict[str, str]:
+def _as_base64(data: bytes) -> dict[str, str]:
     return {"base64": b64encode(data).decode()}
 
 

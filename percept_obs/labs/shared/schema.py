@@ -1,7 +1,6 @@
-"""What may be set in a lab, said once: Python checks with it, the page reads it, the docstring lists it.
+"""Schema of a lab's settings: Python checks with it, the page reads it, the docstring lists it.
 
-A kind reads a value: what it gives back is plain data of that kind, and whatever else comes is a ValueError with the
-setting's name and what is expected.  Dataclasses say this in less than a library's validators and their sentences.
+A kind reads a value as plain data, or raises a ValueError with the setting's name and what is expected.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ class Kind:
     opening : object
         The value to open with.
     label, unit : str
-        What the page calls it.
+        The page's words for it.
     about : str
-        What it is, for the docstring of the lab.
+        Its meaning, for the docstring of the lab.
     """
 
     opening: Any = None
@@ -41,7 +40,7 @@ class Kind:
 
     @property
     def expected(self) -> str:
-        """What a value must be, in words."""
+        """Description of the values that are allowed."""
         return self._expected()
 
     def read(self, name: str, value: object) -> Any:
@@ -53,8 +52,8 @@ class Kind:
 
     def for_the_page(self) -> Settings:
         """Plain data: the kind's name, and its fields that say something."""
-        told = {part.name: _plain(getattr(self, part.name)) for part in fields(self) if part.repr}
-        return {"kind": type(self).__name__.lower(), **{k: v for k, v in told.items() if v is not None and v != ""}}
+        plain = {field.name: _plain(getattr(self, field.name)) for field in fields(self) if field.repr}
+        return {"kind": type(self).__name__.lower(), **{k: v for k, v in plain.items() if v is not None and v != ""}}
 
     def _expected(self) -> str:
         raise NotImplementedError
@@ -80,7 +79,7 @@ class Number(Kind):
     whole, zero : bool
         Whether only whole numbers are allowed, and whether 0 is.
     reason : str
-        Why it is bounded, where that is not plain.
+        The reason for a bound, for the error message.
     """
 
     opening: float = 0.0
@@ -108,7 +107,7 @@ class Number(Kind):
 
 @dataclass(frozen=True)
 class Choice(Kind):
-    """One of several names; `reason` says why there are no others, where that is not plain."""
+    """One of several names; `reason` says why there are no others."""
 
     opening: str = ""
     names: Sequence[str] = ()
@@ -123,7 +122,7 @@ class Choice(Kind):
 
 @dataclass(frozen=True)
 class Names(Kind):
-    """Some of several names, each once; `least` says how many at least."""
+    """Distinct names out of several, at least `least`."""
 
     opening: Sequence[str] = ()
     names: Sequence[str] = ()
@@ -143,7 +142,7 @@ class Names(Kind):
 
 @dataclass(frozen=True)
 class Text(Kind):
-    """A text of at most so many characters, which is read and never run."""
+    """A text of at most `most` characters, which is never run."""
 
     opening: str = ""
     most: int = 100
@@ -170,7 +169,7 @@ class Flag(Kind):
 
 @dataclass(frozen=True)
 class Row(Kind):
-    """A list with an entry of each of some kinds, such as a vector, or a matrix, which is a row of rows."""
+    """A list with an entry of each kind: a vector, or a matrix as a row of rows."""
 
     entries: Sequence[Kind]
 
@@ -209,7 +208,7 @@ class Several(Kind):
 
 @dataclass(frozen=True)
 class Group(Kind):
-    """Settings of their own by their names; where it is `partial`, those that are left out stay as they open."""
+    """Settings by their names; where it is `partial`, those that are left out stay as they open."""
 
     of: Mapping[str, Kind]
     partial: bool = False
@@ -233,7 +232,7 @@ class Group(Kind):
 
 @dataclass(frozen=True)
 class Entries(Kind):
-    """Values of one kind under names that are not known before, at most so many."""
+    """Values of one kind under at most `most` names of any kind."""
 
     of: Kind
     most: int = 1
@@ -256,7 +255,7 @@ class Entries(Kind):
 
 @dataclass(frozen=True, kw_only=True)
 class GainsOf(Group):
-    """Gains of an observer, which decides what is allowed; it is made only for gains other than its own."""
+    """Gains of an observer, which checks them; it is made only for gains other than its own."""
 
     observer: Callable[[], Observer] = field(repr=False)
 
@@ -277,13 +276,13 @@ class Optional(Kind):
         return f"None or {self.of.expected}"
 
     def read(self, name: str, value: object) -> Any:
-        """None, or what the other kind reads."""
+        """None, or a value of the other kind."""
         return None if value is None else self.of.read(name, value)
 
 
 @dataclass(frozen=True)
 class Whole(Kind):
-    """Settings of the same lab, which the lab itself reads."""
+    """Settings of the same lab, which the lab reads."""
 
     def _expected(self) -> str:
         return "a mapping of settings"
@@ -300,11 +299,11 @@ class Schema(dict[str, Kind]):
 
     @property
     def opening(self) -> Settings:
-        """What every setting opens with."""
+        """Settings to open with."""
         return deepcopy({name: kind.opening for name, kind in self.items()})
 
     def read(self, settings: object, opening: Settings) -> Settings:
-        """Settings as plain data, completed by those to open with.
+        """Settings as plain data, completed by the opening ones.
 
         Raises
         ------
@@ -324,9 +323,9 @@ class Schema(dict[str, Kind]):
 
     def listed(self) -> str:
         """A line for each setting, for a docstring."""
-        told = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
+        about = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
         units = {name: f", in {kind.unit}" if kind.unit else "" for name, kind in self.items()}
-        return "\n".join(f"{name} : {told[name]}{units[name]}" for name in self)
+        return "\n".join(f"{name} : {about[name]}{units[name]}" for name in self)
 
 
 def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:

@@ -1,4 +1,4 @@
-"""Which imaging surfaces the labs offer, and where settings keep the numbers of their shapes."""
+"""Imaging surfaces of the labs, and the settings that hold the numbers of their shapes."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -8,7 +8,7 @@ from percept_obs.system import surfaces
 from percept_obs.system.surfaces import ImagingSurface
 
 MOST_NUMBERS = 3
-"""Numbers that a surface's shape may have, a control each; an ellipsoid's six are left to Python."""
+"""Largest number of parameters of a surface, a control each; an ellipsoid's six are left to Python."""
 
 SURFACES = {make.__name__: make for make in surfaces.SURFACES if len(make().parameters) <= MOST_NUMBERS}
 
@@ -17,12 +17,12 @@ SHAPES = MappingProxyType({"plane": "normal", "unified": "xi"})
 
 
 def shaped_surface(settings: Mapping[str, Any]) -> ImagingSurface:
-    """The surface of the package that settings describe."""
+    """The package's surface of settings."""
     name = settings["surface"]
     return SURFACES[name](*([settings[SHAPES[name]]] if name in SHAPES else []))
 
 
 def numbers_of(surface: ImagingSurface, name: str) -> dict[str, Any]:
-    """The settings that keep the numbers of a surface's shape, by the lab's name of it; none if it has none."""
+    """Settings that hold the parameters of a surface of this name; empty if it has none."""
     numbers = list(surface.values.values()) if name in SHAPES else []
     return {SHAPES[name]: numbers if len(numbers) > 1 else numbers[0]} if numbers else {}

@@ -1,4 +1,4 @@
-"""Motions that vary, typed as expressions of t: read as derivations are, never evaluated, and printed for the page."""
+"""Motions that are typed as expressions of t: read like derivations, never evaluated, and printed for the page."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from percept_obs.checking.points import key
 from percept_obs.checking.reading import read
 from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
-from percept_obs.labs.shared.schema import Settings, Text
+from percept_obs.labs.shared.schema import Text
 from percept_obs.system.motion import TIME
 from percept_obs.validation import expression
 
 MOST = 400
 INSTANTS = 501
-"""At how many times of a run a typed motion is looked at before it is taken."""
+"""Number of times of a run at which a typed motion is checked."""
 
 Blocks = Mapping[str, sp.ImmutableMatrix]
-"""Letters of vectors and matrices, with the symbols of their entries."""
+"""Vectors and matrices of symbols, by their letters."""
 
 
 def typed_setting(example: str) -> Text:
     """The setting of a typed motion."""
-    about = f"what varies, in expressions of t, such as {example!r}; the numbers' letters may stand in them"
+    about = f"expressions of t for what varies, such as {example!r}; the numbers' letters may stand in them"
     return Text("", MOST, label="Over time", about=about)
 
 
 @dataclass(frozen=True)
 class Typed:
-    """A motion that was read.
+    """A typed motion.
 
     Parameters
     ----------
     text : str
     symbols : tuple of symbols
-        Of the numbers that a lab sets.
+        The numbers that a lab sets.
     expressions : tuple of expressions
         One for each symbol, in `TIME` and the symbols.
     """
@@ -50,17 +50,17 @@ class Typed:
 
     @property
     def changed(self) -> dict[str, sp.Expr]:
-        """What is not just the number that the lab sets, by its name."""
+        """Expressions other than the number that the lab sets, by their names."""
         pairs = zip(self.symbols, self.expressions, strict=True)
         return {symbol.name: entry for symbol, entry in pairs if entry != symbol}
 
     def rows(self, times: Array, numbers: Array) -> Array:
-        """The numbers at times, shape (T, n), where the lab sets these, shape (n,) or (T, n)."""
+        """Values at T times, shape (T, n), for the numbers that the lab sets, shape (n,) or (T, n)."""
         function = vectorised((TIME, *self.symbols), self.expressions)
         return np.stack(function(times, *numbers.T), axis=-1)
 
     def refuse_poles(self, duration: float, numbers: Callable[[Array], Array]) -> None:
-        """Refuse what has no number at some time of a run, for numbers that the lab sets, as a function of times."""
+        """Raise a ValueError if a value is not finite at some time; `numbers` are those of the lab at given times."""
         times = np.linspace(0, duration, INSTANTS)
         with np.errstate(all="ignore"):
             found = self.rows(times, numbers(times))
@@ -73,7 +73,7 @@ class Typed:
             )
 
     def for_the_page(self) -> Texts:
-        """A function of (t, numbers) of what it changes, its places, what it uses and makes 0, the same in Python."""
+        """A function of (t, numbers) for the changed entries, their columns, the numbers used, those that are 0."""
         names = [symbol.name for symbol in self.symbols]
         source = function_source((TIME, *self.symbols), tuple(self.changed.values()))
         zero = [name for name, entry in self.changed.items() if entry == 0]
@@ -93,7 +93,7 @@ def read_motion(text: str, blocks: Blocks) -> Typed:
         Lines such as "a12 = 0.4 cos(2t); b3 = b3 + 0.1 t", or of a whole block, "b = [sin(t), 0, 1]".  A line may
         also name something to be used in the next ones, "q = 2t".
     blocks : mapping of letters to matrices of symbols
-        What may be given; the entries of all of them are what a lab sets in numbers.
+        Their entries are the numbers that a lab sets, and may be given.
 
     Raises
     ------
@@ -107,14 +107,6 @@ def read_motion(text: str, blocks: Blocks) -> Typed:
     (b1 + sin(2*t), b2, b3)
     """
     return _read(text, tuple(blocks.items()))
-
-
-def typed_in(settings: Settings, name: str, blocks: Blocks) -> Typed:
-    """What is typed in a setting; a ValueError with its name if it cannot be read."""
-    try:
-        return read_motion(settings[name], blocks)
-    except ValueError as error:
-        raise ValueError(f"{name}: it must be expressions of t, but {error}") from None
 
 
 @lru_cache(maxsize=64)

@@ -1,4 +1,4 @@
-"""What somebody brings to a lab: an observer as equations, under a name that settings, page and copied code know."""
+"""Observers of a user in a lab, with the texts that the page needs to run, show and copy them."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from percept_obs.system.forms import PartitionedSystem
 
 
 @dataclass(frozen=True, eq=False)
-class OwnObserver:
-    """An observer that somebody brought.
+class UserObserver:
+    """An observer of a user, with the interface of `Family`.
 
     Parameters
     ----------
     name : str
-        By which settings know it, and as Python calls it.
+        Its name in settings and in Python.
     make : function of a form
     form : PartitionedSystem, optional
-        The only one that it is made for, if it was brought ready made.
+        The only form that it fits, if it was given as an `Observer`.
     """
 
     name: str
@@ -38,18 +38,18 @@ class OwnObserver:
 
     @property
     def switches(self) -> tuple[str, ...]:
-        """Ways in which it switches, its own first."""
+        """Names of its switches, its own first."""
         return self.make.switches if isinstance(self.make, Family) else ()
 
     @property
     def constant_motion(self) -> bool:
-        """Whether it is known to hold for a constant motion only."""
+        """Return True if it is known to need a constant motion."""
         if isinstance(self.make, Family):
             return self.make.constant_motion
         return self.form is not None and self.make(self.form).constant_motion
 
     def refusal(self, form: PartitionedSystem) -> str:
-        """Why there is no such observer of this form, or none that the page can run."""
+        """Reason why it does not fit a form, or why the page cannot run it; empty if there is none."""
         if self.form is not None and not same_system(self.form, form):
             return (
                 f"it was made for {', '.join(self.form.measured)} measured on the "
@@ -57,9 +57,8 @@ class OwnObserver:
                 f"{', '.join(map(str, self.form.parameters))}; bring a function of a form instead, "
                 f"def {self.name}(form)"
             )
-        try:  # what somebody wrote can be asked in no other way
-            made = self(form)
-            kernel_for_the_page(made)
+        try:  # a user's function can be asked in no other way
+            kernel_for_the_page(self(form))
         except NotCompilable as error:
             return f"the page cannot run it: {error}"
         except ValueError as error:
@@ -67,16 +66,16 @@ class OwnObserver:
         return ""
 
     def __call__(self, form: PartitionedSystem, **options: Any) -> Observer:
-        """The observer of this form; a ValueError if there is none."""
+        """The observer of a form; a ValueError if there is none."""
         return _made(self.make, form, tuple(options.items()), self.name)
 
     def for_the_page(self) -> Texts:
-        """How copied code calls it, and what it must import or add."""
+        """Its call in copied code, and its import."""
         return {"call": self.name if self.form is not None else f"{self.name}(form)", **origin(self.make, self.name)}
 
 
-Maker = Family | OwnObserver
-"""What makes observers of forms: a family of the package, or what somebody brought."""
+Maker = Family | UserObserver
+"""A function of forms that gives observers."""
 
 
 @lru_cache(maxsize=64)
@@ -90,7 +89,7 @@ def _made(make: Callable[..., Observer], form: PartitionedSystem, options: Any, 
 
 
 def same_system(one: PartitionedSystem, other: PartitionedSystem) -> bool:
-    """Whether two forms are of the same system with the same coordinates measured, however they are written."""
+    """Return True if two forms are of one system with the same measured coordinates, however they are written."""
     if one is other:
         return True
     if (one.x1, one.x2, one.parameters, one.coordinates) != (other.x1, other.x2, other.parameters, other.coordinates):
@@ -99,87 +98,83 @@ def same_system(one: PartitionedSystem, other: PartitionedSystem) -> bool:
 
 
 def origin(value: object, name: str) -> Texts:
-    """From which module code can import what has this name; none if it must be added by hand."""
+    """The module that has a value under this name; an empty one if copied code cannot import it."""
     module = sys.modules.get(getattr(value, "__module__", None) or "")
     there = module is not None and module.__name__ != "__main__" and getattr(module, name, None) is value
     return {"name": name, "module": module.__name__ if there and module else ""}
 
 
-def brought(
-    values: Sequence[Any], ours: Mapping[str, Callable[..., Observer]]
-) -> tuple[list[str], dict[str, OwnObserver]]:
-    """Observers that were asked for: the names of all, and those that are not the lab's, by their names.
+def read_observers(values: Sequence[Any], known: Mapping[str, Any]) -> tuple[list[str], dict[str, UserObserver]]:
+    """Names of the observers that a lab is to open with, and those of the user by their names.
 
     Parameters
     ----------
     values : sequence of names, functions of a form, or observers
-    ours : mapping of names to what makes observers
-        What the lab has.
+    known : mapping of names to functions of a form
+        The lab's own observers.
 
     Raises
     ------
     ValueError
-        If one is none of these, or two have one name.
+        If a value is none of these, or two have one name.
 
     Examples
     --------
     >>> from percept_obs import ibo
-    >>> brought(["sliding_mode", ibo], {"identifier_based": ibo})
+    >>> read_observers(["sliding_mode", ibo], {"identifier_based": ibo})
     (['sliding_mode', 'identifier_based'], {})
     """
-    names: list[str] = []
-    own: dict[str, OwnObserver] = {}
-    names_of = {make: name for name, make in ours.items()}
     if isinstance(values, str) or not isinstance(values, Sequence):
         raise ValueError(f"observers is {values!r}; it must be a list of names, functions of a form, or observers")
+    names: list[str] = []
+    users: dict[str, UserObserver] = {}
+    name_of = {make: name for name, make in known.items()}
     for value in values:
-        if isinstance(value, str) or (callable(value) and value in names_of):
-            names.append(value if isinstance(value, str) else names_of[value])
-            continue
         if isinstance(value, Observer):
-            name = free(value.name, {*ours, *own}, "my_observer")
-            own[name] = OwnObserver(name, lambda form, observer=value: observer, value.form)
+            name = free_name(value.name, {*known, *users}, "my_observer")
+            users[name] = UserObserver(name, lambda form, observer=value: observer, value.form)
+        elif isinstance(value, str) or (callable(value) and value in name_of):
+            name = value if isinstance(value, str) else name_of[value]
         elif callable(value):
-            name = named(getattr(value, "__name__", ""), "my_observer")
-            if name in ours or name in own:
+            name = identifier(getattr(value, "__name__", ""), "my_observer")
+            if name in known or name in users:
                 raise ValueError(f"there is an observer {name} already; give yours another name")
-            own[name] = OwnObserver(name, value)
+            users[name] = UserObserver(name, value)
         else:
             raise ValueError(f"{value!r} is no observer; bring its name, a function of a form, or an Observer")
         names.append(name)
-    return names, own
+    return names, users
 
 
-def of_an_observer(make: Maker, ways: Mapping[str, Observer]) -> Texts:
-    """What is known about an observer, with its equations: for any w, phi and g, or else as they are in `ways`."""
+def texts_of_observer(make: Maker, ways: Mapping[str, Observer]) -> Texts:
+    """An observer's facts and equations: for any w, phi and g, or else those of the observers in `ways`."""
     if make in IN_MATRICES or not make.refusal(abstract_form()):
-        return observer_for_the_page(
-            ways, {way: equations_of(make, **({"switch": way} if way else {})) for way in ways}
-        )
+        return observer_for_the_page(ways, {way: equations_of(make, **_switch(way)) for way in ways})
     return observer_for_the_page(ways, {way: equations_in_scalars(observer) for way, observer in ways.items()})
 
 
-def observers_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
-    """The loops of a form's observers, and why it has no others."""
-    kernels: dict[str, Texts] = {}
-    refused: dict[str, str] = {}
-    for name, make in makers.items():
-        if refusal := make.refusal(form):
-            refused[name] = refusal
-        else:
-            ways = make.switches or ("",)
-            made = {way: make(form, **({"switch": way} if way else {})) for way in ways}
-            kernels[name] = {way: kernel_for_the_page(observer) for way, observer in made.items()}
-    return {"observers": kernels, "refused": refused}
+def loops_for_the_page(form: PartitionedSystem, makers: Mapping[str, Maker]) -> Texts:
+    """The loops of a form's observers, and the reasons why it has no others."""
+    refused = {name: reason for name, make in makers.items() if (reason := make.refusal(form))}
+    loops = {
+        name: {way: kernel_for_the_page(make(form, **_switch(way))) for way in make.switches or ("",)}
+        for name, make in makers.items()
+        if name not in refused
+    }
+    return {"observers": loops, "refused": refused}
 
 
-def named(text: str, otherwise: str) -> str:
-    """A name of Python's made of a text."""
+def _switch(way: str) -> dict[str, str]:
+    return {"switch": way} if way else {}
+
+
+def identifier(text: str, default: str) -> str:
+    """A Python name made of a text, or the default."""
     found = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_").lower()
-    return found if found.isidentifier() and not keyword.iskeyword(found) else otherwise
+    return found if found.isidentifier() and not keyword.iskeyword(found) else default
 
 
-def free(text: str, taken: Collection[str], otherwise: str) -> str:
-    """A name made of a text that is none of those taken."""
-    name = named(text, otherwise)
-    return name if name not in taken else free(f"my_{name}", taken, otherwise)
+def free_name(text: str, taken: Collection[str], default: str) -> str:
+    """A Python name made of a text that is not taken."""
+    name = identifier(text, default)
+    return name if name not in taken else free_name(f"my_{name}", taken, default)

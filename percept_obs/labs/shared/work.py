@@ -60,7 +60,7 @@ def solver_calls(known: Callable[[Array], Array] | None, duration: float, fastes
 
 
 def too_much(work: float, duration: float = np.inf, period: float = 0.0) -> str:
-    """Why Python does not compute a run; empty if it does."""
+    """Reason why Python does not compute a run; empty if it does."""
     if duration < period:
         return f"A duration of {duration:g} s holds no two samples {period:g} s apart."
     slower = "slow it down, lengthen the period or shorten the duration"

@@ -1,4 +1,4 @@
-"""What Python adds to a run of structure and motion in words: how far the unknown quantities are off in the end."""
+"""Sentences of Python on a run of structure and motion: late errors of the unknown quantities."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from percept_obs.tracking.verdict import SETTLED_PART
 
 
 def late_errors(title: str, run: Run) -> list[str]:
-    """How far the estimates of the unknown quantities lie from the truth over the last tenth of the run."""
+    """Sentences on the errors of the unknown quantities over the last tenth of the run."""
     unknowns = run.recording.view
     assert isinstance(unknowns, StructureAndMotion)
     late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
@@ -18,8 +18,8 @@ def late_errors(title: str, run: Run) -> list[str]:
         error = (values - true[name])[np.isfinite(values)]
         unit = "1/m" if name == "d_s" else "m/s"
         if len(error):
-            told = f"{error.mean():+.2g} {unit} on average and scatters by {error.std():.2g}"
-            lines.append(f"{title}, last tenth of the run: {name} is off by {told}.")
+            off = f"{error.mean():+.2g} {unit} on average and scatters by {error.std():.2g}"
+            lines.append(f"{title}, last tenth of the run: {name} is off by {off}.")
         else:
             lines.append(f"{title}, last tenth of the run: no estimate of {name}.")
     return lines

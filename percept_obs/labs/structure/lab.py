@@ -15,12 +15,12 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.common_settings import gains, offering, over
-from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen
+from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import Typed, read_motion, typed_in
-from percept_obs.labs.shared.user_observers import OwnObserver, brought, observers_for_the_page, of_an_observer
+from percept_obs.labs.shared.typed_motion import read_motion
+from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.labs.structure.analysis import late_errors
 from percept_obs.labs.structure.samples import refuse_samples, zero_in
@@ -48,7 +48,7 @@ from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
-"""How many steps an observer takes at most, so that the page does not stand still."""
+"""Largest number of steps of an observer, so that the page stays responsive."""
 
 
 class StructureLab(Lab):
@@ -89,15 +89,16 @@ class StructureLab(Lab):
 
     schema = SCHEMA
     title = "Structure and motion"
+    blocks = BLOCKS
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
         found, self._samples = ({}, None) if form is None else opening_of(form)
         settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
-        asked, self._own = (None, {}) if observers is None else brought(observers, ours)
+        asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
         if asked is not None:
             settings["observers"] = asked
-        self._added = _printed_with(self._own)
+        self._added = _printed_with(self._user_observers)
         printed = self._part("")["observers"]
         standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
         standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
@@ -114,7 +115,7 @@ class StructureLab(Lab):
             opening,
             opening,
             texts=with_texts("structure_lab", self._added),
-            own={name: make.for_the_page() for name, make in self._own.items()},
+            own={name: make.for_the_page() for name, make in self._user_observers.items()},
             samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
             pictures=PICTURES,
             **for_the_page(),
@@ -130,18 +131,14 @@ class StructureLab(Lab):
         return self.runs(self.settings)
 
     def runs(self, settings: Settings) -> dict[str, Run]:
-        """Runs that settings stand for, by the observers' names."""
-        return runs(settings, self._own, self._samples)
-
-    def typed(self, text: str) -> Typed:
-        """The motion that a text describes; a ValueError if it cannot be read."""
-        return read_motion(text, BLOCKS)
+        """Runs of settings, by the observers' names."""
+        return runs(settings, self._user_observers, self._samples)
 
     def _part(self, place: str) -> Texts:
         return self._added.get(place) or part("structure_lab", place)
 
     def _observer_of(self, name: str) -> Observer:
-        return observer_of(name) if name in OBSERVERS else _example(self._own[name])
+        return observer_of(name) if name in OBSERVERS else _example(self._user_observers[name])
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -154,14 +151,10 @@ class StructureLab(Lab):
         if samples := _used(settings, self._samples):
             refuse_samples(samples, settings)
         if settings["motion"].strip():
-            typed_in(settings, "motion", BLOCKS).refuse_poles(
-                settings["duration"], lambda times: _velocities(settings, times)
-            )
+            self.refuse_poles(settings, lambda times: _velocities(settings, times))
         count = len(settings["unknown"])
         refused = self._part(f"forms/{count}").get("refused", {}) if 1 <= count <= LARGEST else {}
-        for name in settings["observers"]:
-            if name in refused:
-                raise ValueError(f"{name} cannot be used here: {refused[name]}; choose another observer")
+        refuse_observers(settings, refused)
 
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
@@ -170,18 +163,18 @@ class StructureLab(Lab):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]
         states = {name: printed.get(name, {"states": 6})["states"] for name in settings["observers"]}
-        told, beyond = within_reach(_steps(settings), states, self._work(settings))
+        followed, beyond = within_reach(_steps(settings), states, self._work(settings))
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
-                found = self.runs({**settings, "observers": told}) if told else {}
+                found = self.runs({**settings, "observers": followed}) if followed else {}
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
         return {"sentences": [*lines, *beyond]}
 
     def too_much(self, settings: Settings) -> str:
-        """Why Python does not follow runs of these settings; empty if it does."""
+        """Reason why Python does not follow runs of these settings; empty if it does."""
         return too_much(self._work(settings), settings["duration"], settings["period"])
 
     def _work(self, settings: Settings) -> float:
@@ -196,7 +189,7 @@ def _title(name: str, run: Run) -> str:
     return OBSERVERS[name][0] if name in OBSERVERS else run.observer.name
 
 
-def _example(make: OwnObserver) -> Observer:
+def _example(make: UserObserver) -> Observer:
     """An observer of the first number of unknowns for which there is one."""
     forms = [general_form(count) for count in range(LARGEST, 0, -1)]
     refusals = [make.refusal(form) for form in forms]
@@ -205,15 +198,15 @@ def _example(make: OwnObserver) -> Observer:
     return make(forms[refusals.index("")])
 
 
-def _printed_with(own: Mapping[str, OwnObserver]) -> dict[str, Texts]:
-    """What is printed besides what the package ships: the loops of somebody's own observers."""
+def _printed_with(own: Mapping[str, UserObserver]) -> dict[str, Texts]:
+    """Texts of the user's observers, in the places of the package's."""
     if not own:
         return {}
     model = part("structure_lab")
-    told = {name: of_an_observer(make, {"": _example(make)}) for name, make in own.items()}
-    found: dict[str, Texts] = {"": {**model, "observers": {**model["observers"], **told}}}
+    texts = {name: texts_of_observer(make, {"": _example(make)}) for name, make in own.items()}
+    found: dict[str, Texts] = {"": {**model, "observers": {**model["observers"], **texts}}}
     for count in range(1, LARGEST + 1):
-        printed, added = part("structure_lab", f"forms/{count}"), observers_for_the_page(general_form(count), own)
+        printed, added = part("structure_lab", f"forms/{count}"), loops_for_the_page(general_form(count), own)
         kernels = {name: next(iter(ways.values())) for name, ways in added["observers"].items()}
         found[f"forms/{count}"] = {
             **{**printed, "observers": {**printed["observers"], **kernels}},
@@ -232,7 +225,7 @@ def _used(settings: Settings, samples: Motion | None) -> Motion | None:
 
 
 def unknowns_of(settings: Settings, samples: Motion | None = None) -> StructureAndMotion:
-    """What is unknown; what is known and stays 0 is known to be zero, as it is where there are samples."""
+    """The choice of unknowns of settings; a known velocity that stays 0 is known to be zero."""
     values = {
         f"{name}{axis}": settings[name][axis - 1] or settings[f"{name}_swing"][axis - 1]
         for name in ("v_c", "v_p")
@@ -258,10 +251,10 @@ def _made(make: Callable[[CanonicalForm], Observer], unknowns: StructureAndMotio
 
 def runs(
     settings: Settings,
-    own: Mapping[str, OwnObserver] = MappingProxyType({}),
+    own: Mapping[str, UserObserver] = MappingProxyType({}),
     samples: Motion | None = None,
 ) -> dict[str, Run]:
-    """Runs that lab settings stand for, by the observers' names, with what was brought to the lab."""
+    """Runs of settings by the observers' names, with the user's observers and samples."""
     unknowns = unknowns_of(settings, samples)
     recording = _recorded(settings, unknowns, _used(settings, samples))
     start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
@@ -307,7 +300,7 @@ _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 
 def _recorded(settings: Settings, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
-    """What is measured, as far as the point stays in front of the camera."""
+    """Recording of the camera, as far as the point stays in front of it."""
     keys = ("ybar", "scale", *VECTORS, "motion", "rate", "noise", "bias", "drift", "seed", "period", "duration")
     return _recorded_once(json.dumps({key: settings[key] for key in keys}), unknowns, samples)
 

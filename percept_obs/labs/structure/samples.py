@@ -1,4 +1,4 @@
-"""Velocities in samples that somebody brings to the structure lab, such as those that a robot has measured."""
+"""Sampled velocities of a user of the structure lab, such as those that a robot has measured."""
 
 from __future__ import annotations
 

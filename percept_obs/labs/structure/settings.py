@@ -1,4 +1,4 @@
-"""What may be set in the lab of structure and motion."""
+"""Settings of the lab of structure and motion."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ MAPPED = (
     *("noise.size", "noise.depth", "bias", "drift", "ybar.0", "ybar.1", "ybar.2", "scale"),
     *(f"{vector}.{k}" for vector in ("v_c", "v_p", "w") for k in range(3)),
 )
-"""What a map may go over besides gains."""
+"""Axes of a map besides gains."""
 
 LONGEST = 100.0
 """Seconds that a run lasts at most."""
@@ -24,7 +24,7 @@ STANDARD_GAINS: dict[str, dict[str, float]] = {
     "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
     "identifier_based": {"bound": 1e3},
 }
-"""Gains that fit an unknown d_s, which is larger than what the observers were made for."""
+"""Gains that fit an unknown d_s, which is larger than the defaults expect."""
 
 
 _IN_FRONT = "it must be positive, for the point is in front"
@@ -39,7 +39,7 @@ VELOCITIES = Choice(
     label="Velocities",
     about='"set" by the numbers and expressions here, or "samples", where you bring some',
 )
-"""Where the true velocities come from, in a lab that has samples."""
+"""Source of the true velocities, in a lab with samples."""
 
 SCHEMA = Schema(
     unknown=Names([], QUANTITIES, 0, about=f"names of what is not known, of {', '.join(QUANTITIES)}"),
@@ -85,4 +85,4 @@ SCHEMA = Schema(
 )
 
 STANDARD: Settings = SCHEMA.opening | case_of(1)
-"""What every preset begins with."""
+"""Settings that every preset begins with."""

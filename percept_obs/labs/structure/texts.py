@@ -1,4 +1,4 @@
-"""What the page needs for any choice of unknowns: what it stands for, why it is refused, and its observers' loops.
+"""Texts of every choice of unknowns for the page: formulas, reasons for refusals, loops of observers.
 
 Omega_g is Omega3 times a matrix of known signals, whatever the choice.  The loops are printed with that matrix as
 parameters, so that one for each number of unknowns serves every choice.  Printed when the package is built.
@@ -32,9 +32,9 @@ _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
 BLOCKS = MappingProxyType(
     {letter: sp.ImmutableMatrix(block) for letter, block in (("w", _ROTATION), ("v_c", CAMERA), ("v_p", OBJECT))}
 )
-"""What a motion is made of, by the letters that may be typed."""
+"""Blocks of a motion by the letters that may be typed."""
 LARGEST = 3
-"""How many unknowns there are at most."""
+"""Largest number of unknowns."""
 
 ISMO_WAYS = {
     "ideal": ("ideal switch", IDEAL),
@@ -45,7 +45,7 @@ OBSERVERS: Mapping[str, tuple[str, Callable[..., Observer]]] = MappingProxyType(
     {key: (f"ISMO, {way}", partial(integral_sliding_mode, switch=switch)) for key, (way, switch) in ISMO_WAYS.items()}
     | {make.key: (make.name, make) for make in observers.OBSERVERS if make.for_structure}
 )
-"""Observers that the lab offers, by the names of its settings: how they are called, and what makes them."""
+"""Titles and functions of the lab's observers, by their names in settings."""
 
 SWING = sp.symbols("constant amplitude rate phase t", real=True)
 
@@ -58,7 +58,7 @@ def swinging(
 
 
 PHASES = {"v_c": (sp.pi / 2, 0, 0), "v_p": (0, sp.pi / 2, 0)}
-"""Where each component begins to swing, so that the camera circles and the object wanders."""
+"""Phases of the swinging components, so that the camera circles and the object wanders."""
 
 
 def key_of(unknown: tuple[str, ...] | list[str], earlier: bool) -> str:
@@ -88,7 +88,7 @@ def observer_of(name: str, count: int = LARGEST) -> Observer:
 
 
 def model_for_the_page() -> Texts:
-    """What depends on no choice: the point's loop, the pinhole, the observers, and why choices are refused."""
+    """Texts that depend on no choice: the point's loop, the pinhole, the observers, the refused choices."""
     surface = pinhole()
     return {
         "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
@@ -218,7 +218,7 @@ def form_for_the_page(count: int) -> Texts:
 
 
 def texts_for_the_page() -> Parts:
-    """Everything that the lab offers: the model's own texts, every choice of unknowns, and each number of them."""
+    """Texts of the model, of every choice of unknowns, and of each number of them, by their places."""
     yield "", model_for_the_page()
     done: set[str] = set(refused())
     for count in range(1, LARGEST + 1):

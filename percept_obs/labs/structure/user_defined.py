@@ -1,4 +1,4 @@
-"""What somebody brings to the structure lab: a choice of unknowns, its form, a scenario, or velocities."""
+"""Inputs of a user of the structure lab: a choice of unknowns, its form, a scenario, or velocities."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Given = StructureAndMotion | PartitionedSystem | StructureScenario | Motion
 
 
 def opening_of(given: Given) -> tuple[Settings, Motion | None]:
-    """The settings that a lab of it opens with, and the velocities in samples, if it brings some.
+    """Settings that a lab opens with, and its velocities in samples, if there are some.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def opening_of(given: Given) -> tuple[Settings, Motion | None]:
 
 
 def _of_choice(choice: StructureAndMotion) -> Settings:
-    """What is unknown, with the velocities that are known to be zero."""
+    """Settings of a choice: the unknowns, and the velocities that are known to be zero."""
     absent = {name: [f"{name}{axis}" in choice.zero for axis in (1, 2, 3)] for name in PHASES}
     stays = {
         setting: [0.0 if zero else value for zero, value in zip(absent[setting[:3]], STANDARD[setting], strict=True)]
@@ -59,7 +59,7 @@ def _of_choice(choice: StructureAndMotion) -> Settings:
 
 
 def _of_scenario(scenario: StructureScenario) -> Settings:
-    """Where its point begins, and how long it is seen."""
+    """Settings of a scenario's point and duration."""
     if scenario.surface.name != "pinhole":
         raise ValueError(f"the scenario is on the {scenario.surface.name}; this lab is on the pinhole")
     X, Y, Z = map(float, scenario.position)
