@@ -11,6 +11,7 @@ from scipy.linalg import cho_factor, cho_solve, expm
 
 from percept_obs import (
     Camera,
+    Efficiency,
     Gaussian,
     PerspectiveSystem,
     Scenario,
@@ -136,17 +137,11 @@ def test_the_extended_kalman_filter_reaches_the_bound(form):
 
 def test_scatter_is_that_of_repeated_sets_of_runs():
     draw = np.random.default_rng(1)
-    found = [_efficiency(draw.normal(size=(40, 1))) for _ in range(300)]
+    found = [Efficiency(np.zeros(1), draw.normal(size=(40, 1)), np.ones(1)) for _ in range(300)]
     assert np.std([each.mean() for each in found]) == pytest.approx(
         np.mean([each.scatter() for each in found]), rel=0.1
     )
     assert found[0].bias() == pytest.approx(abs(found[0].errors.mean()))
-
-
-def _efficiency(errors):
-    from percept_obs import Efficiency
-
-    return Efficiency(np.arange(errors.shape[1], dtype=float), errors, np.ones(errors.shape[1]))
 
 
 @pytest.mark.parametrize(
@@ -177,13 +172,14 @@ def test_what_makes_no_sense_is_refused(arguments, message):
 
 def test_efficiency_refuses_what_it_cannot_compare():
     bound, run = cramer_rao(RECORDING, BOTH), track(RECORDING, ekf(BOTH))
-    with pytest.raises(ValueError, match="two or more"):
-        efficiency([run], bound)
-    with pytest.raises(ValueError, match="no coordinate 'y9'"):
-        efficiency([run, run], bound, "y9")
     other = track(record(scenarios.ma2005_eq36(), 10, CAMERA), ekf(BOTH))
-    with pytest.raises(ValueError, match="run 2 is on another truth"):
-        efficiency([run, other], bound)
+    for runs, name, message in (
+        ([run], "y3", "two or more"),
+        ([run, run], "y9", "no coordinate 'y9'"),
+        ([run, other], "y3", "run 2 is on another truth"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            efficiency(runs, bound, name)
 
 
 def test_the_bound_is_drawn_under_the_errors():

@@ -39,8 +39,7 @@ def test_one_point_and_constant_coefficients_give_the_earlier_observer():
     observer = luenberger(generic(1, 3))
     (C,), (y1, y2) = observer.form.C, observer.form.y
     x_hat = sp.Matrix(observer.estimate)
-    xi = C * x_hat
-    B = sp.Matrix([[1, 0, -y1], [0, 1, -y2]])
+    xi, B = C * x_hat, sp.Matrix([[1, 0, -y1], [0, 1, -y2]])
     earlier = observer.form.motion.A * x_hat + observer.form.motion.b
     earlier += observer.inverse * C.T * B.T * sp.Matrix([y1 * xi[2] - xi[0], y2 * xi[2] - xi[1]])
     assert (observer.flow - earlier).expand() == sp.zeros(3, 1)
@@ -114,13 +113,10 @@ def test_wrong_ps_are_refused(P, message):
         luenberger(PointsForm(linear(np.eye(3), np.ones(3)), np.eye(3)), P)
 
 
-@pytest.mark.parametrize("forgetting", [-0.1, np.nan, np.inf])
-def test_wrong_forgetting_is_refused(forgetting):
-    with pytest.raises(ValueError, match="finite and not negative"):
-        riccati(1.0, forgetting)
-
-
-def test_samples_of_p_need_times():
+def test_wrong_forgetting_and_samples_without_times_are_refused():
+    for forgetting in (-0.1, np.nan, np.inf):
+        with pytest.raises(ValueError, match="finite and not negative"):
+            riccati(1.0, forgetting)
     with pytest.raises(ValueError, match="need their times"):
         scheduled([1.0, 2.0])
 

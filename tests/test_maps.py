@@ -123,11 +123,10 @@ def test_what_makes_no_sense_is_refused(arguments, message):
         bound_map(**{"system": SYSTEM} | arguments)
 
 
-def test_the_figure_refuses_what_is_no_map():
-    with pytest.raises(ValueError, match="a BoundMap is needed"):
-        figures.bound_map(1)
-    with pytest.raises(ValueError, match="must be positive"):
-        figures.bound_map(bound_map(SYSTEM, resolution=3), threshold=0)
+@pytest.mark.parametrize(("found", "message"), [(1, "a BoundMap is needed"), (None, "must be positive")])
+def test_the_figure_refuses_what_is_no_map_or_no_threshold(found, message):
+    with pytest.raises(ValueError, match=message):
+        figures.bound_map(found or bound_map(SYSTEM, resolution=3), threshold=0)
 
 
 @pytest.mark.slow

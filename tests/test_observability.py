@@ -32,6 +32,7 @@ def test_both_outputs_suffice_off_the_focus_of_expansion():
     found = instantaneous(BOTH)
     assert found.suffices
     assert sp.expand(found.determinant - (b1 - b3 * y1) ** 2 - (b2 - b3 * y2) ** 2) == 0
+    assert found.condition == (b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2
     assert found.zero_set == [{y1: b1 / b3, y2: b2 / b3}]
     assert "can suffice" in found._repr_latex_()
 
@@ -119,7 +120,6 @@ def test_one_output_has_the_eigenvalues_0_and_what_is_printed():
 
 def test_the_condition_is_shown_in_factors():
     """On the sphere w is not zero at the focus of expansion by chance: its factors have the same zeros."""
-    assert instantaneous(BOTH).condition == (b1 - b3 * y1) ** 2 + (b2 - b3 * y2) ** 2
     system = PerspectiveSystem(affine([[0] * 3] * 3, [1, 2, 2]), sphere())
     found = instantaneous(system.measure("y1", "y2"))
     focus = dict(zip(found.form.x1, system.foe.subs(system.values), strict=True))

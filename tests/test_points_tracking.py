@@ -5,8 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from percept_obs import (
@@ -246,42 +244,39 @@ def test_verdicts():
     bare = Recording(whole.time, whole.outputs, ("y1", "y2"), whole.view, whole.view.motion)
     blind = track(bare, luenberger(whole.view, 1.0))
     assert "no truth" in blind.verdict()
-    for what in ("error", "deviation"):
-        with pytest.raises(ValueError, match="no truth"):
-            getattr(blind, what)
-    with pytest.raises(ValueError, match="no truth"):
-        bare.distance  # noqa: B018
-    with pytest.raises(ValueError, match="needs two finite positive ones"):
-        good.decay_rate(50, 60)
-    with pytest.raises(ValueError, match="no distance with the name 'sonar'; it has truth"):
-        relative_distance_errors([good], 1, "sonar", 0.3, [0])
-    with pytest.raises(ValueError, match="above 0 and at most 2"):
-        good.conditions(0.0)
+    for call, message in (
+        (lambda: blind.error, "no truth"),
+        (lambda: blind.deviation, "no truth"),
+        (lambda: bare.distance, "no truth"),
+        (lambda: good.decay_rate(50, 60), "needs two finite positive ones"),
+        (lambda: relative_distance_errors([good], 1, "sonar", 0.3, [0]), "no distance with the name 'sonar'; it has"),
+        (lambda: good.conditions(0.0), "above 0 and at most 2"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            call()
 
 
-@settings(max_examples=10)
-@given(st.integers(0, 2**32 - 1))
-def test_seeds_repeat(seed):
+def test_seeds_repeat():
     camera = Camera(0.1, Gaussian(0.01), dropout=0.2)
-    first, second = (turning(2, 1.0, camera=camera, seed=seed) for _ in range(2))
+    first, second = (turning(2, 1.0, camera=camera, seed=1) for _ in range(2))
     np.testing.assert_array_equal(first.outputs, second.outputs)
     assert np.isfinite(first.outputs[first.seen]).all()
 
 
 @pytest.mark.parametrize(
-    ("arguments", "kind", "message"),
+    ("arguments", "message"),
     [
-        ({"start": [0.0]}, ValueError, r"start has shape \(1,\); expected 6 finite numbers: X1_x"),
-        ({"start": [np.nan] * 6}, ValueError, "6 finite numbers"),
-        ({"longest_hold": np.nan}, ValueError, "longest_hold is nan; it must be positive"),
-        ({"step": np.inf}, ValueError, "must be finite"),
-        ({"hold": "second"}, ValueError, "none of 'zero', 'first' and 'exact'"),
-        ({"language": "fortran"}, ValueError, "neither 'python' nor 'numba'"),
+        ({"start": [0.0]}, r"start has shape \(1,\); expected 6 finite numbers: X1_x"),
+        ({"start": [np.nan] * 6}, "6 finite numbers"),
+        ({"longest_hold": np.nan}, "longest_hold is nan; it must be positive"),
+        ({"step": np.inf}, "must be finite"),
+        ({"hold": "second"}, "none of 'zero', 'first' and 'exact'"),
+        ({"language": "fortran"}, "neither 'python' nor 'numba'"),
     ],
 )
-def test_what_makes_no_sense_is_refused(arguments, kind, message):
+def test_what_makes_no_sense_is_refused(arguments, message):
     whole = turning(2, 1.0)
-    with pytest.raises(kind, match=message):
+    with pytest.raises(ValueError, match=message):
         track(whole, luenberger(whole.view), **arguments)
 
 
@@ -300,14 +295,15 @@ def test_a_first_sight_that_makes_no_sense_is_refused(arguments, message):
 
 def test_what_does_not_fit_is_refused():
     whole = turning(2, 1.0)
-    with pytest.raises(DoesNotFit, match="made for 1 points on the pinhole, but the recording shows 2 points"):
-        track(whole, luenberger(rigid_body(1, [0, 0, 0.1])))
     flat = PointsForm(whole.view.motion, whole.view.C, plane((0.1, 0, 1)))
-    with pytest.raises(DoesNotFit, match="on the plane"):
-        track(whole, luenberger(flat))
     bare = Recording(whole.time, whole.outputs, ("y1", "y2"), whole.view, whole.view.motion)
-    with pytest.raises(DoesNotFit, match="known in simulations only"):
-        track(bare, luenberger(whole.view), hold="exact")
+    for form, hold, message in (
+        (rigid_body(1, [0, 0, 0.1]), "zero", "made for 1 points on the pinhole, but the recording shows 2 points"),
+        (flat, "zero", "on the plane"),
+        (whole.view, "exact", "known in simulations only"),
+    ):
+        with pytest.raises(DoesNotFit, match=message):
+            track(bare, luenberger(form), hold=hold)
     with pytest.raises(ValueError, match="positive definite"):
         track(whole, luenberger(whole.view, lambda t: 0.0))
 
@@ -335,14 +331,15 @@ def test_wrong_recordings_are_refused():
 
 def test_wrong_scenarios_are_refused():
     form = rigid_body(1, [0, 0, 0.1])
-    with pytest.raises(ValueError, match="3 finite numbers: r_x, r_y, r_z"):
-        PointsScenario("short", form, [0.0, 1.0], 1.0)
-    with pytest.raises(ValueError, match="duration is 0"):
-        PointsScenario("none", form, [0.0, 0, 1], 0)
-    scenario = PointsScenario("fine", form, [0.0, 0, 1], 1.0)
-    for arguments, message in (({"duration": 0.001}, "record longer"), ({"duration": -1.0}, "record longer")):
+    for state, duration, message in (
+        ([0.0, 1.0], 1.0, "3 finite numbers: r_x, r_y, r_z"),
+        ([0.0, 0, 1], 0, "duration is 0"),
+    ):
         with pytest.raises(ValueError, match=message):
-            record(scenario, **arguments)
+            PointsScenario("wrong", form, state, duration)
+    for duration in (0.001, -1.0):
+        with pytest.raises(ValueError, match="record longer"):
+            record(PointsScenario("fine", form, [0.0, 0, 1], 1.0), duration)
     explosive = PointsScenario("explosive", PointsForm(linear(50 * np.eye(3), np.ones(3)), np.eye(3)), [1, 1, 1], 20.0)
     with pytest.raises(LeavesEveryBound, match="leaves every bound at"):
         record(explosive)

@@ -188,16 +188,17 @@ def test_the_filter_on_the_linear_view_is_the_kalman_filter():
 
 def test_what_does_not_fit_is_refused():
     recording = record(CASE, 1)
-    with pytest.raises(DoesNotFit, match="made for the scaled pinhole with d_s, v_c3, v_p1 unknown"):
-        track(recording, ismo(COROLLARIES[3].choice().form))
-    with pytest.raises(DoesNotFit, match="was made for the scaled pinhole"):
-        track(record(scenarios.ma2005_eq35(), 1), ismo(CASE.choice.form))
-    with pytest.raises(ValueError, match="image coordinates of one point, but the recording shows the scaled pinhole"):
-        moving_window_least_squares(recording, 0.5)
-    with pytest.raises(ValueError, match="the linear view needs a recording of the outputs y1, y2, ybar3"):
-        linear_view(record(scenarios.ma2005_eq35(), 1))
-    with pytest.raises(ValueError, match="has no values for d_s; give them numbers first"):
-        seen_as(recording, COROLLARIES[4].choice(), rigid(STILL, STILL, STILL))
+    of_images, unscaled = record(scenarios.ma2005_eq35(), 1), COROLLARIES[4].choice()
+    fourth = ismo(COROLLARIES[3].choice().form)
+    for error, call, message in (
+        (DoesNotFit, lambda: track(recording, fourth), "made for the scaled pinhole with d_s, v_c3, v_p1 unknown"),
+        (DoesNotFit, lambda: track(of_images, ismo(CASE.choice.form)), "was made for the scaled pinhole"),
+        (ValueError, lambda: moving_window_least_squares(recording, 0.5), "but the recording shows the scaled pinhole"),
+        (ValueError, lambda: linear_view(of_images), "the linear view needs a recording of the outputs y1, y2, ybar3"),
+        (ValueError, lambda: seen_as(recording, unscaled, rigid(STILL, STILL, STILL)), "has no values for d_s; give"),
+    ):
+        with pytest.raises(error, match=message):
+            call()
 
 
 def test_scenarios_that_make_no_sense_are_refused():
@@ -220,21 +221,15 @@ def test_scenarios_that_make_no_sense_are_refused():
         chwa2019_simulation("V.A", (0.1, 0, 0))
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
+def test_a_patch_begins_at_the_tracked_point_and_is_flat():
+    for arguments, message in (
         ((0.0,), "positive side"),
         ((0.1, 4), "odd count"),
         ((0.1, 1), "odd count"),
         ((0.1, 3, (0, 0, 0)), "not all zero"),
-    ],
-)
-def test_patches_that_are_none_are_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        grid_patch(*arguments)
-
-
-def test_a_patch_begins_at_the_tracked_point_and_is_flat():
+    ):
+        with pytest.raises(ValueError, match=message):
+            grid_patch(*arguments)
     patch = grid_patch(0.4, 5, (0.1, 0.2, 1.0))
     assert patch.shape == (25, 3)
     np.testing.assert_array_equal(patch[0], 0)

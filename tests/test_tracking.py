@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import AFFINE, BOTH, NOISY, ONE, SURFACES, ZERO
+from examples import BOTH, NOISY, ONE, SURFACES, ZERO
 
 from percept_obs import (
     Camera,
@@ -236,7 +236,3 @@ def test_a_recording_with_too_few_outputs_is_refused():
 def test_questions_that_make_no_sense_are_refused(call):
     with pytest.raises(ValueError, match=r"must be positive|no coordinate y9"):
         call(track(RECORDING, ibo(ONE), ZERO))
-
-
-def test_the_system_and_the_examples_agree_on_names():
-    assert [s.name for s in AFFINE.coordinates] == ["y1", "y2", "y3"]
