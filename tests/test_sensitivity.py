@@ -104,7 +104,7 @@ def test_what_makes_no_sense_is_refused():
         (lambda: sensitivity(RECORDING, observer, entries=()), "has no entry"),
         (lambda: sensitivity(RECORDING, observer, believed=affine()), "no entries with numbers"),
         (lambda: misbelieved(RECORDING.motion, w1=1.0), "no entry w1"),
-        (lambda: sensitivity(RECORDING, observer, ZERO, ("b3",)).change(b1=1.0), "no entry 'b1'; it has b3"),
+        (lambda: sensitivity(RECORDING, observer, ZERO, ("b3",)).change(b1=1.0), "no entry b1; it has b3"),
         (lambda: variation(observer.equations, observer.equations.state[:1]), "no parameter"),
         (lambda: entries(sensitivity(RECORDING, observer, entries=("b3",)), most=0), "draw one at least"),
         (lambda: entries(RECORDING), "a Sensitivity is needed"),

@@ -64,8 +64,8 @@ def test_a_pause_is_shaded_and_not_trusted():
     assert not found.trusted[0]
     assert found.unexcited[0] == pytest.approx(found.time[0], abs=0.06)
     assert found.trusted[-1]
-    assert found.told[-1] == pytest.approx(3, rel=0.1)
-    assert np.isnan(found.told[0])
+    assert found.distance[-1] == pytest.approx(3, rel=0.1)
+    assert np.isnan(found.distance[0])
     drawn_trust = trust(found)
     assert found.sentence in drawn_trust.text
     assert len(drawn_trust.axes[0].collections) >= 2

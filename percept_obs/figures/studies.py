@@ -275,7 +275,7 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     ax, run = canvas(ax, 3.2), found.run
     word, symbol = describe.depth_or_range(run.view)
     _shade(ax, found)
-    told, spread = found.told, 2 * found.deviation
+    told, spread = found.distance, 2 * found.deviation
     there = np.isfinite(told) & (spread < 1)
     ends = told[there] * spread[there] / np.array([1 + spread[there], 1 - spread[there]])
     name = r"what the samples tell, $\pm 2\sigma$"

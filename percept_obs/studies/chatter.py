@@ -1,4 +1,4 @@
-"""What a switching observer does to integration: chatter at fixed steps, and ever shorter steps of adaptive solvers."""
+"""Integration of switching observers: chatter at fixed steps, and ever shorter steps of adaptive solvers."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def chatter(
 ) -> pd.DataFrame:
     """Errors of an observer that knows the exact signal, at several steps of integration.
 
-    What remains of them is the integration's: where a sign is integrated, a step that crosses its jump pushes the wrong
-    way for a part of the step, so that the estimate never comes to rest on the switching surface.  With the step h and
-    the size gamma of the sign,
+    The remaining errors are those of the integration: a step across the jump of a sign pushes the wrong way for a part
+    of the step, so that the estimate never comes to rest on the switching surface.  With the step h and the size gamma
+    of the sign,
 
     - a sign in the rate of the estimate (the sliding mode observer) leaves errors proportional to gamma h;
     - a sign in the rate of its rate (the range identification observer) makes the estimate oscillate: a crossing feeds
@@ -56,13 +56,16 @@ def chatter(
     Returns
     -------
     pandas.DataFrame
-        One row a step: step (s, the longest that was taken), and the root mean square error of every coordinate, by
-        its name.
+        One row a step: step (s, the longest that was taken), and the root mean square error of each coordinate.
 
     Raises
     ------
     ValueError
-        If there is no step, or one is not positive.
+        If there is no step, one is not positive, or `after` lies outside the recording.
+
+    See Also
+    --------
+    effort : steps of an adaptive solver
     """
     import pandas as pd
 
@@ -82,7 +85,7 @@ def chatter(
 
 @dataclass(frozen=True, eq=False)
 class Effort:
-    """How an adaptive solver got on.
+    """Steps and evaluations of an adaptive solver.
 
     Parameters
     ----------
@@ -91,9 +94,9 @@ class Effort:
     time : array of shape (N + 1,)
         The ends of its steps in seconds.
     evaluations : array of shape (N + 1,)
-        How often the right-hand side had been evaluated by then.
+        Evaluations of the right-hand side by then.
     finished : bool
-        Whether it reached the end before it was out of evaluations.
+        True if it reached the end within the allowed evaluations.
     """
 
     method: str
@@ -117,7 +120,7 @@ def effort(
     tolerance: float = 1e-6,
     most: int = 20_000,
 ) -> Effort:
-    """Let one of scipy's adaptive solvers integrate point and observer together, without noise and resets.
+    """Integrate point and observer together by one of scipy's adaptive solvers, without noise and resets.
 
     At each crossing of a jump the solver finds an error that its order does not explain, and shortens the step until
     the jump weighs no more than the tolerance.  Once the observer slides, crossings never end (Filippov 1988).
@@ -140,7 +143,11 @@ def effort(
     Raises
     ------
     ValueError
-        If the method has no such name, or the duration or the tolerance is not positive.
+        If there is no such method, or the duration or the tolerance is not positive.
+
+    See Also
+    --------
+    chatter : errors at fixed steps
     """
     from scipy import integrate
 

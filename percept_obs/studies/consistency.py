@@ -1,4 +1,4 @@
-"""What a filter claims to know, and whether its innovations bear the claim out."""
+"""Consistency of a filter: the covariance that it claims, tested by its innovations."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
+from percept_obs.compile import Array
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
 __all__ = ["Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
-
-Array = NDArray[np.float64]
 
 DEVIATIONS = 2.0
 """Claimed standard deviations to either side of an estimate: 95 % of a normal distribution."""
@@ -27,7 +25,7 @@ JUDGEMENTS = MappingProxyType(
         "conservative": "the innovations are smaller than the filter claims, so doubt the samples less",
     }
 )
-"""What each judgement says."""
+"""Meaning of each judgement."""
 
 
 @checked
@@ -38,6 +36,11 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
     -------
     low, high : arrays of shape (K, n)
         NaN where the run has diverged.
+
+    Raises
+    ------
+    ValueError
+        If the observer claims no covariance.
     """
     variances = np.diagonal(run.covariance, axis1=1, axis2=2)
     spread = DEVIATIONS * np.sqrt(np.maximum(variances, 0))  # round-off may leave one a little below zero
@@ -46,7 +49,7 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
 
 @checked
 def claimed_distance(run: Run) -> tuple[Array, Array]:
-    """Ends of the same interval as a distance in metres.
+    """Ends of the `claimed_interval` of the distance in metres.
 
     An interval of the inverse distance that reaches zero stands for distances without an upper end.
 
@@ -55,6 +58,11 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     low, high : arrays of shape (K,)
         `high` is infinite where the interval reaches zero, and both are where it is not positive at all; NaN where
         the run has diverged.
+
+    Raises
+    ------
+    ValueError
+        If the observer claims no covariance.
     """
     low, high = (end[:, -1] for end in claimed_interval(run))
     nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
@@ -64,7 +72,7 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
 @checked
 @dataclass(frozen=True, eq=False)
 class Consistency:
-    """Whether normalised innovations squared (NIS) are as large as they should be.
+    """Test of the normalised innovations squared (NIS) of a run.
 
     If the filter's claims are right they are distributed as chi-squared with `outputs` degrees of freedom, each
     independent of the others, so N times the mean of N of them is chi-squared with N `outputs`.
@@ -72,11 +80,11 @@ class Consistency:
     Parameters
     ----------
     time : array of shape (K,)
-        When there was a sample of all outputs, in seconds.
+        Times of the samples of all outputs, in seconds.
     nis : array of shape (K,)
         See `Run.nis`.
     outputs : int
-        Number of measured outputs, which is the mean to be expected.
+        Number of measured outputs, the expected mean.
     samples : int
         N, the number of samples that a moving average holds.
     confidence : float
@@ -95,8 +103,7 @@ class Consistency:
     @property
     def averages(self) -> Array:
         """Mean of each NIS and the N - 1 before it, shape (K - N + 1,)."""
-        means: Array = sliding_window_view(self.nis, self.samples).mean(axis=1)
-        return means
+        return np.asarray(sliding_window_view(self.nis, self.samples).mean(axis=1))
 
     @property
     def average_time(self) -> Array:
@@ -109,7 +116,7 @@ class Consistency:
         return float(self.nis.mean())
 
     def interval(self, count: int) -> tuple[float, float]:
-        """Where the mean of so many NIS lies, with the probability `confidence`."""
+        """Interval of the mean of `count` NIS, with the probability `confidence`."""
         from scipy.stats import chi2
 
         low, high = chi2.interval(self.confidence, count * self.outputs)
@@ -117,19 +124,19 @@ class Consistency:
 
     @property
     def autocorrelation(self) -> float:
-        """Of each normalised innovation with the one before it, over all outputs; 0 is expected."""
+        """Correlation of each normalised innovation with the one before it, over all outputs; 0 is expected."""
         return float((self.whitened[1:] * self.whitened[:-1]).sum() / (self.whitened**2).sum())
 
     @property
     def white(self) -> bool:
-        """Whether the autocorrelation is as small as it is, with the probability `confidence`, in white noise."""
+        """True if the autocorrelation lies in its interval for white noise, with the probability `confidence`."""
         from scipy.stats import norm
 
         return bool(abs(self.autocorrelation) <= norm.ppf((1 + self.confidence) / 2) / np.sqrt(self.whitened.size))
 
     @property
     def whiteness(self) -> str:
-        """The same in words, with the number."""
+        """The autocorrelation in words."""
         means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
         return f"The innovations are {means}; neighbours have the correlation {self.autocorrelation:.2g}"
 
@@ -141,7 +148,7 @@ class Consistency:
 
     @property
     def summary(self) -> str:
-        """The judgement in words, with the mean that it rests on."""
+        """The judgement in words, with the mean NIS."""
         low, high = self.interval(len(self.nis))
         return (
             f"{self.judgement}: {JUDGEMENTS[self.judgement]}. The mean NIS of {len(self.nis)} samples is "
@@ -150,7 +157,7 @@ class Consistency:
         )
 
     def verdict(self) -> str:
-        """The summary, and how many of the moving averages lie where they should."""
+        """The summary, the share of moving averages inside their interval, and the whiteness."""
         lowest, highest = self.interval(self.samples)
         inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
         return (
@@ -166,8 +173,8 @@ class Consistency:
 def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
     """Test whether a filter's innovations are as large as it claims.
 
-    It needs no truth, so it works on real data.  What leaves no trace in the innovations, such as a wrong scale,
-    it cannot find.
+    It needs no truth, so it works on real data.  It cannot find errors that leave no trace in the innovations, such as
+    a wrong scale.
 
     Parameters
     ----------
@@ -183,7 +190,12 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     Raises
     ------
     ValueError
-        If the observer claims no covariance, the run diverged, or a number makes no sense.
+        If the observer claims no covariance, the run diverged, or a number is out of range.
+
+    See Also
+    --------
+    percept_obs.studies.likelihood.tune_by_likelihood : chooses gains whose claims hold
+    percept_obs.figures.consistency : draws the moving averages
 
     Notes
     -----
@@ -208,8 +220,8 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         )
     nis = run.nis
     counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
-    found = int(counted.sum())
-    if not 1 <= samples <= found:
-        raise ValueError(f"a moving average of {samples} samples was asked for; there are {found} after {after} s")
+    there = int(counted.sum())
+    if not 1 <= samples <= there:
+        raise ValueError(f"a moving average of {samples} samples was asked for; there are {there} after {after} s")
     outputs = len(run.observer.form.x1)
     return Consistency(run.time[counted], nis[counted], outputs, samples, confidence, run.whitened[counted])

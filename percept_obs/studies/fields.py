@@ -1,4 +1,4 @@
-"""Imaging surfaces compared over a field of view: how well distance can be known in each direction."""
+"""Imaging surfaces compared over a field of view, by the Cramer-Rao bound of the distance in each direction."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ __all__ = ["AngleNoise", "FieldBound", "PixelNoise", "field_bound"]
 @checked
 @dataclass(frozen=True)
 class PixelNoise:
-    """Noise that is the same everywhere in the picture, whose pixels span the field of view.
+    """Noise of equal size everywhere in the picture.
 
     Parameters
     ----------
     sigma : float
         Standard deviation in pixels, in each output.
     across : float
-        Pixels from one edge of the field of view to the other.
+        Pixels across the field of view.
     """
 
     sigma: float = 0.5
@@ -39,7 +39,7 @@ class PixelNoise:
 @checked
 @dataclass(frozen=True)
 class AngleNoise:
-    """Noise that is the same angle in every direction, as if the ray itself were measured.
+    """Noise of equal angle in every direction, as if the ray itself were measured.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class FieldBound:
         Least relative standard deviation of the range of a point that is first seen in this direction; NaN outside of
         the field of view.
     seconds, distance : float
-        How long the points are seen, and their range at the beginning in metres.
+        Seconds for which the points are seen, and their range at the beginning in metres.
     """
 
     surface: ImagingSurface
@@ -108,10 +108,10 @@ def field_bound(
     size: int = 41,
     doubt: float = 1.0,
 ) -> FieldBound:
-    """How well the range of a point can be known, for each direction in which it is first seen.
+    """Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
 
-    A point in space moves linearly, X(t) = Phi(t) X(0) + d(t), so that what its images tell of X(0) adds up exactly;
-    `cramer_rao` says the same of one trajectory.  What is not in the field of view tells nothing.
+    A point in space moves linearly, X(t) = Phi(t) X(0) + d(t), so that the information on X(0) of its images is a sum.
+    Images outside of the field of view are not used.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def field_bound(
     measured : tuple of str, optional
         Outputs that are measured; all of them when left out.
     seconds : float
-        How long the points are seen.
+        Time for which the points are seen.
     distance : float
         Their range at the beginning in metres.
     period : float
@@ -133,13 +133,18 @@ def field_bound(
     size : int
         Directions across the field of view.
     doubt : float
-        Relative standard deviation, in each direction of space, with which a point is known beforehand.
+        Relative standard deviation of the prior, in each direction of space.
 
     Raises
     ------
     ValueError
         If the surface does not see the field of view, the motion has no numbers, an output is not there, or a
         number is not positive.
+
+    See Also
+    --------
+    percept_obs.bound_map : the bound over the image of one surface
+    percept_obs.cramer_rao : the bound along one trajectory
 
     Examples
     --------
@@ -174,9 +179,10 @@ def field_bound(
         points = starts @ Phi.T + moved
         seen = _inside(points, field_of_view) & surface.sees(points)
         D = np.stack(gradient(*points[seen].T), axis=-1).reshape(-1, len(rows), 3)
-        told = D.swapaxes(1, 2) @ _weights(D, surface, points[seen], noise, field_of_view) @ D
-        information[seen] += Phi.T @ told @ Phi
-    ends, lengths = starts @ Phi.T + moved, np.linalg.norm(starts @ Phi.T + moved, axis=1)
+        gained = D.swapaxes(1, 2) @ _weights(D, surface, points[seen], noise, field_of_view) @ D
+        information[seen] += Phi.T @ gained @ Phi
+    ends = starts @ Phi.T + moved
+    lengths = np.linalg.norm(ends, axis=1)
     along = (ends / lengths[:, None]) @ Phi
     variance = np.einsum("ki,ki->k", along, np.linalg.solve(information, along[:, :, None])[:, :, 0])
     relative = np.full(size**2, np.nan)
@@ -185,7 +191,7 @@ def field_bound(
 
 
 def pixel(surface: ImagingSurface, field_of_view: float, across: float) -> float:
-    """Size of a pixel in image coordinates, if so many of them span the widest side of the field of view."""
+    """Size of a pixel in image coordinates, if `across` of them span the widest side of the field of view."""
     turns = np.linspace(0, 2 * np.pi, 360, endpoint=False)
     # a hair inside, for on the edge itself some surfaces end
     away = field_of_view / 2 * (1 - 1e-9)

@@ -1,52 +1,51 @@
-"""Tuning without a truth: the gains under which a filter finds its own innovations most likely."""
+"""Tuning without a truth: the gains under which a filter's innovations are most likely."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
+from percept_obs.studies.comparison import Follow
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
-Follow = Callable[[Recording, Observer], Run]
-
 EDGE = 0.02
-"""Part of a range, in powers of ten, within which a gain counts as being at its end."""
+"""Share of a range, in powers of ten, within which a gain counts as being at its end."""
 
 MOST = 80
-"""Settings that are tried at most from each start."""
-
+"""Largest number of settings that are tried from each start."""
 
 NEEDED = 1.92
-"""By how much the log-likelihood must fall without a doubt for that to stay: 95 % of chi-squared with one degree."""
+"""Fall of the log-likelihood from which on a gain is not 0: half the 95 % quantile of chi-squared with one degree."""
 
 
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Tuned:
-    """A filter whose gains were chosen by the likelihood of its innovations.
+    """Filter whose gains were chosen by the likelihood of its innovations.
 
     Parameters
     ----------
     observer : Observer
         With the chosen gains.
     gains : mapping of names to values
-        Those that were chosen.
+        The chosen gains.
     at_edge : tuple of str
-        Names of those at an end of what was tried, beyond which better ones may lie.
+        Names of gains at an end of their range, beyond which better ones may lie.
     log_likelihood : float
         Of all innovations of the recordings.
     tried : int
-        How many settings were tried.
+        Number of settings that were tried.
     """
 
     observer: Observer
@@ -63,7 +62,7 @@ class Tuned:
 
 @checked
 def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
-    """Logarithm of the probability density that a filter gives all innovations of some runs.
+    """Log-likelihood of all innovations of some runs, by the filter's own claims.
 
     Parameters
     ----------
@@ -99,11 +98,11 @@ def tune_by_likelihood(
     follow: Follow,
     after: float = 0.0,
 ) -> Tuned:
-    """Choose a filter's gains such that its innovations are as likely as they can be; no truth is needed.
+    """Choose a filter's gains by maximum likelihood of its innovations; no truth is needed.
 
-    The likelihood punishes both claims: a small variance makes a large innovation unlikely, a large one makes every
-    innovation unlikely.  A gain that may be 0, such as a process noise, is 0 if the innovations do not clearly speak
-    against it.  Choose on some recordings and report on others.
+    A small claimed variance makes a large innovation unlikely, and a large one makes every innovation unlikely.  A gain
+    that may be 0, such as a process noise, is 0 if the innovations do not clearly speak against it.  Choose on some
+    recordings and report on others.
 
     Parameters
     ----------
@@ -113,9 +112,9 @@ def tune_by_likelihood(
     ranges : mapping of names of gains to pairs of their smallest and largest values
         Positive; powers of ten between them are searched, from the middle and from two other places.
     follow : function of (recording, observer)
-        How an observer is run, for instance ``lambda r, o: track(r, o, start)``.
+        Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
     after : float
-        Seconds since the first sample of each recording whose innovations do not count.
+        Seconds at the beginning of each recording whose innovations do not count.
 
     Returns
     -------
@@ -124,7 +123,11 @@ def tune_by_likelihood(
     Raises
     ------
     ValueError
-        If there are no recordings or no gains, a range makes no sense, or every setting diverges.
+        If there are no recordings or no gains, a range is not one of positive values, or every setting diverges.
+
+    See Also
+    --------
+    percept_obs.studies.comparison.best_setting : chooses by the errors, where there is a truth
 
     Notes
     -----
@@ -149,43 +152,38 @@ def tune_by_likelihood(
             raise ValueError(f"the range of {name} is {tuple(ends)}; give a smallest and a largest positive value")
     names = tuple(ranges)
     low, high = np.log10(np.array([ranges[name] for name in names], dtype=float)).T
-    found: dict[tuple[float, ...], float] = {}
 
-    def unlikely_with(gains: Mapping[str, float]) -> float:
+    @cache
+    def unlikely(place: tuple[float, ...], zero: tuple[str, ...] = ()) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
-            runs = [follow(recording, observer.with_gains(**gains)) for recording in recordings]
+            filtered = observer.with_gains(**gains_at(place, zero))
+            runs = [follow(recording, filtered) for recording in recordings]
         return -log_likelihood(runs, after)
 
-    def gains_at(place: Sequence[float]) -> dict[str, float]:
-        return dict(zip(names, (10.0 ** np.array(place)).tolist(), strict=True))
+    def gains_at(place: tuple[float, ...], zero: tuple[str, ...] = ()) -> dict[str, float]:
+        return dict(zip(names, (10.0 ** np.array(place)).tolist(), strict=True)) | dict.fromkeys(zero, 0.0)
 
-    def unlikely(place: Array) -> float:
-        key = tuple(np.clip(place, low, high).tolist())
-        if key not in found:
-            found[key] = unlikely_with(gains_at(key))
-        return found[key]
+    tried = set()
+
+    def objective(place: Array) -> float:
+        inside = tuple(np.clip(place, low, high).tolist())
+        tried.add(inside)
+        return unlikely(inside)
 
     for share in (0.5, 0.25, 0.75):
         start = low + share * (high - low)
         corners = np.vstack([start, start + np.diag(np.where(share < 0.6, 0.2, -0.2) * (high - low))])
-        minimize(
-            unlikely,
-            start,
-            method="Nelder-Mead",
-            options={"initial_simplex": corners, "maxfev": MOST, "xatol": 0.02, "fatol": 0.05},
-        )
-    best = min(found, key=lambda place: found[place])
-    least, gains = found[best], gains_at(best)
-    if not math.isfinite(least):
+        options = {"initial_simplex": corners, "maxfev": MOST, "xatol": 0.02, "fatol": 0.05}
+        minimize(objective, start, method="Nelder-Mead", options=options)
+    best = min(tried, key=unlikely)
+    if not math.isfinite(unlikely(best)):
         raise ValueError(f"the {observer.name} observer diverged with every setting in the ranges; try others")
-    near = np.minimum(best - low, high - best) <= EDGE * (high - low)
-    at_edge = [name for name, is_near in zip(names, near.tolist(), strict=True) if is_near]
+    zero: tuple[str, ...] = ()
     for gain in observer.gains:
-        if gain.name in gains and gain.condition.subs(gain.symbol, 0):
-            without = gains | {gain.name: 0.0}
-            also = unlikely_with(without)
-            if also < least + NEEDED:
-                least, gains = also, without
-    at_edge = [name for name in at_edge if gains[name]]
-    return Tuned(observer.with_gains(**gains), gains, tuple(at_edge), -least, len(found))
+        may_be_zero = gain.name in names and gain.condition.subs(gain.symbol, 0)
+        if may_be_zero and unlikely(best, (*zero, gain.name)) < unlikely(best, zero) + NEEDED:
+            zero = (*zero, gain.name)
+    gains, near = gains_at(best, zero), np.minimum(best - low, high - best) <= EDGE * (high - low)
+    at_edge = tuple(name for name, is_near in zip(names, near.tolist(), strict=True) if is_near and gains[name])
+    return Tuned(observer.with_gains(**gains), gains, at_edge, -unlikely(best, zero), len(tried))

@@ -1,4 +1,4 @@
-"""How an observer's estimate changes with each entry of the motion that it believes in."""
+"""Sensitivity of an observer's estimate to each entry of the motion that it believes in."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
 SHARE = 0.01
-"""The share of a motion's size by which an entry is taken to be wrong, unless another is asked for."""
+"""Default error of an entry, as a share of the motion's size."""
 
 
 @checked
@@ -37,8 +37,7 @@ class Sensitivity:
     derivatives : array of shape (K, n, q)
         Of the estimates at the samples; NaN where there is no estimate.
     sizes : array of shape (q,)
-        Root mean square over the run of the part of the motion to which an entry belongs: of all entries of A in 1/s,
-        or of all of b in m/s.
+        Root mean square over the run of the motion's size: of A in 1/s for its entries, of b in m/s for those of b.
     """
 
     run: Run
@@ -47,25 +46,22 @@ class Sensitivity:
     sizes: Array
 
     def change(self, **errors: float) -> Array:
-        """By how much the estimates change, to first order, when entries are believed larger by so much, shape (K, n).
+        """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n).
 
         Raises
         ------
         ValueError
             If a name is none of the `entries`.
         """
-        changes = np.zeros(len(self.entries))
-        for name, value in errors.items():
-            changes[self._column(name)] = value
-        return np.asarray(self.derivatives @ changes)
+        if unknown := sorted(set(errors) - set(self.entries)):
+            raise ValueError(f"the sensitivity has no entry {', '.join(unknown)}; it has {', '.join(self.entries)}")
+        return np.asarray(self.derivatives @ [errors.get(name, 0.0) for name in self.entries])
 
     def distance_change(self, share: float = SHARE) -> Array:
-        """By which share the distance changes when each entry is off by a share of its part's size, shape (K, q)."""
+        """Relative change of the distance when each entry is off by a share of the motion's size, shape (K, q)."""
         view = self.run.view
         inverse = view.inverse(self.run.estimate)
-        slope_of_inverse = np.stack(
-            [view.inverse(self.derivatives[:, :, k]) for k in range(len(self.entries))], axis=-1
-        )
+        slope_of_inverse = np.stack([view.inverse(each) for each in np.moveaxis(self.derivatives, -1, 0)], axis=-1)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(-slope_of_inverse * share * self.sizes / inverse[:, None])
 
@@ -76,16 +72,11 @@ class Sensitivity:
         order = np.argsort(medians)[::-1]
         return {self.entries[k]: medians[k] for k in order}
 
-    def _column(self, name: str) -> int:
-        if name not in self.entries:
-            raise ValueError(f"the sensitivity has no entry {name!r}; it has {', '.join(self.entries)}")
-        return self.entries.index(name)
-
     def __repr__(self) -> str:
-        told = ", ".join(f"{name} {100 * value:.2g} %" for name, value in list(self.ranking().items())[:3])
+        largest = ", ".join(f"{name} {100 * value:.2g} %" for name, value in list(self.ranking().items())[:3])
         return (
             f"<Sensitivity of the {self.run.observer.name} observer to {len(self.entries)} entries; {100 * SHARE:g} % "
-            f"of the motion's size in one moves the distance most for {told}>"
+            f"of the motion's size in one moves the distance most for {largest}>"
         )
 
 
@@ -100,8 +91,8 @@ def sensitivity(
 ) -> Sensitivity:
     """Derivative of an observer's estimate with respect to entries of the believed motion, along a run.
 
-    It steps the variational equations, which follow from the observer's own: flow, measurement update, reset, start
-    and estimate, each differentiated.
+    The variational equations are integrated: the observer's flow, measurement update, reset, start and estimate,
+    each differentiated.
 
     Parameters
     ----------
@@ -121,6 +112,11 @@ def sensitivity(
         If the motion has no such entry, or none at all.
     DoesNotFit
         If the observer cannot follow the recording.
+
+    See Also
+    --------
+    misbelieved : a motion with wrong entries, to compare with
+    percept_obs.figures.entries : draws the entries that matter most
 
     Notes
     -----
@@ -151,18 +147,16 @@ def sensitivity(
         unobservable=(),
         fastest=None,
     )
-    columns = []
-    for direction in np.eye(len(moved)):
-        along = _beside(motion, moved, direction)
-        columns.append(track(recording, varied, start, believed=along, **settings).estimate)
-    derivatives = np.stack(columns, axis=-1)
+    directions = [_with_change(motion, moved, direction) for direction in np.eye(len(moved))]
+    runs = [track(recording, varied, start, believed=each, **settings) for each in directions]
+    derivatives = np.stack([each.estimate for each in runs], axis=-1)
     derivatives[np.isnan(run.estimate)] = np.nan
     return Sensitivity(run, tuple(symbol.name for symbol in moved), derivatives, _sizes(motion, moved, recording.time))
 
 
 @checked
 def misbelieved(motion: Motion, **errors: float) -> Motion:
-    """The motion with some entries larger by so much at all times.
+    """Return the motion with some entries larger by so much at all times.
 
     Parameters
     ----------
@@ -197,20 +191,21 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
             f"the {motion.name} motion has no entries with numbers that could be wrong; give its coefficients as "
             "arrays or as functions of time"
         )
-    strange = [name for name in entries or () if name not in there]
-    if strange or (entries is not None and not len(entries)):
-        raise ValueError(f"the {motion.name} motion has no entry {', '.join(strange)}; it has {', '.join(there)}")
-    return tuple(there[name] for name in (there if entries is None else entries))
+    names = [*there] if entries is None else list(entries)
+    unknown = [name for name in names if name not in there]
+    if unknown or not names:
+        raise ValueError(f"the {motion.name} motion has no entry {', '.join(unknown)}; it has {', '.join(there)}")
+    return tuple(there[name] for name in names)
 
 
-def _beside(motion: Motion, moved: Sequence[sp.Symbol], direction: Array) -> Motion:
-    """The motion with the changes of its entries as parameters of their own."""
-    beside = _mapped(motion, lambda rows: np.hstack([rows, np.broadcast_to(direction, (len(rows), len(direction)))]))
-    return replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=beside)
+def _with_change(motion: Motion, moved: Sequence[sp.Symbol], direction: Array) -> Motion:
+    """Return the motion with the changes of its entries as further parameters."""
+    signal = _mapped(motion, lambda rows: np.hstack([rows, np.broadcast_to(direction, (len(rows), len(direction)))]))
+    return replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
 
 
 def _mapped(motion: Motion, of: Any) -> Signal:
-    """A signal whose rows are a function of the motion's."""
+    """Return the signal whose rows are a function of the motion's."""
     signal = motion.signal
     assert signal is not None
     if callable(signal.samples):
@@ -219,8 +214,8 @@ def _mapped(motion: Motion, of: Any) -> Signal:
 
 
 def _sizes(motion: Motion, moved: Sequence[sp.Symbol], time: Array) -> Array:
-    """Root mean square over time of the norm of all entries of A, or of all of b, to which each entry belongs."""
+    """Root mean square over time of the norm of A, or of b, for each entry of it."""
     rows = motion.known(time)
     in_A = np.array([symbol in motion.A.free_symbols for symbol in motion.parameters])
-    sizes = {part: float(np.sqrt((rows[:, in_A == part] ** 2).sum(axis=1).mean())) for part in (True, False)}
+    sizes = {group: float(np.sqrt((rows[:, in_A == group] ** 2).sum(axis=1).mean())) for group in (True, False)}
     return np.array([sizes[symbol in motion.A.free_symbols] for symbol in moved])

@@ -1,4 +1,4 @@
-"""Ensembles from a file, for machines without a notebook."""
+"""Ensembles described by a file, for machines without a notebook."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from percept_obs.system.perspective import PerspectiveSystem
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 MAKERS = {make.key: make for make in OBSERVERS}
-PASSED = frozenset(
-    ("seeds", "duration", "start", "hold", "step", "tolerance", "after", "coordinates", "prior", "language", "chunk")
-)
-"""What a file may say besides scenario, observer, outputs, gains, camera, over and store; see `ensemble`."""
+NEEDED = ("scenario", "observer", "store")
+SETTINGS = {
+    *("seeds", "duration", "start", "hold", "step", "tolerance", "after", "coordinates", "prior", "language", "chunk")
+}
+"""Arguments of `ensemble` that a file may have besides scenario, observer, outputs, gains, camera, over and store."""
 
 
 def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
@@ -41,52 +42,49 @@ def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
     Raises
     ------
     ValueError
-        If the file makes no sense.
+        If the file is no TOML, or has unknown, missing or wrong entries.
     OSError
         If it cannot be read.
+
+    See Also
+    --------
+    percept_obs.ensemble : runs an ensemble from Python
     """
     file = Path(path)
     try:
-        said = tomllib.loads(file.read_text(encoding="utf-8"))
+        entries = tomllib.loads(file.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{file} is no TOML: {error}") from None
-    unknown = sorted(set(said) - PASSED - {"scenario", "observer", "outputs", "gains", "camera", "over", "store"})
-    if unknown:
-        raise ValueError(f"{file}: a sweep does not know {', '.join(unknown)}; it knows {', '.join(sorted(PASSED))}")
-    missing = [name for name in ("scenario", "observer", "store") if name not in said]
-    if missing:
+    if unknown := sorted(set(entries) - SETTINGS - {*NEEDED, "outputs", "gains", "camera", "over"}):
+        raise ValueError(f"{file}: a sweep does not know {', '.join(unknown)}; it knows {', '.join(sorted(SETTINGS))}")
+    if missing := [name for name in NEEDED if name not in entries]:
         raise ValueError(f"{file}: a sweep needs {', '.join(missing)}")
-    scenario = _named(SCENARIOS, "scenario", said["scenario"])()
-    family = _named(MAKERS, "observer", said["observer"])
-    system = PerspectiveSystem(scenario.motion, scenario.surface)
-    names = said.get("outputs", [symbol.name for symbol in scenario.surface.image_coordinates])
-    observer = family(system.partition(*names), **_table(said, "gains"))
-    camera = _table(said, "camera")
+    for name in ("gains", "camera", "over"):
+        if not isinstance(entries.setdefault(name, {}), dict):
+            raise ValueError(f"{name} is {entries[name]!r}; it must be a table of names and values")
+    scenario = _named(SCENARIOS, "scenario", entries["scenario"])()
+    family = _named(MAKERS, "observer", entries["observer"])
+    outputs = entries.get("outputs", [symbol.name for symbol in scenario.surface.image_coordinates])
+    observer = family(PerspectiveSystem(scenario.motion, scenario.surface).partition(*outputs), **entries["gains"])
+    camera = entries["camera"]
     if "noise" in camera:
         camera["noise"] = Uniform(camera["noise"])
-    over = {name: _values(name, values) for name, values in _table(said, "over").items()}
-    further = {name: said[name] for name in PASSED if name in said}
-    store = file.parent / said["store"]
-    return ensemble(scenario, observer, over, camera=Camera(**camera), client=client, store=store, **further)
+    over = {name: _values(name, values) for name, values in entries["over"].items()}
+    settings = {name: entries[name] for name in SETTINGS if name in entries}
+    store = file.parent / entries["store"]
+    return ensemble(scenario, observer, over, camera=Camera(**camera), client=client, store=store, **settings)
 
 
-def _named(known: Mapping[str, Any], what: str, name: Any) -> Any:
+def _named(known: Mapping[str, Any], kind: str, name: Any) -> Any:
     if name not in known:
-        raise ValueError(f"there is no {what} {name!r}; there are {', '.join(known)}")
+        raise ValueError(f"there is no {kind} {name!r}; there are {', '.join(known)}")
     return known[name]
 
 
-def _table(said: Mapping[str, Any], name: str) -> dict[str, Any]:
-    value = said.get(name, {})
-    if not isinstance(value, dict):
-        raise ValueError(f"{name} is {value!r}; it must be a table of names and values")
-    return dict(value)
-
-
-def _values(name: str, given: Any) -> Any:
-    """A list, or evenly spaced values."""
-    if not isinstance(given, dict):
-        return given
-    if set(given) != {"from", "to", "count"}:
-        raise ValueError(f"over has {given!r} for {name}; give a list, or from, to and count")
-    return np.linspace(given["from"], given["to"], given["count"])
+def _values(name: str, values: Any) -> Any:
+    """Return a list, or evenly spaced values."""
+    if not isinstance(values, dict):
+        return values
+    if set(values) != {"from", "to", "count"}:
+        raise ValueError(f"over has {values!r} for {name}; give a list, or from, to and count")
+    return np.linspace(values["from"], values["to"], values["count"])

@@ -1,13 +1,14 @@
-"""How far an estimate can be trusted at several times of a run, by what was known then and without a truth."""
+"""Trust in an estimate at several times of a run, by what was known then and without a truth."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from percept_obs.compile import Array, Flags
-from percept_obs.tracking.information import FEWEST
+from percept_obs.tracking.information import FEWEST, Information
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE, Trust
 from percept_obs.validation import checked
@@ -16,7 +17,7 @@ from percept_obs.validation import checked
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
 class TrustOverTime:
-    """What could be said of an estimate at some times.
+    """Trust in an estimate at some times.
 
     Parameters
     ----------
@@ -24,7 +25,7 @@ class TrustOverTime:
     tolerance : float
         Relative error up to which an estimate is to be trusted.
     index : array of shape (T,) of int
-        Numbers of the samples at which it was asked.
+        Indices of the samples at which it was judged.
     trusts : tuple of T Trust
         Each by the samples up to then.
     """
@@ -41,32 +42,31 @@ class TrustOverTime:
 
     @property
     def trusted(self) -> Flags:
-        """Where the estimate could be trusted, shape (T,)."""
+        """True where the estimate could be trusted, shape (T,)."""
         return np.array([trust.trusted for trust in self.trusts])
 
     @property
     def unexcited(self) -> Array:
-        """For how many seconds the samples had told nothing, shape (T,)."""
-        found = [trust.information for trust in self.trusts]
-        return np.array([0.0 if information is None else information.unexcited for information in found])
+        """Seconds at the end without information about the distance, shape (T,)."""
+        return self._each(lambda information: information.unexcited, 0.0)
 
     @property
     def deviation(self) -> Array:
-        """Relative standard deviation of what the samples told, shape (T,); infinite where that was nothing."""
-        return np.array([np.inf if trust.information is None else trust.information.deviation for trust in self.trusts])
+        """Relative standard deviation of the distance by the samples alone, shape (T,); infinite without any."""
+        return self._each(lambda information: information.deviation, np.inf)
 
     @property
-    def told(self) -> Array:
-        """The distance in metres that the samples told, shape (T,); NaN where they told nothing."""
-        view, found = self.run.view, np.full(len(self.trusts), np.nan)
-        for k, trust in enumerate(self.trusts):
-            if trust.information is not None and trust.information.deviation < 1:
-                found[k] = 1 / view.inverse(trust.information.estimate)
-        return found
+    def distance(self) -> Array:
+        """Distance in metres by the samples alone, shape (T,); NaN where they give none."""
+        inverse = self._each(lambda information: float(self.run.view.inverse(information.estimate)), np.nan)
+        return 1 / np.where(self.deviation < 1, inverse, np.nan)
+
+    def _each(self, value: Callable[[Information], float], none: float) -> Array:
+        return np.array([none if each.information is None else value(each.information) for each in self.trusts])
 
     @property
     def sentence(self) -> str:
-        """When it could be trusted, and how it stands at the end."""
+        """Share of times at which it could be trusted, and the verdict at the end."""
         share = f"{100 * self.trusted.mean():.0f} % of {len(self.trusts)} times"
         return (
             f"Trusted at {share}, hardly excited at {int(self.unexcited.sum())}. At the end: {self.trusts[-1].sentence}"
@@ -92,7 +92,11 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
     Raises
     ------
     ValueError
-        If the run shows several points or has too few samples, or a number makes no sense.
+        If the run shows several points or has too few samples, or a number is out of range.
+
+    See Also
+    --------
+    percept_obs.figures.trust : draws it over time
 
     Examples
     --------
@@ -103,7 +107,8 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
     >>> trust_over_time(run, count=4).trusted.tolist()
     [False, True, True, True]
     """
-    length = len(run.recording.imaging_surface.coordinates) and len(run.time)
+    run.recording.imaging_surface  # noqa: B018  refuses several points
+    length = len(run.time)
     if length < 2 * FEWEST:
         raise ValueError(f"the run has {length} samples; {2 * FEWEST} are needed to say how far it can be trusted")
     if not 1 <= count <= length:
