@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -159,46 +158,29 @@ def test_the_pixels_are_those_of_the_landmark(tables: StereoTracks) -> None:
         assert np.median(np.abs(tables.stereo_depth[samples, landmark] / point[:, 2] - 1)) < 0.05
 
 
-@pytest.mark.parametrize("inside", ["", "dataset3.mat"])
-def test_folder_and_file_name_the_same_recording(folder: Path, inside: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert find_utias(folder / inside) == folder / "dataset3.mat"
-    assert find_utias(str(folder / inside)) == folder / "dataset3.mat"
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(folder / inside))
-    assert find_utias() == folder / "dataset3.mat"
+def found_by(way: str, place: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Find the recording at a place that a path or the environment variable names."""
+    if way == "path=":
+        monkeypatch.setenv("PERCEPT_OBS_UTIAS", "a path goes before the variable")
+        return find_utias(place)
+    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(place))
+    return find_utias()
 
 
-def test_a_path_goes_before_the_variable(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path / "nowhere"))
-    assert find_utias(folder) == folder / "dataset3.mat"
-
-
-def test_a_wrong_path_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match=r"path= names '.*nowhere', .* neither a file nor a folder; "):
-        find_utias(tmp_path / "nowhere")
-    with pytest.raises(FileNotFoundError, match=r"path= names .* a folder without dataset3\.mat; name "):
-        find_utias(tmp_path)
-
-
-def test_a_wrong_variable_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path / "nowhere"))
-    with pytest.raises(FileNotFoundError, match=r"variable PERCEPT_OBS_UTIAS names '.*nowhere'"):
-        find_utias()
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path))
-    with pytest.raises(FileNotFoundError, match=r"variable PERCEPT_OBS_UTIAS names .* without dataset3\.mat"):
-        find_utias()
-
-
-def test_a_corrupted_file_is_refused(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / "dataset3.mat"
-    shutil.copyfile(folder / "dataset3.mat", file)
-    content = bytearray(file.read_bytes())
+@pytest.mark.parametrize("way", ["path=", "variable PERCEPT_OBS_UTIAS"])
+def test_the_recording_is_found_or_the_wrong_place_is_named(
+    folder: Path, way: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for inside in ("", "dataset3.mat"):
+        assert found_by(way, folder / inside, monkeypatch) == folder / "dataset3.mat"
+    for place, problem in ((tmp_path / "nowhere", "neither a file nor a folder"), (tmp_path, "without dataset3.mat")):
+        with pytest.raises(FileNotFoundError, match=rf"{way} names '{place}', .*{problem}; name "):
+            found_by(way, place, monkeypatch)
+    content = bytearray((folder / "dataset3.mat").read_bytes())
     content[len(content) // 2] ^= 1
-    file.write_bytes(content)
-    with pytest.raises(ValueError, match=rf"damaged one: its SHA-256 is \w+, expected {SHA256}; download"):
-        utias_tracks(file)
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(tmp_path))
-    with pytest.raises(ValueError, match=r"PERCEPT_OBS_UTIAS names .* another file or a damaged one"):
-        utias_tracks()
+    (tmp_path / "dataset3.mat").write_bytes(content)
+    with pytest.raises(ValueError, match=rf"{way} names .* damaged one: its SHA-256 is \w+, expected {SHA256}; down"):
+        found_by(way, tmp_path, monkeypatch)
 
 
 @pytest.fixture
@@ -217,8 +199,8 @@ def test_a_failed_download_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(urllib.request, "urlopen", fail)
     with pytest.raises(DatasetUnavailable) as caught:
         find_utias()
-    for part in ("unreachable", ADDRESS, "by hand", "path=", "PERCEPT_OBS_UTIAS"):
-        assert part in str(caught.value)
+    for words in ("unreachable", ADDRESS, "by hand", "path=", "PERCEPT_OBS_UTIAS"):
+        assert words in str(caught.value)
     assert isinstance(caught.value, OSError)
 
 

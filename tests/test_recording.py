@@ -130,29 +130,6 @@ def test_from_csv(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("a,y1\n0,1\n", "it needs 'time'"),
-        ("time,z\n0,1\n", "at least one of y1, y2"),
-        ("time,y1\n0,one\n1,2\n", "'one' in row 1"),
-        ("time,y1\n", "no rows"),
-        ("time,y1\n0,1\n", "at least two samples"),
-        ("time,y1\n0,1\n0,2\n", "increase strictly"),
-    ],
-)
-def test_a_wrong_table_is_refused(tmp_path, text, message):
-    path = tmp_path / "wrong.csv"
-    path.write_text(text)
-    with pytest.raises(ValueError, match=message):
-        Recording.from_csv(path, STILL)
-
-
-def test_no_table_is_refused(tmp_path):
-    with pytest.raises(FileNotFoundError):
-        Recording.from_csv(tmp_path / "none.csv", STILL)
-
-
-@pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"time": [], "outputs": np.zeros((0, 2))}, "at least two samples"),

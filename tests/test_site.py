@@ -213,9 +213,3 @@ def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, cap
     assert cli.main(["site", str(tmp_path / "new")]) == 1
     assert "furo is missing; get it with: python -m pip install 'percept-obs[site]'" in capsys.readouterr().err
     assert not Path(tmp_path / "new").exists()
-
-
-def test_a_file_in_the_place_of_the_folder_is_refused(capsys, tmp_path):
-    (tmp_path / "site").write_text("")
-    assert cli.main(["site", str(tmp_path / "site")]) == 2
-    assert "name a folder" in capsys.readouterr().err

@@ -33,11 +33,7 @@ SHORTEST_TRACK = 3.0  # s
 LONGEST_GAP = 0.30  # s, between two samples of one track
 DERIVATIVE = Quadratic(0.30)  # of the camera's poses
 
-SHAPES = {
-    **{"t": ("K",), "y_k_j": (4, "K", "L"), "r_i_vk_i": (3, "K"), "theta_vk_i": (3, "K")},
-    **{"C_c_v": (3, 3), "rho_v_c_v": (3,), "fu": (), "fv": (), "cu": (), "cv": (), "b": ()},
-}
-"""Variables of a file and their shapes, for K samples and L landmarks."""
+VARIABLES = ("t", "y_k_j", "r_i_vk_i", "theta_vk_i", "C_c_v", "rho_v_c_v", "fu", "fv", "cu", "cv", "b")
 LANDMARKS = "rho_i_pj_i"
 """The variable with their places, of shape (3, L); a file of tracked corners has none."""
 
@@ -199,21 +195,34 @@ def read_stereo_mat(
     if not file.is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a MATLAB file of stereo tracks")
     try:
-        recorded = loadmat(file, variable_names=(*SHAPES, LANDMARKS), squeeze_me=True)
+        recorded = loadmat(file, variable_names=(*VARIABLES, LANDMARKS))
     except (ValueError, TypeError, IndexError, NotImplementedError, MatReadError, OSError, zlib.error) as error:
         raise ValueError(
             f"the path names '{file}', which is no MATLAB file up to version 7 ({error}); save it with -v7"
         ) from None
-    sizes: dict[str, int] = {}
-    found = {name: _variable(recorded, name, shape, sizes, file) for name, shape in SHAPES.items()}
-    landmarks = _variable(recorded, LANDMARKS, (3, "L"), sizes, file).T if LANDMARKS in recorded else None
-    fx, fy, cx, cy, baseline = (float(found[name]) for name in ("fu", "fv", "cu", "cv", "b"))
+    if missing := [name for name in VARIABLES if name not in recorded]:
+        raise ValueError(f"'{file}' has no variable {', '.join(missing)}; it needs {', '.join(VARIABLES)}")
+
+    def variable(name: str, *shape: int) -> Array:
+        """Return a variable; MATLAB keeps vectors as matrices, and drops a last dimension of 1."""
+        array = numbers(recorded[name], f"the variable {name} of '{file}'")
+        if np.squeeze(array).shape != tuple(size for size in shape if size != 1) or not np.isfinite(array).all():
+            raise ValueError(
+                f"the variable {name} of '{file}' has the shape {array.shape}, or is not finite; expected finite "
+                f"numbers of shape {shape}, and {NOT_SEEN:g} for what was not seen"
+            )
+        return array.reshape(shape)
+
+    samples, points = np.size(recorded["t"]), recorded["y_k_j"].shape[2] if recorded["y_k_j"].ndim == 3 else 1
+    images = np.moveaxis(variable("y_k_j", 4, samples, points), 0, -1)
+    landmarks = variable(LANDMARKS, 3, points).T if LANDMARKS in recorded else None
+    fx, fy, cx, cy, baseline = (float(variable(name)) for name in ("fu", "fv", "cu", "cv", "b"))
     if not baseline > 0:
         raise ValueError(f"'{file}' has the baseline b = {baseline} m; it must be positive")
 
-    body = Poses(found["t"], found["r_i_vk_i"].T, Rotation.from_rotvec(found["theta_vk_i"].T).as_quat())
-    poses = body.mounted(found["rho_v_c_v"], found["C_c_v"].T)
-    images = np.moveaxis(found["y_k_j"], 0, -1)
+    turn = Rotation.from_rotvec(variable("theta_vk_i", 3, samples).T).as_quat()
+    body = Poses(variable("t", samples), variable("r_i_vk_i", 3, samples).T, turn)
+    poses = body.mounted(variable("rho_v_c_v", 3), variable("C_c_v", 3, 3).T)
     seen = np.asarray((images != NOT_SEEN).all(axis=-1))
     tracks, followed = _tracks(body.time, seen, shortest, gap), np.zeros_like(seen)
     for track in tracks:
@@ -221,25 +230,6 @@ def read_stereo_mat(
     images = np.where(followed[..., None], images, np.nan)
     camera = PixelCamera((fx, fy), (cx, cy))
     return StereoTracks(poses, poses.path(derivative), images, camera, baseline, tracks, landmarks)
-
-
-def _variable(
-    recorded: dict[str, object], name: str, shape: tuple[int | str, ...], sizes: dict[str, int], file: Path
-) -> Array:
-    """Return a variable of the file; a letter in a shape is one size in all variables."""
-    if name not in recorded:
-        raise ValueError(f"'{file}' has no variable {name}; it needs {', '.join(SHAPES)}")
-    array = numbers(recorded[name], f"the variable {name} of '{file}'")
-    wanted: tuple[int | str, ...] = tuple(sizes.get(size, size) if isinstance(size, str) else size for size in shape)
-    array = array.reshape(array.shape + (1,) * (len(shape) - array.ndim))  # back the dimensions that loadmat squeezed
-    pairs: list[tuple[int | str, int]] = list(zip(wanted, array.shape, strict=False))
-    fits = array.ndim == len(wanted) and all(isinstance(size, str) or size == found for size, found in pairs)
-    if not fits or not array.size:
-        raise ValueError(f"the variable {name} of '{file}' has the shape {array.shape}; expected {wanted}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"the variable {name} of '{file}' is not finite; {NOT_SEEN:g} stands for what was not seen")
-    sizes.update({size: found for size, found in pairs if isinstance(size, str)})
-    return array
 
 
 def _tracks(time: Array, seen: Flags, shortest: float, gap: float) -> tuple[Sighting, ...]:

@@ -14,50 +14,30 @@ from percept_obs.papers.mathml import shown
 Pages = Iterator[tuple[str, str]]
 """Paths below the site's source, and their texts."""
 
+FOLDERS = {
+    "labs": "",
+    "figures": "",
+    "observers": "family gains parts integral_sliding_mode",
+    "points": "gramian ray scenarios utias",
+    "structure": "competitors pixels scenarios",
+    "observability": "",
+    "tracking": "",
+    "studies": "all_observers chatter comparison consistency diagnosis fields least_squares likelihood sensitivity "
+    "sweep trust tuning",
+    "system": "derivation",
+    "recording": "poses pose_files scenarios stereo_mat track_files utias worked",
+    "checking": "",
+    "exercises": "",
+    "papers": "",
+}
+"""Folders with public names, and modules in them whose names the folder does not gather."""
 MODULES = (
     "percept_obs",
-    "percept_obs.labs",
-    "percept_obs.figures",
-    "percept_obs.observers",
-    "percept_obs.observers.family",
-    "percept_obs.observers.gains",
-    "percept_obs.observers.parts",
-    "percept_obs.observers.integral_sliding_mode",
-    "percept_obs.points",
-    "percept_obs.points.gramian",
-    "percept_obs.points.ray",
-    "percept_obs.points.scenarios",
-    "percept_obs.points.utias",
-    "percept_obs.structure",
-    "percept_obs.structure.competitors",
-    "percept_obs.structure.pixels",
-    "percept_obs.structure.scenarios",
-    "percept_obs.observability",
-    "percept_obs.tracking",
-    "percept_obs.studies.all_observers",
-    "percept_obs.studies.chatter",
-    "percept_obs.studies.comparison",
-    "percept_obs.studies.consistency",
-    "percept_obs.studies.diagnosis",
-    "percept_obs.studies.fields",
-    "percept_obs.studies.least_squares",
-    "percept_obs.studies.likelihood",
-    "percept_obs.studies.sensitivity",
-    "percept_obs.studies.sweep",
-    "percept_obs.studies.trust",
-    "percept_obs.studies.tuning",
-    "percept_obs.system.derivation",
-    "percept_obs.recording",
-    "percept_obs.recording.poses",
-    "percept_obs.recording.pose_files",
-    "percept_obs.recording.scenarios",
-    "percept_obs.recording.stereo_mat",
-    "percept_obs.recording.track_files",
-    "percept_obs.recording.utias",
-    "percept_obs.recording.worked",
-    "percept_obs.checking",
-    "percept_obs.exercises",
-    "percept_obs.papers",
+    *(
+        f"percept_obs.{folder}{module}"
+        for folder, names in FOLDERS.items()
+        for module in ("", *[f".{m}" for m in names.split()])
+    ),
 )
 """Modules whose public names have pages: those of `__all__`, or else all that are defined in the module or below."""
 
@@ -135,7 +115,7 @@ def _entry(name: str, ledger: Ledger, entry: Entry, before: str, after: str) -> 
 def reference() -> Pages:
     """Yield a page of the public names of each module."""
     intro = "All public names, by module. Every example is run by the package's tests."
-    yield "reference/index.md", contents("Reference", intro, [slug(name) for name in MODULES])
+    yield "reference/index.md", contents("Reference", intro, [slug(name) for name in public()])
     for name, values in public().items():
         text = inspect.getdoc(import_module(name)) or ""
         lines = [name, "=" * len(name), "", text, "", f".. currentmodule:: {name}", ""]
@@ -164,5 +144,6 @@ def public() -> dict[str, list[tuple[list[str], object]]]:
                 names.setdefault(id(values[name]), []).append(name)
         seen |= names.keys()
         ordered = [sorted(same, key=len, reverse=True) for same in names.values()]
-        found[module] = [(same, values[same[0]]) for same in ordered]
+        if ordered:
+            found[module] = [(same, values[same[0]]) for same in ordered]
     return found
