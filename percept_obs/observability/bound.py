@@ -248,15 +248,15 @@ def _deviations(covariances: Array) -> Array:
     return np.sqrt(np.maximum(np.diagonal(covariances, axis1=1, axis2=2), 0.0))
 
 
-def _noise(recording: Recording, form: PartitionedSystem, given: ArrayLike | None) -> Array:
+def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | None) -> Array:
     """Covariance of the noise, shape (1, m, m) or (K, m, m)."""
     m, count = len(form.measured), len(recording.time)
-    if given is None and not recording.noise_variance:
+    if variance is None and not recording.noise_variance:
         raise ValueError(
             f"the recording's noise variance is {recording.noise_variance}, and without noise there is no bound; give "
             "noise_variance, or record with noise: Camera(noise=Gaussian(0.01))"
         )
-    values = np.asarray(recording.noise_variance if given is None else given, dtype=float)
+    values = np.asarray(recording.noise_variance if variance is None else variance, dtype=float)
     if values.ndim < 2 and values.shape in ((), (m,)):
         values = np.diag(np.broadcast_to(values, m))
     if values.shape not in ((m, m), (count, m, m)):

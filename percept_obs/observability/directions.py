@@ -69,9 +69,9 @@ def _sum(row: Array, names: Sequence[str]) -> str:
     largest = np.abs(row).max()
     terms = [(value, name) for value, name in zip(row, names, strict=True) if abs(value) >= 1e-6 * largest]
     shown = terms if len(terms) <= MOST_TERMS else terms[: MOST_TERMS - 1]
-    words = ""
+    text = ""
     for value, name in shown:
         size = "" if abs(abs(value) - 1) < 1e-6 else f"{number(abs(value))} "
         sign = "-" if value < 0 else "+"
-        words += f" {sign} {size}{name}" if words else f"{sign.strip('+')}{size}{name}"
-    return words if shown is terms else f"{words} and {len(terms) - len(shown)} more states"
+        text += f" {sign} {size}{name}" if text else f"{sign.strip('+')}{size}{name}"
+    return text if shown is terms else f"{text} and {len(terms) - len(shown)} more states"

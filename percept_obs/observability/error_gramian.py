@@ -32,7 +32,7 @@ MOST_WINDOWS = 24
 
 
 class ErrorGramian(Windows):
-    """How much the outputs of a window change with the coordinates at its beginning.
+    """Change of the outputs of a window with the coordinates at its beginning, squared and integrated.
 
     `time` holds the windows' beginnings; states are the form's coordinates, in its order.
     """

@@ -81,17 +81,17 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     names = [symbol.name for symbol in surface.image_coordinates]
     seen = [e for name, e in zip(names, surface.image, strict=True) if name in measured]
     hidden = [e for name, e in zip(names, surface.image, strict=True) if name not in measured]
-    there = dict(zip(POINT, X, strict=True))
-    begins = dict(zip(POINT, START, strict=True))
+    at_point = dict(zip(POINT, X, strict=True))
+    at_start = dict(zip(POINT, START, strict=True))
 
     def upper(rows: sp.ImmutableMatrix) -> Expressions:
         """Entries of rows^T rows on and above the diagonal."""
         square = rows.T * rows
         return tuple(square[i, j] for i in range(3) for j in range(i, 3))
 
-    prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(begins)
-    rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(there) * PHI
-    slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(there) * PHI
+    prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(at_start)
+    rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(at_point) * PHI
+    slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(at_point) * PHI
     # slope J^-1 slope^T with J = L D L^T: less is lost to rounding than with determinants
     a, b, c, d, e, f = INFORMATION
     along, below = b / a, c / a
@@ -100,7 +100,7 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     third = f - below * c - across**2 * second
     z1, z2, z3 = slope[0], slope[1] - along * slope[0], slope[2] - below * slope[0]
     variance = z1**2 / a + z2**2 / second + (z3 - across * z2) ** 2 / third
-    distance = surface.distance.xreplace(there)
+    distance = surface.distance.xreplace(at_point)
     return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance, surface.parameters)
 
 

@@ -180,12 +180,12 @@ class Observability:
             "early": bound and not error,
         }
         reasons = [reason for reason, true in holds.items() if true] or ["none"]
-        words = {"hidden": ", ".join(self.form.hidden), "window": f"{self.window:g}"}
-        words |= {"length": f"{self.recording.elapsed[-1]:.4g}", "unlearnt": "; ".join(self["bound"].lost)}
-        words["all"] = "the state is observable" if bound else "it is not observable"
+        fields = {"hidden": ", ".join(self.form.hidden), "window": f"{self.window:g}"}
+        fields |= {"length": f"{self.recording.elapsed[-1]:.4g}", "unlearnt": "; ".join(self["bound"].lost)}
+        fields["all"] = "the state is observable" if bound else "it is not observable"
         if instant is not None:
-            words |= {"time": f"{self['instant'].time:.3g}", "unexcited": "; ".join(self["excitation"].lost)}
-        return tuple(WHY[reason].format(**words) for reason in reasons)
+            fields |= {"time": f"{self['instant'].time:.3g}", "unexcited": "; ".join(self["excitation"].lost)}
+        return tuple(WHY[reason].format(**fields) for reason in reasons)
 
     def __str__(self) -> str:
         rows = [HEADS, *(measure.cells for measure in self.measures)]
@@ -254,7 +254,7 @@ def how_observable(
     """
     form = matching_form(system, recording)
     window = min(USUAL_WINDOW, float(recording.elapsed[-1]) / 4) if window is None else window
-    given = noise_variance if noise_variance is not None else recording.noise_variance or NOISE_VARIANCE
+    variance = noise_variance if noise_variance is not None else recording.noise_variance or NOISE_VARIANCE
     error, canonical = error_gramian(recording, form, window), not form.culprits
     return Observability(
         form,
@@ -264,5 +264,5 @@ def how_observable(
         lie_ranks(recording, form),
         error,
         empirical_gramian(recording, form, window),
-        cramer_rao(recording, form, prior, given),
+        cramer_rao(recording, form, prior, variance),
     )

@@ -178,7 +178,7 @@ class PointsForm:
     @cached_property
     def surface_numbers(self) -> tuple[Array, Array]:
         """Numbers of the block: N of shape (m, 3) and l of shape (3,)."""
-        N, l = (np.array(part.subs(self.surface.values), dtype=float) for part in (self.block.N, self.block.l))
+        N, l = (np.array(M.subs(self.surface.values), dtype=float) for M in (self.block.N, self.block.l))
         return N, l.ravel()
 
     @cached_property

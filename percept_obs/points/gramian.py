@@ -58,14 +58,14 @@ class Gramian(Windows):
         """Say in words if (14) holds; if not, which directions of the state are not seen."""
         k = self.weakest
         lost = self.unseen()
-        words = {"window": f"{self.window:g}", "begin": f"{self.time[k]:.3g}", "least": f"{self.least:.3g}"}
+        fields = {"window": f"{self.window:g}", "begin": f"{self.time[k]:.3g}", "least": f"{self.least:.3g}"}
         if not lost.shape[1]:
             direction = np.linalg.eigh(self.matrices[k])[1][:, 0]
-            return VERDICTS["holds"].format(**words, direction=mainly(direction, self.names))
+            return VERDICTS["holds"].format(**fields, direction=mainly(direction, self.names))
         named = in_words(lost, self.names)
         one = len(named) == 1
-        words |= {"count": str(len(named)), "directions": "; ".join(named)}
-        text = VERDICTS["one fails" if one else "several fail"].format(**words)
+        fields |= {"count": str(len(named)), "directions": "; ".join(named)}
+        text = VERDICTS["one fails" if one else "several fail"].format(**fields)
         if self.states is None or not np.isfinite(self.states[k]).all():
             return text
         state = self.states[k] / max(float(np.linalg.norm(self.states[k])), 1e-300)

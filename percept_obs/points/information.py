@@ -37,8 +37,8 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
             product = flat.T @ flat
             M, b = product[:-1, :-1], product[:-1, -1]
             values, vectors = np.linalg.eigh(M)
-            there = values > ROUNDING**2 * values[-1]
-            x = -vectors[:, there] @ ((vectors[:, there].T @ b) / values[there])
+            determined = values > ROUNDING**2 * values[-1]
+            x = -vectors[:, determined] @ ((vectors[:, determined].T @ b) / values[determined])
             depth = form.locate(back @ np.append(x, 1.0)) @ l
             seen = np.isfinite(outputs).all(axis=-1)
             if not (depth[seen] > 0).all():
@@ -50,7 +50,7 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
             return x, math.inf, np.full(m, noise)
-        return x, _worst(form, x, values, vectors, there, noise), np.full(m, noise)
+        return x, _worst(form, x, values, vectors, determined, noise), np.full(m, noise)
 
     return fit
 
@@ -72,10 +72,10 @@ def _backwards(form: PointsForm, time: Array) -> Array:
     return np.stack(found)
 
 
-def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, there: Flags, noise: float) -> float:
+def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, determined: Flags, noise: float) -> float:
     """Standard deviation of the position of the point that is known least, relative to its distance."""
     spread = np.linalg.norm(form.blocks @ vectors, axis=1)  # of each point along each direction of the state
-    if (spread[:, ~there] > ROUNDING).any():
+    if (spread[:, ~determined] > ROUNDING).any():
         return math.inf
-    off = noise * np.sqrt((spread[:, there] ** 2 / values[there]).sum(axis=1))
+    off = noise * np.sqrt((spread[:, determined] ** 2 / values[determined]).sum(axis=1))
     return float((off / np.linalg.norm(form.locate(x), axis=-1)).max())

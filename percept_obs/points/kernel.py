@@ -213,16 +213,16 @@ def run(
 @cache
 def source(block: PointBlock, language: Language) -> str:
     """Text of the loop for points on one kind of surface, with all that it depends on, as `machine_code` needs it."""
-    parts = (combine_by_numpy, solve_by_numpy) if language == "python" else (combine_by_loops, solve_by_loops)
+    helpers = (combine_by_numpy, solve_by_numpy) if language == "python" else (combine_by_loops, solve_by_loops)
     return "\n".join(
         [
             "import math\n\nimport numpy as np\n",
             f"EACH, LARGEST_SQUARED_STATE = {EACH}, {LARGEST_SQUARED_STATE!r}",
             f"COUPLING, WEIGHTS, PLACES = map(np.array, {[table.tolist() for table in numbers()]})",
             block.source("python"),
-            *(getsource(part) for part in parts),
-            f"point, combine, solve = evaluate, {', '.join(part.__name__ for part in parts)}",
-            *(getsource(part) for part in (move, rate, run)),
+            *(getsource(helper) for helper in helpers),
+            f"point, combine, solve = evaluate, {', '.join(helper.__name__ for helper in helpers)}",
+            *(getsource(function) for function in (move, rate, run)),
         ]
     )
 

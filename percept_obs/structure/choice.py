@@ -349,7 +349,7 @@ class StructureAndMotion(OnePoint):
         return {} if self.scale is None else {d_s: self.scale}
 
     def fits(self, other: object) -> bool:
-        """Whether what is derived for this choice holds for the other: the same one, with the same scale if any."""
+        """True if formulas derived for this choice hold for the other: the same one, with the same scale if any."""
         return isinstance(other, StructureAndMotion) and self == replace(
             other, scale=None if self.scale is None else other.scale
         )

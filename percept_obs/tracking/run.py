@@ -169,10 +169,10 @@ class Run:
         """Eigenvalues, NaN unless positive, and eigenvectors of the residuals' covariance R - P after an update."""
         measured = self._columns(self.observer.form.measured)
         claimed = self.covariance[:, measured][:, :, measured]
-        left = self._noise_variance * np.eye(len(measured)) - claimed
-        there = np.asarray(np.isfinite(left).all(axis=(1, 2)))
-        values, vectors = np.linalg.eigh(np.where(there[:, None, None], left, np.eye(len(measured))))
-        return np.where(there[:, None] & (values > 0), values, np.nan), vectors
+        residual = self._noise_variance * np.eye(len(measured)) - claimed
+        finite = np.asarray(np.isfinite(residual).all(axis=(1, 2)))
+        values, vectors = np.linalg.eigh(np.where(finite[:, None, None], residual, np.eye(len(measured))))
+        return np.where(finite[:, None] & (values > 0), values, np.nan), vectors
 
     @property
     def _noise_variance(self) -> float:
@@ -198,8 +198,8 @@ class Run:
         """
         columns = self._columns(names)
         claimed = self.covariance[:, columns][:, :, columns]
-        there = np.asarray(np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0))
-        claimed = np.where(there[:, None, None], claimed, np.nan)
+        finite = np.asarray(np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0))
+        claimed = np.where(finite[:, None, None], claimed, np.nan)
         error = self.error[:, columns, None]
         return np.asarray((np.swapaxes(error, 1, 2) @ np.linalg.solve(claimed, error))[:, 0, 0])
 
@@ -293,7 +293,7 @@ class Run:
     def unobservable_intervals(self) -> list[tuple[float, float]]:
         """First and last time in seconds of every interval in which the hidden coordinates have no estimate.
 
-        Their estimates are NaN there, although the observer runs on; `reasons` says why.
+        Their estimates are NaN finite, although the observer runs on; `reasons` says why.
         """
         return [(float(self.time[k]), float(self.time[end - 1])) for k, end in self._gaps]
 

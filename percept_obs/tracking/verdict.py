@@ -145,12 +145,12 @@ class Trust:
         return f"{str(self).removeprefix('; ')}."
 
     def __str__(self) -> str:
-        words = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
+        fields = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
-        words |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = (CONTRADICTED if self.kind == "contradicted" else VERDICTS[self.kind]).format(**words)
+        fields |= {"window": number(window), "within": percent(2 * self.information.deviation)}
+        said = (CONTRADICTED if self.kind == "contradicted" else VERDICTS[self.kind]).format(**fields)
         if unexcited >= SETTLED_PART * self.length:
             said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
@@ -179,8 +179,8 @@ def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str]
     kind, error, within = "relative", percent(found.final), percent(tolerance, 6)
     if names:
         kind, error, within = "absolute", number(found.final, 2), f"{tolerance:g}"
-    words = {"error_of": VERDICTS[kind], "judged": judged, "error": error, "tolerance": within}
-    return VERDICTS[found.kind].format(**words, time=number(found.settled))
+    fields = {"error_of": VERDICTS[kind], "judged": judged, "error": error, "tolerance": within}
+    return VERDICTS[found.kind].format(**fields, time=number(found.settled))
 
 
 def number(value: float, digits: int = 3) -> str:
