@@ -168,11 +168,15 @@ def check(mine: Any, target: Any) -> Review:
     ValueError
         If lines and target do not fit.
 
+    See Also
+    --------
+    percept_obs.checking.target_of
+
     Notes
     -----
-    Rational functions are compared exactly, modulo a prime of 128 bits at random points: a "no" is certain, a "yes" is
-    wrong with a probability below 2^-150 for degrees up to 1000.  Where neither that nor values of sixty digits decide,
-    the verdict is "cannot tell".
+    Rational functions of moderate size are compared exactly, as quotients of polynomials; others at random points with
+    sixty digits, where a "no" is certain and a "yes" means that all of twelve values agree to forty.  Where neither
+    decides, the verdict is "cannot tell".
 
     Examples
     --------

@@ -144,7 +144,15 @@ class Target:
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def read(self, mine: Any) -> list[Reading]:
-        """Return readings of text, sympy, or a list or a mapping of either."""
+        """Return readings of text, sympy, or a list or a mapping of either.
+
+        Raises
+        ------
+        CannotRead
+            If a text is no formula of the target's letters.
+        ValueError
+            If it is something else, or has no finite value.
+        """
         if isinstance(mine, str):
             found = read(mine, *self._known)
             return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
@@ -206,16 +214,37 @@ def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
 
 @singledispatch
 def target_of(thing: Any) -> Target:
-    """Return the target of a check: anything that the package derives, or a formula of one's own.
+    """Return the target of a check.
+
+    Parameters
+    ----------
+    thing : anything that the package derives, formula, sequence or mapping of them
+        As `percept_obs.check` takes it.
+
+    Returns
+    -------
+    Target
 
     Raises
     ------
     ValueError
         If no formula can be compared with it.
+
+    See Also
+    --------
+    percept_obs.check
+
+    Examples
+    --------
+    >>> from percept_obs.checking import target_of
+    >>> target_of("f = a yhat1 + b").lines[0].formula
+    a*yhat1 + b
     """
     if isinstance(thing, str):
-        words = {str(t) for t in words_of(thing) if t.type == "NAME"}
-        named = {key(word): sp.Symbol(word, real=True) for word in words}
+        names = {str(t) for t in words_of(thing) if t.type == "NAME"}
+        # sympy reads an accent before the index
+        spelled = {name: re.sub(r"(\d+)((?:hat|bar|tilde|dot)+)$", r"\2\1", name) for name in names}
+        named = {name: sp.Symbol(spelling, real=True) for name, spelling in spelled.items()}
         return _joined(Target(tuple(_line(r.name, r.formula))) for r in read(thing, named))
     if isinstance(thing, Mapping):
         return _joined(_called(str(name), target_of(part)) for name, part in thing.items())

@@ -274,12 +274,11 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
 
 def _draw_smallest(ax: Axes, one: Excitation | Gramian, name: str, number: int) -> tuple[float, float]:
     """Draw smallest eigenvalues with their least one; return its time and the value at which it is drawn."""
-    own: dict[str, Any] = look.style(number)
-    shown = np.maximum(one.smallest, curves.ROUND_OFF)
-    ax.plot(one.time, shown, label=name, color=own["color"], linestyle=own["linestyle"] if number else "-")
-    at = int(np.nanargmin(one.smallest))
-    ax.plot(one.time[at], shown[at], color=own["color"], marker=own["marker"])
-    return float(one.time[at]), float(shown[at])
+    _draw(ax, one.time, one.smallest, number, name)
+    at, own = int(np.nanargmin(one.smallest)), look.style(number)
+    shown = max(float(one.smallest[at]), curves.ROUND_OFF)
+    ax.plot(one.time[at], shown, color=own["color"], marker=own["marker"])
+    return float(one.time[at]), shown
 
 
 def _log_scale(ax: Axes, found: Sequence[Excitation | Gramian]) -> tuple[float, float]:
