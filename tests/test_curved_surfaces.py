@@ -125,23 +125,6 @@ def test_a_kernel_computes_a_root_once():
     )
 
 
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: unified(-0.1), "xi of the unified model is -0.1"),
-        (lambda: unified(np.inf), "0 or more and finite"),
-        (lambda: sphere(4), "2 or 3 outputs, not 4"),
-        (lambda: ellipsoid(outputs=1), "2 or 3 outputs, not 1"),
-        (lambda: ellipsoid(np.diag([1.0, 1.0, -1.0])), "the eigenvalue -1"),
-        (lambda: ellipsoid([[1, 1, 0], [0, 1, 0], [0, 0, 1]]), "symmetric matrix"),
-        (lambda: ellipsoid(np.eye(2)), r"shape \(2, 2\)"),
-    ],
-)
-def test_a_shape_that_is_none_is_refused(make, words):
-    with pytest.raises(ValueError, match=words):
-        make()
-
-
 FIELDS = {
     "pinhole": (pinhole(), 180),
     "a tilted plane": (plane([np.tan(np.radians(20)), 0, 1]), 140),

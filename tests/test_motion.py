@@ -15,20 +15,7 @@ TIMES = np.array([0.0, 1.0, 3.0])
 
 def test_symbols_have_no_numbers():
     motion = affine()
-    assert [str(s) for s in motion.parameters] == [
-        "a11",
-        "a12",
-        "a13",
-        "a21",
-        "a22",
-        "a23",
-        "a31",
-        "a32",
-        "a33",
-        "b1",
-        "b2",
-        "b3",
-    ]
+    assert " ".join(map(str, motion.parameters)) == "a11 a12 a13 a21 a22 a23 a31 a32 a33 b1 b2 b3"
     with pytest.raises(ValueError, match="no values for a11"):
         motion.known(0.0)
 
@@ -74,14 +61,9 @@ def test_rigid_motion_turns_with_plus_w():
 
 
 def test_columns_of_a_rigid_signal_are_in_the_order_of_its_parameters():
+    names = ["w1", "w2", "w3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"]
     motion = rigid((0.1, 0.2, 0.3), (1, 2, 3), (4, 5, 6))
-    assert {str(s): v for s, v in motion.values.items()} == dict(
-        zip(
-            ["w1", "w2", "w3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"],
-            (0.1, 0.2, 0.3, 1, 2, 3, 4, 5, 6),
-            strict=True,
-        )
-    )
+    assert [(str(s), v) for s, v in motion.values.items()] == [*zip(names, (0.1, 0.2, 0.3, *range(1, 7)), strict=True)]
 
 
 @pytest.mark.parametrize(
@@ -108,11 +90,6 @@ def test_times_outside_the_samples_are_refused():
         motion.known([2.0, 4.0])
 
 
-def test_a_function_that_returns_nan_is_refused():
-    with pytest.raises(ValueError, match="not finite"):
-        affine(lambda t: A * np.nan, b).known(1.0)
-
-
 @pytest.mark.parametrize(
     ("late", "message"),
     [([1.0, np.nan, 3], "not finite"), ([1.0, 2], r"shape \(2,\)"), (["1", "2", "3"], "real numbers")],
@@ -124,12 +101,9 @@ def test_a_function_that_goes_wrong_at_one_of_many_times_is_refused(late, messag
         motion.known([0.0, 1.0, 3.0])
 
 
-def test_rows_without_times_are_refused():
+def test_a_signal_of_another_shape_is_refused():
     with pytest.raises(ValueError, match="as many times"):
         Signal(np.zeros((2, 3)))
-
-
-def test_a_signal_of_another_width_is_refused():
     symbolic = affine()
     motion = Motion("affine", symbolic.A, symbolic.b, symbolic.parameters, Signal([1.0, 2.0]))
     with pytest.raises(ValueError, match="12 parameters, not 2"):

@@ -1,5 +1,7 @@
 """A point is found again from its image and distance on every surface, and what has no image is refused."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -7,7 +9,7 @@ from examples import SURFACES
 from hypothesis import given
 from hypothesis import strategies as st
 
-from percept_obs import BehindCamera, ImagingSurface, chained, pinhole, plane
+from percept_obs import BehindCamera, ImagingSurface, chained, ellipsoid, pinhole, plane, sphere, unified
 from percept_obs.system.surfaces.base import X, Y, Z
 
 coordinate = st.floats(-3, 3)
@@ -46,31 +48,29 @@ def test_an_inverse_distance_that_is_not_positive_has_no_finite_point():
     np.testing.assert_allclose(located[2], [0.2, 0.4, 2])
 
 
-@pytest.mark.parametrize("points", [[1, 2], [[1, 2, 3, 4]], [1, np.nan, 2], [np.inf, 1, 2]])
-def test_points_that_are_none_are_refused(points):
-    with pytest.raises(ValueError, match=r"expected \(\.\.\., 3\), all finite"):
-        pinhole().project(points)
-
-
-def test_coordinates_of_another_length_are_refused():
-    with pytest.raises(ValueError, match=r"expected \(\.\.\., 3\) for the pinhole"):
-        pinhole().locate([1, 2])
-
-
-@pytest.mark.parametrize("normal", [(0, 0, 0), (1, 0, 0), (1, 2), (1, np.nan, 1)])
-def test_a_plane_that_does_not_face_the_camera_is_refused(normal):
-    with pytest.raises(ValueError, match="normal vector"):
-        plane(normal)
-
-
-def test_a_plane_with_four_outputs_is_refused():
-    with pytest.raises(ValueError, match="2 or 3 outputs"):
-        plane(outputs=4)
-
-
-def test_a_symbolic_plane_cannot_project_yet():
-    with pytest.raises(ValueError, match="no values for n1, n2, n3"):
-        plane().project([1, 2, 3])
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        *(
+            (partial(pinhole().project, p), r"\(\.\.\., 3\), all finite")
+            for p in ([1, 2], [[1, 2, 3, 4]], [1, np.nan, 2])
+        ),
+        (lambda: pinhole().locate([1, 2]), r"expected \(\.\.\., 3\) for the pinhole"),
+        (lambda: plane().project([1, 2, 3]), "no values for n1, n2, n3"),
+        *((partial(plane, normal), "normal vector") for normal in ((0, 0, 0), (1, 0, 0), (1, 2), (1, np.nan, 1))),
+        (lambda: plane(outputs=4), "2 or 3 outputs"),
+        (lambda: sphere(4), "2 or 3 outputs, not 4"),
+        (lambda: ellipsoid(outputs=1), "2 or 3 outputs, not 1"),
+        (lambda: ellipsoid(np.diag([1.0, 1.0, -1.0])), "the eigenvalue -1"),
+        (lambda: ellipsoid([[1, 1, 0], [0, 1, 0], [0, 0, 1]]), "symmetric matrix"),
+        (lambda: ellipsoid(np.eye(2)), r"shape \(2, 2\)"),
+        (lambda: unified(-0.1), "xi of the unified model is -0.1"),
+        (lambda: unified(np.inf), "0 or more and finite"),
+    ],
+)
+def test_points_and_shapes_that_are_none_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
 
 
 def test_a_ray_off_the_surface_is_refused():

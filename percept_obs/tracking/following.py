@@ -165,7 +165,8 @@ def _follow_one_point(
     columns: Any = slice(places[0], places[0] + len(places)) if adjacent else places  # a slice copies nothing
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, grid)
-    known = known_signals(believed, recording.view, grid.instants)
+    times = grid.instants if believed.constants is None else grid.times[:1]  # many instants take long
+    known = known_signals(believed, recording.view, times)
     named = named_start(start, form.coordinates)
     outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))

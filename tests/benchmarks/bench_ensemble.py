@@ -21,7 +21,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
-from other_packages import LANES, Work, contenders
+from other_packages import BATCH, Work, contenders
 
 from percept_obs import (
     Camera,
@@ -154,7 +154,7 @@ def main() -> int:
     if options.dask:
         return on_a_cluster(options.dask, options.rounds)
     per_run = [by_the_number(count) for count in (10**3, 10**3, 10**4, 10**5, *([10**6] if options.million else []))]
-    runs, steps = options.runs // LANES * LANES, round(options.duration / STEP)
+    runs, steps = options.runs // BATCH * BATCH, round(options.duration / STEP)
     observer = ibo(FORM)
     together = with_point(observer)
     gains = np.array([observer.gain_values[observer.gains[0].symbol], *np.linspace(1.0, 30.0, runs - 1)])

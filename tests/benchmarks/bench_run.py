@@ -1,6 +1,6 @@
-"""What one run costs: its loop beside C, `track` around the loop, and every observer's operations.
+"""What one run costs: derivation and loops, the loop beside C, `track` around it, and every observer's operations.
 
-    python tests/benchmarks/bench_run.py [--rounds 101] [--part c track operations]
+    python tests/benchmarks/bench_run.py [--rounds 101] [--part core c track operations]
 
 (35), 80 s at 100 Hz.  Every round runs each contender once, so that a busy machine slows all alike; medians of CPU
 time, and of the ratios of a round.  Exits with 1 if a bar is not kept.
@@ -11,6 +11,8 @@ from __future__ import annotations
 import argparse
 import ast
 import inspect
+import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -20,9 +22,10 @@ import numpy as np
 import sympy as sp
 from bench_ensemble import BOTH, FORM, SCENARIO, STEP, alone_on_a_core
 from other_packages import Work, in_c
+from scipy.integrate import solve_ivp
 
 from percept_obs import ibo, record, track, with_point
-from percept_obs.compile import Table, kernels, solve, vector_functions
+from percept_obs.compile import Table, kernels, machine_code, solve, source, vector_functions
 from percept_obs.observers import OBSERVERS
 from percept_obs.tracking import following
 
@@ -44,6 +47,47 @@ def interleaved(rounds, contenders):
 def ratio(found, above, below):
     """The median over the rounds of what one took to what another took."""
     return float(np.median(found[above] / found[below]))
+
+
+DERIVATION = """
+import time
+from percept_obs import PerspectiveSystem, affine, pinhole
+begin = time.perf_counter()
+PerspectiveSystem(affine(), pinhole()).rate
+print(time.perf_counter() - begin)
+"""
+
+
+def core(rounds):
+    """Derivation in a fresh process, compiling, and the loop of point and observer beside scipy's RK45."""
+    together, times = with_point(ibo(FORM)), STEP * np.arange(round(DURATION / STEP) + 1)
+    derivation = float(subprocess.check_output([sys.executable, "-c", DERIVATION]))
+    start = [*record(SCENARIO, 1).truth[0], 0.0, 0.0, 0.0]
+    steps = len(times) - 1
+    table = Table(np.diff(times), np.zeros((steps, 3, 0)), SCENARIO.motion.known(0.0), np.zeros((steps + 1, 0)))
+    gains, flow = [gain.value for gain in together.gains], together.lambdify(SCENARIO.motion)
+    contenders = {
+        "scipy RK45": lambda: solve_ivp(flow, (0, DURATION), start, "RK45", times),
+        "Python": lambda: solve(together.equations, start, table, gains, "python"),
+        "numba": lambda: solve(together.equations, start, table, gains, "numba"),
+    }
+    with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, NUMBA_CACHE_DIR=folder):
+        kernels._compiled.cache_clear()  # so that the loop is compiled here
+        machine_code.cache_clear()
+        begin = time.perf_counter()
+        contenders["numba"]()
+        compiling = time.perf_counter() - begin
+    found = interleaved(min(rounds, 15), contenders)
+    for name, taken in found.items():
+        print(f"  {name:10} {1e3 * np.median(taken):8.3f} ms")
+    lines = source(together.equations).count("\n")
+    print(f"  derived in {1e3 * derivation:.1f} ms, compiled in {compiling:.2f} s, {lines} lines")
+    faster, slower = ratio(found, "scipy RK45", "numba"), ratio(found, "Python", "scipy RK45")
+    return {
+        "derivation under 0.3 s": derivation < 0.3,
+        f"numba at least 30 times faster than RK45: {faster:.0f} times": faster >= 30,
+        f"Python at most 2 times slower than RK45: {slower:.2f} times": slower <= 2,
+    }
 
 
 def loop_of(equations, start, table, gains):
@@ -142,6 +186,7 @@ def operations(rounds):
 
 
 PARTS = {
+    "core": ("Point and observer together, y1 alone", core),
     "c": ("One run of point and observer together, y1 alone", beside_c),
     "track": ("track, both outputs", around_the_loop),
     "operations": ("Operations, both outputs", operations),

@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 from scipy.integrate import solve_ivp
 
-LANES = 16
+BATCH = 16
 ERROR = 1e-8
 """Relative error of those that choose their steps."""
 
@@ -155,8 +155,8 @@ def diffrax(work):
     return lambda: np.asarray(several(gains)).T, 1
 
 
-def c_program(work, lanes):
-    """Text of the classical method for so many lanes at once."""
+def c_program(work, batch):
+    """Text of the classical method for so many batch at once."""
     n, names = len(work.state), {symbol: sp.Symbol(f"x{k}") for k, symbol in enumerate(work.state)}
     names[work.gain] = sp.Symbol("gain")
     shared, rates = sp.cse([e.xreplace(names) for e in work.flow])
@@ -168,29 +168,29 @@ def c_program(work, lanes):
     return f"""
 #include <math.h>
 void run(double *start, double *gains, long runs, long steps, double h, double *end) {{
-  for (long b = 0; b < runs; b += {lanes}, gains += {lanes}) {{
-    double s[{n}][{lanes}], d[{n}][{lanes}], q[{n}][{lanes}];
+  for (long b = 0; b < runs; b += {batch}, gains += {batch}) {{
+    double s[{n}][{batch}], d[{n}][{batch}], q[{n}][{batch}];
     static const double cs[4] = {{0, 0.5, 0.5, 1}}, ws[4] = {{1.0/6, 1.0/3, 1.0/3, 1.0/6}};
-    for (int k = 0; k < {n}; k++) for (int i = 0; i < {lanes}; i++) s[k][i] = start[k];
+    for (int k = 0; k < {n}; k++) for (int i = 0; i < {batch}; i++) s[k][i] = start[k];
     for (long t = 0; t < steps; t++) {{
-      for (int k = 0; k < {n}; k++) for (int i = 0; i < {lanes}; i++) d[k][i] = q[k][i] = 0;
+      for (int k = 0; k < {n}; k++) for (int i = 0; i < {batch}; i++) d[k][i] = q[k][i] = 0;
       for (int j = 0; j < 4; j++) {{
         double c = cs[j], w = ws[j];
         #pragma omp simd
-        for (int i = 0; i < {lanes}; i++) {{ {stage} }}
+        for (int i = 0; i < {batch}; i++) {{ {stage} }}
       }}
-      for (int k = 0; k < {n}; k++) for (int i = 0; i < {lanes}; i++) s[k][i] += h*q[k][i];
+      for (int k = 0; k < {n}; k++) for (int i = 0; i < {batch}; i++) s[k][i] += h*q[k][i];
     }}
-    for (int k = 0; k < {n}; k++) for (int i = 0; i < {lanes}; i++) end[(b + i)*{n} + k] = s[k][i];
+    for (int k = 0; k < {n}; k++) for (int i = 0; i < {batch}; i++) end[(b + i)*{n} + k] = s[k][i];
   }}
 }}
 """
 
 
-def in_c(work, folder, lanes, share):
+def in_c(work, folder, batch, share):
     """Generated C, by gcc with all that makes it fast."""
-    source, library = (Path(folder) / f"lanes{lanes}.{end}" for end in ("c", "so"))
-    source.write_text(c_program(work, lanes))
+    source, library = (Path(folder) / f"batch{batch}.{end}" for end in ("c", "so"))
+    source.write_text(c_program(work, batch))
     flags = ["-O3", "-march=native", "-ffast-math", "-fopenmp-simd", "-shared", "-fPIC"]
     subprocess.run(["gcc", *flags, str(source), "-o", str(library), "-lm"], check=True)
     call, pointer = ctypes.CDLL(str(library)).run, ctypes.POINTER(ctypes.c_double)
@@ -209,7 +209,7 @@ def contenders(work, folder):
     """Functions by what they are, each with the share of all runs' time that it takes; and what is not installed."""
     found = {"vectorised numpy": vectorised_numpy(work), "scipy, RK45": scipy_rk45(work)}
     if shutil.which("gcc"):
-        found |= {"C, OpenMP SIMD": in_c(work, folder, LANES, 1), "C, one lane": in_c(work, folder, 1, 16)}
+        found |= {"C, OpenMP SIMD": in_c(work, folder, BATCH, 1), "C, one lane": in_c(work, folder, 1, 16)}
     others = {
         "python-control, RK45": ("control", control),
         "JiTCODE, dopri5": ("jitcode", jitcode),
