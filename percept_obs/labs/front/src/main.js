@@ -18,7 +18,8 @@ import { StructureLab } from "./structure/lab.js";
 const LABS = { desk_lab: DeskLab, observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 
 // A worker is made of this bundle as well, and computes what a page draws.
-if (typeof document === "undefined" && typeof self !== "undefined") (self.name === "maps" ? serveMaps : serve)((kind) => LABS[kind].computing, self);
+if (typeof document === "undefined" && typeof self !== "undefined")
+  (self.name === "maps" ? serveMaps : serve)((kind) => LABS[kind].computing, self);
 
 export default {
   async render({ model, el }) {

@@ -42,7 +42,8 @@
  * @property {number} window       in s
  * @property {Float64Array} time   at which windows end, in s
  * @property {Float64Array} smallest  eigenvalue of the integral of w w^T over the window
- * @property {{time: Float64Array, smallest: Float64Array}} begun  the same since the first sample, until a window is full
+ * @property {{time: Float64Array, smallest: Float64Array}} begun  the same since the first sample, until a window is
+ *   full
  *
  * @typedef {object} Shares
  * @property {Float64Array} quiet  the relative error of the same run without noise, at each sample

@@ -1,4 +1,5 @@
-// What is computed beside the page: the latest settings only, the same results, and the page alone where there is nobody.
+// What is computed beside the page: the latest settings only, the same results, and the page alone where there is
+// nobody.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { distanceError, settlingTime } from "../src/common/model/errors.js";
@@ -59,11 +60,16 @@ test("a result's buffer goes back when a later result is in the pictures, and no
 
 test("a packed result is the same one in one buffer, which is used again if it is large enough", () => {
   const time = Float64Array.of(0, 1, 2);
-  const result = { time, runs: [{ name: "one", error: Float64Array.of(NaN), at: Int32Array.of(7), bound: null, gaps: [[0, 1]] }], again: time };
+  const result = {
+    time,
+    runs: [{ name: "one", error: Float64Array.of(NaN), at: Int32Array.of(7), bound: null, gaps: [[0, 1]] }],
+    again: time,
+  };
   const first = packed(result, []);
   assert.deepEqual(first.data, result);
   assert.equal(first.data.time, first.data.again);
-  for (const array of [first.data.time, first.data.runs[0].error, first.data.runs[0].at]) assert.equal(array.buffer, first.room);
+  for (const array of [first.data.time, first.data.runs[0].error, first.data.runs[0].at])
+    assert.equal(array.buffer, first.room);
   const small = new ArrayBuffer(8);
   const second = packed({ time: time.map((value) => -value) }, [small, first.room]);
   assert.equal(second.room, first.room);
@@ -99,15 +105,27 @@ test("when nobody is left beside the page, it computes by itself and nobody wait
   assert.equal(latest.shown.here, true);
 });
 
-test("while a hand moves fewer samples are drawn: of those in sight most, each as it is at rest, and whatever alternates is seen", () => {
+test("while a hand moves fewer samples are drawn: of those in sight most, each as it is at rest, and whatever " +
+  "alternates is seen", () => {
   const count = 9001;
   const time = Float64Array.from({ length: count }, (_, k) => 0.01 * k);
   const alternating = Float64Array.from(time, (_, k) => (k % 2 ? 1 : -1));
   const estimate = Float64Array.from({ length: 18 * count }, (_, k) => k);
   const resets = time.slice();
-  const result = { settings: { error: [0] }, time, runs: [{ estimate, error: alternating, resets }], errors: [alternating], shares: { quiet: time, time, added: time }, bound: null, whole: true };
+  const result = {
+    settings: { error: [0] },
+    time,
+    runs: [{ estimate, error: alternating, resets }],
+    errors: [alternating],
+    shares: { quiet: time, time, added: time },
+    bound: null,
+    whole: true,
+  };
   const room = (_, length) => new Float64Array(length);
-  for (const sight of [{ low: 0, high: 90, cursor: 33.335 }, { low: 20, high: 28, cursor: 21 }]) {
+  for (const sight of [
+    { low: 0, high: 90, cursor: 33.335 },
+    { low: 20, high: 28, cursor: 21 },
+  ]) {
     const found = thinned(result, sight, room);
     const [run] = found.runs;
     const at = Array.from(found.time, (value) => Math.round(100 * value));
@@ -115,13 +133,24 @@ test("while a hand moves fewer samples are drawn: of those in sight most, each a
     assert.ok(at.length < 0.5 * count && at.every((k, j) => j === 0 || k > at[j - 1]));
     assert.deepEqual([at[0], at.at(-1)], [0, count - 1]);
     assert.ok(at.includes(Math.floor(100 * sight.cursor)));
-    at.forEach((k, j) => assert.deepEqual([found.time[j], run.error[j], run.estimate[18 * j], run.estimate[18 * j + 17]], [time[k], alternating[k], 18 * k, 18 * k + 17]));
+    at.forEach((k, j) =>
+      assert.deepEqual(
+        [found.time[j], run.error[j], run.estimate[18 * j], run.estimate[18 * j + 17]],
+        [time[k], alternating[k], 18 * k, 18 * k + 17],
+      ),
+    );
     assert.equal(found.errors[0], run.error);
-    assert.deepEqual([run.resets, found.shares.time, found.shares.added, found.settings, found.bound], [resets, time, time, result.settings, null]);
+    assert.deepEqual(
+      [run.resets, found.shares.time, found.shares.added, found.settings, found.bound],
+      [resets, time, time, result.settings, null],
+    );
     assert.equal(found.shares.quiet.length, at.length);
     const even = run.error.filter((value) => value < 0).length / at.length;
     assert.ok(even > 0.4 && even < 0.6, `${even} of the samples are even`);
-    const gaps = at.slice(1).map((k, j) => [at[j], k - at[j]]).filter(([k]) => time[k] >= sight.low && time[k] < sight.high);
+    const gaps = at
+      .slice(1)
+      .map((k, j) => [at[j], k - at[j]])
+      .filter(([k]) => time[k] >= sight.low && time[k] < sight.high);
     assert.ok(Math.max(...gaps.map(([, gap]) => gap)) <= (sight.low ? 1 : 12));
   }
   const few = { time: time.subarray(0, 300), whole: true };
@@ -159,7 +188,9 @@ async function served(messages) {
     }
   }
   serve(() => ({ Kernels, Engine }), scope);
-  const packed = await new Response(new Blob(["\t{}"]).stream().pipeThrough(new CompressionStream("gzip"))).arrayBuffer();
+  const packed = await new Response(
+    new Blob(["\t{}"]).stream().pipeThrough(new CompressionStream("gzip")),
+  ).arrayBuffer();
   for (const message of [{ kind: "small", texts: packed, model: {} }, ...messages]) {
     const before = answers.length;
     scope.onmessage({ data: structuredClone(message) });
@@ -168,14 +199,20 @@ async function served(messages) {
   return { answers, runs };
 }
 
-test("a worker answers each message, runs what is kept once, completes what it has, and tells what went wrong", async () => {
+test("a worker answers each message, runs the kept settings once, completes results, and tells errors", async () => {
   const kept = { gain: 5, kept: null };
   const settings = { gain: 1, kept };
   const { answers, runs } = await served([
-    { settings, whole: false }, { settings, whole: true }, { settings: { gain: 2, kept }, whole: false }, { settings: { gain: -1, kept: null }, whole: true },
+    { settings, whole: false },
+    { settings, whole: true },
+    { settings: { gain: 2, kept }, whole: false },
+    { settings: { gain: -1, kept: null }, whole: true },
   ]);
   assert.deepEqual(answers[0], { ready: true });
-  assert.deepEqual(answers[1], { shown: { settings: null, whole: false, time: [0, 1], value: 2 }, ghost: { settings: kept, whole: true, time: [0, 1], value: 10 } });
+  assert.deepEqual(answers[1], {
+    shown: { settings: null, whole: false, time: [0, 1], value: 2 },
+    ghost: { settings: kept, whole: true, time: [0, 1], value: 10 },
+  });
   assert.deepEqual(answers[2], { shown: { settings: null, whole: true, time: [0, 1], value: 2 } });
   assert.deepEqual(answers[3], { shown: { settings: null, whole: false, time: [0, 1], value: 4 } });
   assert.deepEqual(answers[4], { error: "the gain is negative" });
@@ -232,16 +269,27 @@ test("the printed rates of P are those of the whole matrix, and so is the soluti
   pairs.forEach(([i, j], k) => (now[n + k] = P(i, j)));
   const known = Float64Array.of(0, 0.3, -0.2, 0.5);
   const told = Float64Array.from({ length: 48 }, (_, k) => 0.1 + 0.01 * (k % 12));
-  for (let p = 0; p < 4; p++) for (let i = 0; i < 3; i++) for (let j = 0; j < i; j++) told[12 * p + 3 + 3 * i + j] = told[12 * p + 3 + 3 * j + i];
+  for (let p = 0; p < 4; p++)
+    for (let i = 0; i < 3; i++) for (let j = 0; j < i; j++) told[12 * p + 3 + 3 * i + j] = told[12 * p + 3 + 3 * j + i];
   const out = new Float64Array(now.length);
   moveP(now, known, 1, told, 2, 0.4, new Float64Array(pairs.length).fill(0.7), out);
-  const A = (i, j) => layout.rows.reduce((sum, row, e) => sum + (row === i && layout.columns[e] === j ? known[1 + layout.which[e]] : 0), 0);
-  const C = (p, axis, i) => layout.states.reduce((sum, state, e) => sum + (state === i && layout.axes[e] === axis && e >= layout.begins[p] && e < layout.begins[p + 1] ? 1 : 0), 0);
+  const A = (i, j) =>
+    layout.rows.reduce(
+      (sum, row, e) => sum + (row === i && layout.columns[e] === j ? known[1 + layout.which[e]] : 0),
+      0,
+    );
+  const C = (p, axis, i) =>
+    layout.states.reduce(
+      (sum, state, e) =>
+        sum + (state === i && layout.axes[e] === axis && e >= layout.begins[p] && e < layout.begins[p + 1] ? 1 : 0),
+      0,
+    );
   pairs.forEach(([i, j], k) => {
     let right = 0.7 - 0.4 * P(i, j);
     for (let m = 0; m < n; m++) right -= A(m, i) * P(m, j) + P(i, m) * A(m, j);
     for (let p = 0; p < 4; p++) {
-      for (let a = 0; a < 3; a++) for (let b = 0; b < 3; b++) right += 2 * C(p, a, i) * told[12 * p + 3 + 3 * a + b] * C(p, b, j);
+      for (let a = 0; a < 3; a++)
+        for (let b = 0; b < 3; b++) right += 2 * C(p, a, i) * told[12 * p + 3 + 3 * a + b] * C(p, b, j);
     }
     assert.ok(Math.abs(out[n + k] - right) < 1e-13, `${i}, ${j}: ${out[n + k]} instead of ${right}`);
   });
@@ -262,8 +310,14 @@ test("a path of equal intervals is that of the exponential, whatever the roundin
   const points = constantPath([1, 0, 3], rates, grid, index, new Float64Array(1200));
   index.slice(1).forEach((k) => {
     const t = grid[k];
-    const right = [Math.cos(2 * t) + 0.25 * Math.sin(2 * t), Math.sin(2 * t) + 0.25 * (1 - Math.cos(2 * t)), 2 + Math.exp(-0.1 * t)];
-    right.forEach((value, c) => assert.ok(Math.abs(points[3 * k - 3 + c] - value) < 1e-13, `${t}: ${points[3 * k - 3 + c]}`));
+    const right = [
+      Math.cos(2 * t) + 0.25 * Math.sin(2 * t),
+      Math.sin(2 * t) + 0.25 * (1 - Math.cos(2 * t)),
+      2 + Math.exp(-0.1 * t),
+    ];
+    right.forEach((value, c) =>
+      assert.ok(Math.abs(points[3 * k - 3 + c] - value) < 1e-13, `${t}: ${points[3 * k - 3 + c]}`),
+    );
   });
 });
 

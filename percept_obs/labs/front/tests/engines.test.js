@@ -21,7 +21,12 @@ import { innovationOf, quantityOf, rangeOf } from "../src/structure/model/quanti
 /** A layout of so many points, each with three states of its own. */
 function apart(points) {
   const all = Array.from({ length: 3 * points }, (_, k) => k);
-  return { begins: Array.from({ length: points + 1 }, (_, p) => 3 * p), axes: all.map((k) => k % 3), states: all, entries: all.map(() => 1) };
+  return {
+    begins: Array.from({ length: points + 1 }, (_, p) => 3 * p),
+    axes: all.map((k) => k % 3),
+    states: all,
+    entries: all.map(() => 1),
+  };
 }
 
 test("a Gramian weighs each direction by what the images would show of it", () => {
@@ -58,7 +63,14 @@ test("while a hand moves fewer windows are looked at, and each tells what it tel
 });
 
 test("resets have one tick in each column of pixels, however many there are", () => {
-  const place = { left: 10, right: 60, top: 0, words: [], x: (time) => 10 + 5 * (time - 2), timeAt: (x) => 2 + (x - 10) / 5 };
+  const place = {
+    left: 10,
+    right: 60,
+    top: 0,
+    words: [],
+    x: (time) => 10 + 5 * (time - 2),
+    timeAt: (x) => 2 + (x - 10) / 5,
+  };
   const ticks = [];
   const pen = { fillRect: (x) => ticks.push(x) };
   const times = Float64Array.from({ length: 3000 }, (_, k) => 0.01 * k - 5).filter((time) => time < 4 || time > 6);
@@ -70,7 +82,12 @@ test("resets have one tick in each column of pixels, however many there are", ()
 test("a band ends where its numbers end, and begins anew behind", () => {
   const place = { width: 100, x: (time) => time, y: (value) => value };
   const drawn = [];
-  const pen = { beginPath() {}, fill() {}, moveTo: (x, y) => drawn.push([["from", x, y]]), lineTo: (x, y) => drawn.at(-1).push(["to", x, y]) };
+  const pen = {
+    beginPath() {},
+    fill() {},
+    moveTo: (x, y) => drawn.push([["from", x, y]]),
+    lineTo: (x, y) => drawn.at(-1).push(["to", x, y]),
+  };
   const high = Float64Array.of(5, 6, NaN, 7, 8, Infinity, 9);
   fillBand(pen, place, { time: Float64Array.from(high, (_, k) => k), low: new Float64Array(7), high, colour: "black" });
   const outline = ([[, x, y], ...rest]) => [[x, y], ...rest.map(([, ...at]) => at)];
@@ -87,7 +104,16 @@ test("a point that comes anew lies on its ray, and P knows nothing of it and the
   const [x, P] = [new Float64Array(6).fill(9), new Float64Array(36).fill(7)];
   const layout = { ...apart(2), names: ["a", "b", "c", "d", "e", "f"] };
   const observer = new Observer({ memory: new Memory() });
-  observer.onRays({ settings, functions }, { layout, own: 6, first: 0 }, [0, 0, 0.5, -0.25], [1], new Set([0]), x, P, new Float64Array(36).map((_, at) => at));
+  observer.onRays(
+    { settings, functions },
+    { layout, own: 6, first: 0 },
+    [0, 0, 0.5, -0.25],
+    [1],
+    new Set([0]),
+    x,
+    P,
+    new Float64Array(36).map((_, at) => at),
+  );
   [9, 9, 9, 1, -0.5, 2].forEach((value, i) => assert.ok(Math.abs(x[i] - value) < 1e-14));
   P.forEach((value, at) => {
     const [i, j] = [Math.floor(at / 6), at % 6];
@@ -111,9 +137,25 @@ function followed(lacking) {
     gap: (x, out) => out.fill(lacking[x[2]]),
   };
   const result = { time, truth: null, width: 2, measured: [0], hidden: [1], tolerance: 0.1 };
-  const inputs = { ...lines, columns: [time], last: [time], held: [], arriving: [], own: false, known: { rows: new Float64Array(0), width: 0, varying: false } };
+  const inputs = {
+    ...lines,
+    columns: [time],
+    last: [time],
+    held: [],
+    arriving: [],
+    own: false,
+    known: { rows: new Float64Array(0), width: 0, varying: false },
+  };
   const kernel = { gains: [], states: 1, gapReasons: ["the first reason", "the second"] };
-  const run = new Still({ observers: { one: { title: "One" } } }).follow("one", {}, result, inputs, kernel, functions, []);
+  const run = new Still({ observers: { one: { title: "One" } } }).follow(
+    "one",
+    {},
+    result,
+    inputs,
+    kernel,
+    functions,
+    [],
+  );
   return { ...result, run };
 }
 
@@ -130,7 +172,15 @@ test("the band is as wide as its title says", () => {
   const [estimate, deviation] = [Float64Array.of(0, 0, 1, 0, 0, 2), Float64Array.of(0, 0, 0.1, 0, 0, 0.3)];
   const run = { title: "EKF", order: 0, name: "ekf", estimate, deviation, resets: [], divergedAt: null };
   const time = Float64Array.of(0, 1);
-  const shown = { time, width: 3, names: ["y1", "y2", "y3"], runs: [run], truth: null, settings: { observers: ["ekf"] }, leavesAt: null };
+  const shown = {
+    time,
+    width: 3,
+    names: ["y1", "y2", "y3"],
+    runs: [run],
+    truth: null,
+    settings: { observers: ["ekf"] },
+    leavesAt: null,
+  };
   const { band, title } = chartOf("inverse", shown, null, { lines: ["black"] });
   const [, sigmas] = /±(\d)σ/.exec(title);
   time.forEach((_, k) => {
@@ -140,7 +190,12 @@ test("the band is as wide as its title says", () => {
 });
 
 test("where d_s is not positive there is neither a range nor a velocity", () => {
-  const result = { choice: { unknown: ["d_s", "v_p1"], scaled: [false, true] }, scale: 1, width: 5, time: Float64Array.of(0, 1, 2) };
+  const result = {
+    choice: { unknown: ["d_s", "v_p1"], scaled: [false, true] },
+    scale: 1,
+    width: 5,
+    time: Float64Array.of(0, 1, 2),
+  };
   const rows = Float64Array.of(0, 0, 0.5, 4, 2, 0, 0, 0.5, -4, 2, 0, 0, -0.5, -4, 2);
   assert.deepEqual([...rangeOf(result, rows)], [0.5, NaN, NaN]);
   assert.deepEqual([...quantityOf(result, rows, "v_p1")], [0.5, NaN, NaN]);

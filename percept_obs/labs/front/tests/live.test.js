@@ -15,7 +15,16 @@ class CountingEngine {
   run(settings, functions, whole) {
     this.runs += 1;
     const time = Float64Array.of(0, 1);
-    return { settings, time, truth: null, runs: [], names: [], width: 0, value: settings.gain * functions.factor, whole };
+    return {
+      settings,
+      time,
+      truth: null,
+      runs: [],
+      names: [],
+      width: 0,
+      value: settings.gain * functions.factor,
+      whole,
+    };
   }
 
   completed(result) {
@@ -67,7 +76,21 @@ class SmallLab extends Lab {
     this.formulas = { show: () => {} };
     const told = (name) => [name, (value) => (this.told[name] = value)];
     this.told = {};
-    const names = ["problem", "notice", "preset", "steps", "words", "rested", "analysis", "answered", "silence", "read", "time", "playing", "close"];
+    const names = [
+      "problem",
+      "notice",
+      "preset",
+      "steps",
+      "words",
+      "rested",
+      "analysis",
+      "answered",
+      "silence",
+      "read",
+      "time",
+      "playing",
+      "close",
+    ];
     this.follow({ root: { classList: { toggle() {} } }, ...Object.fromEntries(names.map(told)) });
   }
 
@@ -240,7 +263,14 @@ test("a preset's acts are steps, and the way back leads to the settings before t
   assert.deepEqual([...at(), state.preset.before], [2, "bias", 1, null, OPENING]);
   state.leave();
   assert.deepEqual([state.settings, state.preset], [OPENING, null]);
-  const back = [[2, "bias", 1, null], [5, "bias", -1, null], [1, "noise", 0, 1], [5, "noise", -1, 1], [5, "noise", -1, null], [before, undefined, undefined, null]];
+  const back = [
+    [2, "bias", 1, null],
+    [5, "bias", -1, null],
+    [1, "noise", 0, 1],
+    [5, "noise", -1, 1],
+    [5, "noise", -1, null],
+    [before, undefined, undefined, null],
+  ];
   for (const step of back) {
     state.undo();
     assert.deepEqual(at(), step);

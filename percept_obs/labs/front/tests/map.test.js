@@ -1,4 +1,5 @@
-// Maps over two settings: axes and their places, the order of cells, what is left when the hand moves on, lines and words.
+// Maps over two settings: axes and their places, the order of cells, what is left when the hand moves on, lines and
+// words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cellAt, shareOf, ticksOn, valueIn, valueOn } from "../src/common/model/axes.js";
@@ -15,7 +16,15 @@ const axis = (place, more = {}) => ({
 });
 const AXES = [axis("gain", { low: 1, high: 100, log: true }), axis("noise", { records: true })];
 const MODEL = { observers: { one: { title: "One", gains: [], ways: { "": [] } } } };
-const SETTINGS = { observers: ["one"], over: { observer: "one", across: "gain", up: "noise" }, gain: 10, noise: 0, gains: { one: {} }, duration: 10, other: 1 };
+const SETTINGS = {
+  observers: ["one"],
+  over: { observer: "one", across: "gain", up: "noise" },
+  gain: 10,
+  noise: 0,
+  gains: { one: {} },
+  duration: 10,
+  other: 1,
+};
 const axesOf = () => AXES;
 
 /** A lab whose run settles after its gain, ends off by its noise, and diverges where its gain is above 90. */
@@ -25,7 +34,10 @@ function small() {
     runs: 0,
     run({ gain, noise, other }) {
       this.runs += 1;
-      return { truth: [1], runs: [{ divergedAt: gain > 90 ? 1 : null, settling: noise < 5 ? gain * other : Infinity, error: [noise] }] };
+      return {
+        truth: [1],
+        runs: [{ divergedAt: gain > 90 ? 1 : null, settling: noise < 5 ? gain * other : Infinity, error: [noise] }],
+      };
     },
   };
   return { model: MODEL, engine, axesOf, kernels: { prepare: async () => {}, of: () => ({}), allows: () => true } };
@@ -45,7 +57,8 @@ function filled(onPart = undefined) {
 
 test("a share of an axis and its value lead to each other, in decades where it is logarithmic", () => {
   assert.equal(valueOn(AXES[0], 0.5), 10);
-  for (const each of AXES) for (const share of [0, 0.25, 0.9]) assert.ok(Math.abs(shareOf(each, valueOn(each, share)) - share) < 1e-4);
+  for (const each of AXES)
+    for (const share of [0, 0.25, 0.9]) assert.ok(Math.abs(shareOf(each, valueOn(each, share)) - share) < 1e-4);
   assert.equal(shareOf(AXES[0], -1), -Infinity);
   assert.deepEqual([0, 0.49, 0.5, 1, -1, 2].map((share) => cellAt(share, 2)), [0, 0, 1, 1, 0, 1]);
   assert.deepEqual(ticksOn(AXES[0], () => []), [1, 3, 10, 30, 100]);
@@ -61,7 +74,7 @@ test("cells that share a recording follow each other, and each comes once", () =
   }
 });
 
-test("a map is filled to the finest level, and a setting on its axes or one that is only drawn fills nothing again", async () => {
+test("a map is filled to the finest level, and a setting on its axes or of drawing fills nothing again", async () => {
   const { sweep, engine, whole } = filled();
   sweep.want(SETTINGS, {}, 5);
   await whole();
@@ -138,11 +151,17 @@ test("the line of the tolerance lies where the error crosses it, and words count
   assert.match(told, /least 1\.02 s at gain 1\.018/);
   assert.equal(cellInWords({ kind: IMPOSSIBLE, settling: 0, error: 0 }), "no run");
   assert.equal(cellInWords({ kind: FOLLOWED, settling: 2.5, error: 0.01 }), "settles after 2.5 s, 1 % off at the end");
-  assert.equal(cellInWords({ kind: FOLLOWED, settling: Infinity, error: Infinity }), "does not settle, behind the camera at the end");
+  assert.equal(
+    cellInWords({ kind: FOLLOWED, settling: Infinity, error: Infinity }),
+    "does not settle, behind the camera at the end",
+  );
 });
 
 test("shades begin at round numbers below the duration, and at half decades of the error", () => {
   assert.deepEqual(edgesOf("settling", 80), [0.5, 1, 2, 5, 10, 20, 50]);
   assert.deepEqual(edgesOf("settling", 3), [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2]);
-  assert.deepEqual(edgesOf("error", 3).map((edge) => edge.toPrecision(2)), ["0.00032", "0.0010", "0.0032", "0.010", "0.032", "0.10", "0.32"]);
+  assert.deepEqual(
+    edgesOf("error", 3).map((edge) => edge.toPrecision(2)),
+    ["0.00032", "0.0010", "0.0032", "0.010", "0.032", "0.10", "0.32"],
+  );
 });

@@ -25,5 +25,8 @@ test("what a step has changed is told by names, and what has not is not", () => 
   const told = (after) => changesInWords(before, { ...before, ...after }, names);
   assert.equal(told({}), "Nothing has changed.");
   assert.equal(told({ b: [1, 2, 4] }), "Changed: the translation b. All else is as it was.");
-  assert.equal(told({ b: [0, 2, 3], noise: { size: 1 }, seed: 2, kept: {} }), "Changed: the translation b, noise and the seed. All else is as it was.");
+  assert.equal(
+    told({ b: [0, 2, 3], noise: { size: 1 }, seed: 2, kept: {} }),
+    "Changed: the translation b, noise and the seed. All else is as it was.",
+  );
 });

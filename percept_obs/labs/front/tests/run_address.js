@@ -19,7 +19,14 @@ async function followed(name, model, hash) {
   const view = { notice: (text) => (said.notice = text), root: { scrollIntoView() {} } };
   const visit = (settings) => (said.visited = settings);
   const fail = (error) => (said.failed = error.message);
-  Object.assign(lab, { model, state: { settings: model.opening }, kernels: new Lab.computing.Kernels(model, loadHere), view, visit, fail });
+  Object.assign(lab, {
+    model,
+    state: { settings: model.opening },
+    kernels: new Lab.computing.Kernels(model, loadHere),
+    view,
+    visit,
+    fail,
+  });
   place.hash = hash;
   await new Address(lab, { name, names: [name] }).follow();
   return said;

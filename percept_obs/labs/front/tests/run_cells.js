@@ -1,4 +1,5 @@
-// Runs places of maps over two settings, given on standard input as shares of the way along both axes, and prints what became of them.
+// Runs places of maps over two settings, given on standard input as shares of the way along both axes, and prints what
+// became of them.
 import { readFileSync } from "node:fs";
 import { planOf, valueOn } from "../src/common/model/axes.js";
 import { bare, baseOf, fillCell, settingsAt } from "../src/common/model/cells.js";
@@ -27,7 +28,13 @@ for (const { settings, shares } of tasks) {
     const place = [valueOn(plan.across, x), valueOn(plan.up, y)];
     const there = settingsAt(base, plan, place, functions);
     fillCell(out, 0, there, lab, functions);
-    return { place, kind: out[0], settling: String(out[1]), error: String(out[2]), settings: there && { ...settings, ...there, over: settings.over } };
+    return {
+      place,
+      kind: out[0],
+      settling: String(out[1]),
+      error: String(out[2]),
+      settings: there && { ...settings, ...there, over: settings.over },
+    };
   });
   answers.push({ across: plan.across.place, up: plan.up.place, cells });
 }

@@ -19,7 +19,9 @@ for (const settings of tasks) {
   if (!shown.problem) {
     const square = { centre: [0.5, 0.4], half: 0.75 };
     const moving = engine.camera.motion(settings, kernels.of(settings));
-    const map = settings.bound.includes("map") ? mapOf(settings, kernels.of(settings), moving, square, 12, model) : null;
+    const map = settings.bound.includes("map")
+      ? mapOf(settings, kernels.of(settings), moving, square, 12, model)
+      : null;
     answer.map = map && numbers(map.relative);
     answer.code = pythonOf(shown, model, map);
     answer.time = numbers(shown.time);
@@ -30,7 +32,12 @@ for (const settings of tasks) {
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [
         run.name,
-        { estimate: numbers(run.estimate), deviation: numbers(run.deviation), resets: numbers(run.resets), divergedAt: run.divergedAt },
+        {
+          estimate: numbers(run.estimate),
+          deviation: numbers(run.deviation),
+          resets: numbers(run.resets),
+          divergedAt: run.divergedAt,
+        },
       ]),
     );
   }

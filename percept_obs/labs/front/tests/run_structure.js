@@ -22,14 +22,18 @@ for (const settings of tasks) {
     for (const part of ["time", "outputs", "truth"]) answer[part] = numbers(shown[part]);
     answer.determinant = numbers(shown.guard.determinants);
     answer.limits = shown.limits;
-    answer.quantities = Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, shown.truth, name))]));
+    answer.quantities = Object.fromEntries(
+      shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, shown.truth, name))]),
+    );
     answer.runs = Object.fromEntries(
       shown.runs.map((run) => [
         run.name,
         {
           estimate: numbers(run.estimate),
           range: numbers(rangeOf(shown, run.estimate)),
-          quantities: Object.fromEntries(shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, run.estimate, name))])),
+          quantities: Object.fromEntries(
+            shown.choice.unknown.map((name) => [name, numbers(quantityOf(shown, run.estimate, name))]),
+          ),
           gaps: run.gaps,
           divergedAt: run.divergedAt,
         },

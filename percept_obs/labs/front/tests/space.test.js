@@ -6,7 +6,8 @@ import { scaled, unseenDirection } from "../src/common/model/velocities.js";
 import * as space from "../src/common/model/space.js";
 import { drawVelocities } from "../src/common/page/velocities.js";
 
-const near = (one, other, slack = 1e-12) => one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));
+const near = (one, other, slack = 1e-12) =>
+  one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));
 const dot = (one, other) => one.reduce((sum, value, i) => sum + value * other[i], 0);
 
 test("neither turned nor tilted, the scene is the image: y1 to the right, y2 upwards, depth away", () => {
@@ -27,7 +28,7 @@ test("every look is a rotation, and none turns the scene on its head", () => {
 
 const track = { rows: Float64Array.of(9, 1, 2, 9, 3, 4, 9, 5, 6), width: 3, first: 1, distances: [2, 3, NaN] };
 
-test("a point lies on its ray at its distance, between samples on the line between, and nowhere without a distance", () => {
+test("a point lies on its ray at its distance, between samples on a line, and nowhere without a distance", () => {
   near([...space.positionsOf(track, space.straight, [0, 1])], [2, 4, 2, 9, 12, 3]);
   near(space.positionAt(track, space.straight, { sample: 0, part: 0.5 }), [5.5, 8, 2.5]);
   near(space.positionAt(track, space.straight, { sample: 1, part: 0 }), [9, 12, 3]);
@@ -36,23 +37,32 @@ test("a point lies on its ray at its distance, between samples on the line betwe
 
 test("a long path is thinned, and ends where the point is", () => {
   const count = 1001;
-  const long = { rows: Float64Array.from({ length: 2 * count }, (_, k) => k), width: 2, distances: new Float64Array(count).fill(1) };
+  const long = {
+    rows: Float64Array.from({ length: 2 * count }, (_, k) => k),
+    width: 2,
+    distances: new Float64Array(count).fill(1),
+  };
   const found = space.positionsOf(long, space.straight, [0, count - 1], 100);
   assert.ok(found.length <= 303);
   near([...found.subarray(-3)], [2 * count - 2, 2 * count - 1, 1]);
 });
 
-test("the ball holds camera and path, whatever is infinite, and stays while the next one is in it and not lost there", () => {
+test("the ball holds camera and path, whatever is infinite, and stays while the next one fits in it", () => {
   const box = space.boxAround([Float64Array.of(3, 0, 4, NaN, NaN, NaN, -1, 0, Infinity)]);
   assert.deepEqual(box, { low: [-1, 0, 0], high: [3, 0, 4] });
   const ball = space.ballAround(box);
   near([...ball.centre, ball.radius], [1, 0, 2, Math.hypot(4, 4) / 2]);
   assert.equal(space.keptBall(ball, { ...ball, radius: ball.radius / 2 }), ball);
-  for (const radius of [ball.radius / 3, 2 * ball.radius]) assert.equal(space.keptBall(ball, { ...ball, radius }).radius, radius);
+  for (const radius of [ball.radius / 3, 2 * ball.radius])
+    assert.equal(space.keptBall(ball, { ...ball, radius }).radius, radius);
 });
 
 test("a frame puts the ball's centre in the middle and its rim at the edge", () => {
-  const frame = space.frameOf({ turn: 0, tilt: 0 }, { centre: [1, 2, 3], radius: 4 }, { width: 200, height: 100, edge: 10 });
+  const frame = space.frameOf(
+    { turn: 0, tilt: 0 },
+    { centre: [1, 2, 3], radius: 4 },
+    { width: 200, height: 100, edge: 10 },
+  );
   near([frame.x(1, 2, 3), frame.y(1, 2, 3), frame.y(1, 6, 3), frame.x(5, 2, 9)], [100, 50, 10, 140]);
 });
 
@@ -76,7 +86,9 @@ test("a copy scaled is on its ray, and one moved along what w does not tell chan
   for (const w of [[0.3, -2], [0, 1], [5, 0], [0, 0]]) {
     const direction = unseenDirection(w, 0.4);
     near([dot(w, direction)], [0]);
-    assert.ok(Math.abs(direction[1]) <= 0.2 + 1e-12 && Math.abs(direction[0]) <= 0.5 + 1e-12 && Math.hypot(...direction) > 0.01);
+    assert.ok(
+      Math.abs(direction[1]) <= 0.2 + 1e-12 && Math.abs(direction[0]) <= 0.5 + 1e-12 && Math.hypot(...direction) > 0.01,
+    );
   }
 });
 

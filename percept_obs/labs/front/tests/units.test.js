@@ -62,7 +62,22 @@ test("the error has settled from the sample after the last one outside", () => {
 });
 
 test("numbers are written as Python writes them", () => {
-  const pairs = [[13.2, "13.2"], [80, "80"], [0.05, "0.05"], [1e-5, "1e-05"], [1234, "1230"], [2e6, "2e+06"], [-0, "0"], [-1500, "-1500"], [999999, "1e+06"], [0, "0"], [2.5e-7, "2.5e-07"], [21.25, "21.2"], [-21.75, "-21.8"], [9.995, "9.99"]];
+  const pairs = [
+    [13.2, "13.2"],
+    [80, "80"],
+    [0.05, "0.05"],
+    [1e-5, "1e-05"],
+    [1234, "1230"],
+    [2e6, "2e+06"],
+    [-0, "0"],
+    [-1500, "-1500"],
+    [999999, "1e+06"],
+    [0, "0"],
+    [2.5e-7, "2.5e-07"],
+    [21.25, "21.2"],
+    [-21.75, "-21.8"],
+    [9.995, "9.99"],
+  ];
   for (const [value, text] of pairs) assert.equal(short(value), text);
   assert.equal(readable(-2.5e-7), "−2.5e−7");
 });
@@ -107,7 +122,8 @@ test("a symmetric matrix's eigenvalues are found, all of them and the extreme on
   assert.equal(spectrum(new Float64Array(9), 3, 1e-6, [[0, 1, 2]]).missed, 3);
   const apart = Float64Array.of(2, 0, 1, 0, 0, 5e-9, 0, 0, 1, 0, 2, 0, 0, 0, 0, 7);
   const [together, inParts] = [[[0, 1, 2, 3]], [[0, 2], [1], [3]]].map((parts) => spectrum(apart, 4, 1e-8, parts));
-  for (const name of ["smallest", "largest", "missed"]) assert.ok(Math.abs(together[name] - inParts[name]) < 1e-12, name);
+  for (const name of ["smallest", "largest", "missed"])
+    assert.ok(Math.abs(together[name] - inParts[name]) < 1e-12, name);
 });
 
 test("the pseudo-inverse gives the smallest solution, and the nearest where there is none", () => {
@@ -154,7 +170,11 @@ test("a schema takes ranges from Python and words from the page", () => {
     b: { kind: "row", entries: [{ kind: "number", low: -5, high: 5, label: "b1", zero: false }] },
     start: { kind: "optional", of: { kind: "group", of: { mode: { kind: "choice", names: ["own"] } } } },
   };
-  const words = { hold: { choices: { zero: "held", first: "a line" } }, b: { name: "true {}" }, start: { mode: { name: "start" } } };
+  const words = {
+    hold: { choices: { zero: "held", first: "a line" } },
+    b: { name: "true {}" },
+    start: { mode: { name: "start" } },
+  };
   const schema = schemaOf(told, words);
   const { low, high, least, most, log, label, unit } = schema.size;
   assert.deepEqual([low, high, least, most, log, label, unit], [1, 2, 0, 9, false, "size", "m"]);

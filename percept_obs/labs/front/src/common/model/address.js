@@ -118,7 +118,8 @@ function complain(kind, value, place) {
   }
 }
 
-const letters = (text) => encodeURIComponent(text).replace(/[!'()*~]/g, (sign) => `%${sign.charCodeAt(0).toString(16)}`);
+const letters = (text) =>
+  encodeURIComponent(text).replace(/[!'()*~]/g, (sign) => `%${sign.charCodeAt(0).toString(16)}`);
 
 /** Rows of rows stand between strokes, values between commas. */
 function strokeOf({ entries, of }) {
@@ -157,14 +158,18 @@ function read(kind, text, name) {
       const value = NUMBER.test(text) ? Number(text) + 0 : NaN;
       const { low, high, whole, zero } = kind;
       const good = value >= low && value <= high && !(whole && !Number.isInteger(value)) && (zero !== false || value);
-      return good ? value : refuse(`a ${whole ? "whole " : ""}number from ${low} to ${high}${zero === false ? ", not 0" : ""}`);
+      return good
+        ? value
+        : refuse(`a ${whole ? "whole " : ""}number from ${low} to ${high}${zero === false ? ", not 0" : ""}`);
     }
     case "choice":
       return kind.names.includes(decoded(text)) ? decoded(text) : refuse(`one of ${kind.names.join(", ")}`);
     case "names": {
       const names = text ? text.split(",").map(decoded) : [];
       const good = names.every((each) => kind.names.includes(each)) && new Set(names).size === names.length;
-      return good && names.length >= kind.least ? names : refuse(`${kind.least ? "at least one" : "some"} of ${kind.names.join(", ")}, each once`);
+      return good && names.length >= kind.least
+        ? names
+        : refuse(`${kind.least ? "at least one" : "some"} of ${kind.names.join(", ")}, each once`);
     }
     case "flag":
       return ["true", "false"].includes(text) ? text === "true" : refuse("true or false");
@@ -179,7 +184,9 @@ function read(kind, text, name) {
     }
     case "several": {
       const parts = text.split(strokeOf(kind));
-      return parts.length <= kind.most ? parts.map((part, k) => inside(kind.of, k, part)) : refuse(`at most ${kind.most} entries`);
+      return parts.length <= kind.most
+        ? parts.map((part, k) => inside(kind.of, k, part))
+        : refuse(`at most ${kind.most} entries`);
     }
     default:
       return refuse("told by its parts");

@@ -12,8 +12,10 @@ import { changeAt, switchOf, valueAt } from "./settings.js";
  * @property {number} high
  * @property {boolean} log
  * @property {boolean} records  whether another value makes another recording
- * @property {(settings: any, functions: any) => number | undefined} get  the present value, undefined where it has no meaning
- * @property {(settings: any, value: number, functions: any) => any} put  the settings with another value; null where there are none
+ * @property {(settings: any, functions: any) => number | undefined} get  the present value, undefined where it has
+ *   no meaning
+ * @property {(settings: any, value: number, functions: any) => any} put  the settings with another value; null where
+ *   there are none
  */
 
 /** From this ratio of its ends on, a gain has a logarithmic axis. */
@@ -47,7 +49,14 @@ export function gainAxes({ observers }, name) {
   return gains.map(({ name: gain, low, high, unit }) => {
     const place = `gains.${name}.${gain}`;
     return {
-      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, log: low > 0 && high / low >= DECADE, records: false },
+      ...{
+        place,
+        label: withUnit(gain.replaceAll("_", " "), unit),
+        low,
+        high,
+        log: low > 0 && high / low >= DECADE,
+        records: false,
+      },
       get: (settings) => (ways[switchOf(settings, name)].includes(gain) ? settings.gains[name][gain] : undefined),
       put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
     };
@@ -100,7 +109,9 @@ export function ticksOn({ low, high, log }, linear) {
 export function planOf(settings, model, axesOf, functions) {
   const { over, observers } = settings;
   const observer = observers.includes(over.observer) ? over.observer : observers[0];
-  const axes = [...gainAxes(model, observer), ...axesOf(settings, model)].filter((axis) => Number.isFinite(axis.get(settings, functions)));
+  const axes = [...gainAxes(model, observer), ...axesOf(settings, model)].filter((axis) =>
+    Number.isFinite(axis.get(settings, functions)),
+  );
   const across = axes.find(({ place }) => place === over.across) ?? axes[0];
   const others = axes.filter((axis) => axis !== across);
   const up = others.find(({ place }) => place === over.up) ?? others[0];

@@ -66,7 +66,10 @@ export class PointCamera {
   see(settings, functions) {
     const { time, plant } = clockOf(this.memory, settings, this.kinks(settings));
     const count = time.length;
-    if (count < 2) return nothing(`a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`);
+    if (count < 2)
+      return nothing(
+        `a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`,
+      );
     const truth = new Float64Array(3 * count);
     const inFront = this.look(settings, functions, plant, truth);
     if (inFront === 1) return nothing("the point leaves the half-space in front of the camera at once");

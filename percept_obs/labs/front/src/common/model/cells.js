@@ -37,7 +37,9 @@ export function settingsAt(base, { across, up }, [x, y], functions) {
   return moved && up.put(moved, y, functions);
 }
 
-/** The column and the row of the k-th cell: what makes another recording changes last, so that most cells share theirs. */
+/**
+ * The column and the row of the k-th cell: what makes another recording changes last, so that most cells share theirs.
+ */
 export function orderOf({ across, up }, cells) {
   const rows = up.records || !across.records;
   return (k) => (rows ? [k % cells, Math.floor(k / cells)] : [Math.floor(k / cells), k % cells]);

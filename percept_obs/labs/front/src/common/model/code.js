@@ -24,7 +24,9 @@ export function broughtBy(own, names) {
   const brought = names.map((name) => own?.[name]).filter(Boolean);
   const modules = {};
   for (const { module, name } of brought) if (module) (modules[module] ??= []).push(name);
-  const lines = brought.filter(({ module }) => !module).map(({ name }) => `# ${name} = the one that you gave to the lab`);
+  const lines = brought
+    .filter(({ module }) => !module)
+    .map(({ name }) => `# ${name} = the one that you gave to the lab`);
   return { modules, lines };
 }
 

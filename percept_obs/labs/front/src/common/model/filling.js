@@ -1,5 +1,6 @@
 // @ts-check
-// Maps over two settings, filled cell by cell: the latest one that was asked for, beside the page or in small slices in it.
+// Maps over two settings, filled cell by cell: the latest one that was asked for, beside the page or in small slices in
+// it.
 
 import { planOf, valueIn } from "./axes.js";
 import { EACH_CELL, fillCell, orderOf, settingsAt, THEN } from "./cells.js";
@@ -7,11 +8,15 @@ import { modelOf } from "./texts.js";
 
 /** Milliseconds between two parts of a map that are told. */
 const BETWEEN_PARTS = 90;
-/** Milliseconds after a first picture in which a hand that moves asks for the next map: nothing finer is begun, and the page has its turn. */
+/**
+ * Milliseconds after a first picture in which a hand that moves asks for the next map: nothing finer is begun, and the
+ * page has its turn.
+ */
 const REST = 40;
 
 /**
- * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first picture has
+ * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first
+ *   picture has
  * @typedef {{id: number, cells: number, from: number, values: Float64Array, cost: number}} Part
  *   Numbers of cells of a map with so many cells a side, and the milliseconds that one took.
  */
@@ -25,7 +30,8 @@ export class Filling {
   /**
    * @param {Lab} lab
    * @param {(part: Part) => void} tell
-   * @param {{slice: number, pause: () => Promise<any>}} manners  milliseconds at a time, and what lets others have their turn
+   * @param {{slice: number, pause: () => Promise<any>}} manners  milliseconds at a time, and what lets others have
+   *   their turn
    */
   constructor(lab, tell, { slice, pause }) {
     this.lab = lab;
@@ -88,7 +94,13 @@ export class Filling {
         spent += now - before;
         const whole = k + 1 === cells * cells;
         if (whole || (cells > first && now - since > BETWEEN_PARTS)) {
-          this.tell({ id, cells, from, values: values.slice(EACH_CELL * from, EACH_CELL * (k + 1)), cost: spent / (k + 1) });
+          this.tell({
+            id,
+            cells,
+            from,
+            values: values.slice(EACH_CELL * from, EACH_CELL * (k + 1)),
+            cost: spent / (k + 1),
+          });
           [from, since] = [k + 1, now];
         }
         if (now - began < this.slice && !whole) continue;
@@ -112,7 +124,10 @@ export function breath() {
   });
 }
 
-/** Fill maps in a worker; `computing` gives what computes for a lab by its kind. The first message opens a lab, each of the others has a task. */
+/**
+ * Fill maps in a worker; `computing` gives what computes for a lab by its kind. The first message opens a lab, each of
+ * the others has a task.
+ */
 export function serveMaps(computing, scope) {
   /** @type {Lab | null} */
   let lab = null;
@@ -133,7 +148,12 @@ export function serveMaps(computing, scope) {
   }
 
   scope.onmessage = ({ data }) => {
-    const done = "follow" in data ? filling?.follow(data).then((found) => scope.postMessage(found)) : "id" in data ? fill(data) : open(data);
+    const done =
+      "follow" in data
+        ? filling?.follow(data).then((found) => scope.postMessage(found))
+        : "id" in data
+          ? fill(data)
+          : open(data);
     done?.catch((error) => scope.postMessage({ error: error.message }));
   };
 }

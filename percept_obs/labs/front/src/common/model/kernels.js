@@ -3,9 +3,13 @@
 
 import { Modules } from "./modules.js";
 
-/** @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean, refusal?: string}} Module */
+/**
+ * @typedef {{key: string, texts: Record<string, string>, observer?: string, aside?: boolean, refusal?: string}} Module
+ */
 
-/** Settings without the observers that are refused, and why those went; one that always exists takes the place of all. */
+/**
+ * Settings without the observers that are refused, and why those went; one that always exists takes the place of all.
+ */
 export function withoutRefused(settings, refused, observers, always) {
   const lost = settings.observers.filter((name) => refused[name]);
   if (!lost.length) return { settings, why: "" };

@@ -1,10 +1,16 @@
 // @ts-check
-// The latest result of settings that a hand moves: found here, or beside the page, where one task at a time is under way.
+// The latest result of settings that a hand moves: found here, or beside the page, where one task at a time is under
+// way.
 
 /** @typedef {import("./thinned.js").Sight} Sight */
-/** @typedef {{settings: any, whole: boolean, sight?: Sight, spare?: ArrayBuffer[]}} Task  settings of which all is wanted, or only what is drawn in a sight, and buffers for their result */
+/**
+ * @typedef {{settings: any, whole: boolean, sight?: Sight, spare?: ArrayBuffer[]}} Task
+ *   Settings whose whole result is wanted, or only what is drawn in a sight, and buffers for the result.
+ */
 
-/** What was found last.  Once there is something beside the page to ask, of all tasks that wait only the latest is sent. */
+/**
+ * What was found last.  Once there is something beside the page to ask, of all tasks that wait only the latest is sent.
+ */
 export class Latest {
   constructor(results, onFound) {
     this.results = results;

@@ -16,7 +16,11 @@ export function placeInWords({ across, up }, place) {
 export function cellInWords({ kind, settling, error }) {
   if (kind === IMPOSSIBLE) return "no run";
   if (kind === DIVERGED) return "diverges";
-  const off = Number.isNaN(error) ? "no estimate at the end" : error === Infinity ? "behind the camera at the end" : `${percent(error, 2)} off at the end`;
+  const off = Number.isNaN(error)
+    ? "no estimate at the end"
+    : error === Infinity
+      ? "behind the camera at the end"
+      : `${percent(error, 2)} off at the end`;
   return settling < Infinity ? `settles after ${readable(settling)} s, ${off}` : `does not settle, ${off}`;
 }
 
@@ -33,9 +37,11 @@ export function mapInWords({ found, present }, shows, title) {
     const [i, j] = [cell % level.cells, Math.floor(cell / level.cells)];
     return placeInWords(plan, [valueIn(plan.across, i, level.cells), valueIn(plan.up, j, level.cells)]);
   };
-  const parts = [`${title} over ${span(plan.across)} and ${span(plan.up)}, ${level.cells} by ${level.cells} places${present ? "" : ", of settings a moment ago"}`];
+  const parts = [`${title} over ${span(plan.across)} and ${span(plan.up)}, ${level.cells} by ${level.cells} ` +
+    `places${present ? "" : ", of settings a moment ago"}`];
   parts.push(`${settled} settle, ${never} do not, ${diverged} diverge${none ? `, ${none} have no run` : ""}`);
-  if (least >= 0) parts.push(`least ${value(least)} at ${place(least)}; greatest ${value(greatest)} at ${place(greatest)}`);
+  if (least >= 0)
+    parts.push(`least ${value(least)} at ${place(least)}; greatest ${value(greatest)} at ${place(greatest)}`);
   parts.push("Noise has the same seed everywhere");
   return parts.map((part) => `${part}.`).join(" ");
 }
@@ -45,5 +51,7 @@ export function stateInWords({ found, present, whole, finest }) {
   if (!found) return "being computed";
   const cells = whole ? finest : found.levels.at(-1).cells;
   const size = `${cells} × ${cells} places`;
-  return present ? `${size}${whole ? "" : ", getting finer"}; noise has the same seed everywhere` : `${size}, of settings a moment ago`;
+  return present
+    ? `${size}${whole ? "" : ", getting finer"}; noise has the same seed everywhere`
+    : `${size}, of settings a moment ago`;
 }

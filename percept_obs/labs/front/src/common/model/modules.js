@@ -13,7 +13,9 @@ export async function importText(text) {
 /** Text of a module that exports each function under its key. */
 export function moduleText(functions) {
   return Object.entries(functions)
-    .map(([key, text]) => `export const ${key} = (() => {\n${text}\nreturn ${text.match(/^function (\w+)/)?.[1]};\n})();`)
+    .map(
+      ([key, text]) => `export const ${key} = (() => {\n${text}\nreturn ${text.match(/^function (\w+)/)?.[1]};\n})();`,
+    )
     .join("\n");
 }
 

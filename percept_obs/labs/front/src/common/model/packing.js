@@ -6,7 +6,8 @@
 const ROOM = 1.25;
 
 /**
- * A copy of plain data whose arrays of numbers lie in one buffer, and that buffer: one of the spare ones, which is taken,
+ * A copy of plain data whose arrays of numbers lie in one buffer, and that buffer: one of the spare ones, which is
+ * taken,
  * or a new one.
  *
  * @param {ArrayBuffer[]} spare
@@ -33,7 +34,9 @@ export function packed(data, spare) {
   const copied = (value) => {
     if (copies.has(value)) return copies.get(value);
     if (Array.isArray(value)) return value.map(copied);
-    return isDeep(value) ? Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, copied(inner)])) : value;
+    return isDeep(value)
+      ? Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, copied(inner)]))
+      : value;
   };
   return { data: copied(data), room };
 }

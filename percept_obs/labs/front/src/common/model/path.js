@@ -38,7 +38,8 @@ export function constantPath(start, rates, grid, index, points) {
 }
 
 /**
- * What a time adds to a position: the rows of a matrix and beside it those of a vector, from what is added to 0 and to the
+ * What a time adds to a position: the rows of a matrix and beside it those of a vector, from what is added to 0 and
+ * to the
  * unit vectors.  The position itself is left out, since its rounding would add up over the steps.
  */
 function stepOf(time, size, rates, term) {

@@ -33,7 +33,9 @@ export function uniformFrom(seed) {
   return () => ((integer() >>> 5) * 67108864 + (integer() >>> 6)) / 9007199254740992;
 }
 
-/** Draws that a camera's noise is made of: for each sample as many as its kind needs, then one a sample for its loss. */
+/**
+ * Draws that a camera's noise is made of: for each sample as many as its kind needs, then one a sample for its loss.
+ */
 export function draws(kind, seed, samples, outputs) {
   const uniform = uniformFrom(seed);
   const shape = new Float64Array(samples * outputs);

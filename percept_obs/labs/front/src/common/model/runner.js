@@ -47,7 +47,8 @@ export class Runner {
   followAll(settings, result, inputs, kernelOf, functions, asked) {
     return settings.observers.map((name) => {
       const kernel = kernelOf(name);
-      const follow = ({ gains }) => this.follow(name, gains[name], result, inputs, kernel, functions.observers[name], asked);
+      const follow = ({ gains }) =>
+        this.follow(name, gains[name], result, inputs, kernel, functions.observers[name], asked);
       return this.kept(name, settings, follow, ...inputs.of, kernel, ...asked);
     });
   }
@@ -97,7 +98,13 @@ export class Runner {
  */
 export function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
-  const inputs = [...columns.map((values) => values[0]), ...parameters, ...gains, ...asked, ...columns.map(() => (own ? 1 : 0))];
+  const inputs = [
+    ...columns.map((values) => values[0]),
+    ...parameters,
+    ...gains,
+    ...asked,
+    ...columns.map(() => (own ? 1 : 0)),
+  ];
   return functions.start(inputs, new Float64Array(kernel.states));
 }
 

@@ -69,7 +69,9 @@ export function logScale(low, high) {
 /** The scale that was drawn before, if the one that is wanted lies in it and is not lost there. */
 export function keptScale(before, wanted) {
   if (!before || Boolean(before.log) !== Boolean(wanted.log)) return wanted;
-  const [[low, high], [least, most]] = [before, wanted].map((scale) => [scale.low, scale.high].map(scale.log ? Math.log10 : Number));
+  const [[low, high], [least, most]] = [before, wanted].map((scale) =>
+    [scale.low, scale.high].map(scale.log ? Math.log10 : Number),
+  );
   const slack = 1e-9 * (high - low);
   return least >= low - slack && most <= high + slack && most - least > 0.4 * (high - low) ? before : wanted;
 }

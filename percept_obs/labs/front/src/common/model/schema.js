@@ -1,4 +1,5 @@
-// What may be set: the kinds and ranges that Python's schema says, in the words of the page; types.js says what each holds.
+// What may be set: the kinds and ranges that Python's schema says, in the words of the page; types.js says what each
+// holds.
 
 /** What observers may take for the outputs between samples. */
 export const HOLD = { choices: { zero: "the last sample", first: "a line to the next", exact: "the exact signal" } };
@@ -39,7 +40,16 @@ const MAKE = {
     const [first] = entries;
     if (first.kind === "row") {
       const [{ step, low: least, high: most }] = first.entries;
-      return { kind: "matrix", label, rows: entries.length, columns: first.entries.length, step, least, most, ...words };
+      return {
+        kind: "matrix",
+        label,
+        rows: entries.length,
+        columns: first.entries.length,
+        step,
+        least,
+        most,
+        ...words,
+      };
     }
     const called = (text, entry) => text?.replace("{}", entry.label) ?? entry.label;
     const named = (entry) => ({ name: called(words.name, entry), label: called(words.label, entry) });

@@ -8,10 +8,18 @@ import { same } from "./settings.js";
 import { modelOf } from "./texts.js";
 import { thinned } from "./thinned.js";
 
-/** Answer messages; `computing` gives the Kernels and the Engine of a lab by its kind: the first one opens a lab, each of the others has settings, of which a result is sent back: all of it, or as much as is drawn while a hand moves. */
+/**
+ * Answer messages; `computing` gives the Kernels and the Engine of a lab by its kind: the first one opens a lab, each
+ * of the others has settings, of which a result is sent back: all of it, or as much as is drawn while a hand moves.
+ */
 export function serve(computing, scope) {
-  const opened = { model: /** @type {any} */ (null), kernels: /** @type {any} */ (null), results: /** @type {any} */ (null) };
-  /** @type {{settings: any, kept: any, ghost: any}} without a ghost yet, so that the first answer tells it: the page may have found one by itself */
+  const opened = {
+    model: /** @type {any} */ (null),
+    kernels: /** @type {any} */ (null),
+    results: /** @type {any} */ (null),
+  };
+  // No ghost yet, so that the first answer has one: the page may have found one by itself.
+  /** @type {{settings: any, kept: any, ghost: any}} */
   const last = { settings: null, kept: null, ghost: undefined };
   /** @type {ArrayBuffer[]} those that came back */
   const rooms = [];

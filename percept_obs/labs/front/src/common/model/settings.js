@@ -33,7 +33,11 @@ export function presetsOf(presets) {
     ...{ button: "Show", ...act, changes: { ...shared, ...changes } },
     beside: beside && { ...shared, ...beside },
   });
-  return presets.map(({ changes, acts, asks = {}, ...preset }) => ({ ...preset, asks, acts: acts.map((act) => whole(changes, act)) }));
+  return presets.map(({ changes, acts, asks = {}, ...preset }) => ({
+    ...preset,
+    asks,
+    acts: acts.map((act) => whole(changes, act)),
+  }));
 }
 
 /** The settings of a preset's act: the standard ones, whatever the lab was opened with, and the act's changes. */

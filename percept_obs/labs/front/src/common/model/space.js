@@ -1,7 +1,9 @@
 // @ts-check
 // The geometry of a scene in the camera's X, Y, Z: how it is looked at, how much of it, and where a point comes to lie.
 
-/** How a scene is looked at when it opens: from the side and a little from above, so that depths do not hide each other. */
+/**
+ * How a scene is looked at when it opens: from the side and a little from above, so that depths do not hide each other.
+ */
 export const OPENING_LOOK = { turn: 0.95, tilt: 0.35 };
 
 const STEEPEST = Math.PI / 2;
@@ -104,7 +106,9 @@ export function rimOf(from, to, corners) {
     [y1 - y0, (y1 > y0 ? bottom : top) - y0],
   ].map(([way, room]) => (way === 0 ? Infinity : Math.max(room / way, 0)));
   const share = Math.min(...shares);
-  return share < 1 ? { at: [x0 + share * (x1 - x0), y0 + share * (y1 - y0)], angle: Math.atan2(y1 - y0, x1 - x0) } : null;
+  return share < 1
+    ? { at: [x0 + share * (x1 - x0), y0 + share * (y1 - y0)], angle: Math.atan2(y1 - y0, x1 - x0) }
+    : null;
 }
 
 /**

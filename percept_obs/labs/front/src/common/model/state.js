@@ -1,4 +1,5 @@
-// What a lab is asked to show: settings, the preset that is open, which time is in sight and which line; and the way back.
+// What a lab is asked to show: settings, the preset that is open, which time is in sight and which line; and the way
+// back.
 
 import { same } from "./settings.js";
 

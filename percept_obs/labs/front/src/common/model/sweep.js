@@ -4,7 +4,9 @@
 import { cellAt, planOf, shareOf, valueIn } from "./axes.js";
 import { baseOf, DIVERGED, EACH_CELL, FIRST, FOLLOWED, NOT_YET, orderOf, THEN } from "./cells.js";
 
-/** Milliseconds in which the first picture of a map is to be there, and what a cell takes as long as that is not known. */
+/**
+ * Milliseconds in which the first picture of a map is to be there, and what a cell takes as long as that is not known.
+ */
 const SOON = 40;
 const SLOW = 4;
 const LAST = THEN[THEN.length - 1];
@@ -129,7 +131,11 @@ export class Sweep {
 }
 
 function sameAxes(one, other) {
-  return [one, other].every((plan) => plan.across) && one.observer === other.observer && ["across", "up"].every((axis) => one[axis].place === other[axis].place);
+  return (
+    [one, other].every((plan) => plan.across) &&
+    one.observer === other.observer &&
+    ["across", "up"].every((axis) => one[axis].place === other[axis].place)
+  );
 }
 
 /**
@@ -154,7 +160,9 @@ export function sharesOf({ across, up }, settings, functions) {
   return [across, up].map((axis) => shareOf(axis, axis.get(settings, functions)));
 }
 
-/** What a level holds: how many runs settle, diverge, or are none, and the cells with the least and the greatest value. */
+/**
+ * What a level holds: how many runs settle, diverge, or are none, and the cells with the least and the greatest value.
+ */
 export function countsOf({ values }, what) {
   const counts = { settled: 0, never: 0, diverged: 0, none: 0, least: -1, greatest: -1 };
   for (let at = 0; at < values.length; at += EACH_CELL) {

@@ -32,7 +32,8 @@ export function withSteps({ grid, index }) {
 }
 
 /**
- * The steps in which the truth moves: from time 0 on, with an end at each of the times, and at each of the breaks, where
+ * The steps in which the truth moves: from time 0 on, with an end at each of the times, and at each of the breaks,
+ * where
  * its motion has a kink; index says where time 0 and the times stand.
  */
 export function plantGrid(times, breaks = /** @type {number[]} */ ([])) {
@@ -150,7 +151,8 @@ export function known(motion, shape, grid) {
 export function knownAt(motion, shape, places) {
   if (motion.over) return { rows: motion.over(places, shape), width: motion.count + shape.length, varying: true };
   const width = motion.rows[0].length + shape.length;
-  if (motion.times.length === 1) return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
+  if (motion.times.length === 1)
+    return { rows: Float64Array.from([...motion.rows[0], ...shape]), width, varying: false };
   const rows = new Float64Array(places.length * width);
   const still = shape.map((value) => new Float64Array(places.length).fill(value));
   const columns = [...motion.columns.map((values) => interpolate(places, motion.times, values)), ...still];

@@ -1,6 +1,6 @@
 // What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
 
-/** @returns {Promise<Record<string, any>>} a lab's model: what was printed for it, and what Python hands over besides */
+/** @returns {Promise<Record<string, any>>} a lab's model: its printed texts, and the data from Python */
 export async function modelOf(texts, given) {
   const unpacked = new Blob([texts]).stream().pipeThrough(new DecompressionStream("gzip"));
   const [shared, ...rows] = (await new Response(unpacked).text()).split("\n");

@@ -3,7 +3,7 @@
 
 import { indicesIn } from "./timeline.js";
 
-/** @typedef {{low: number, high: number, cursor: number | null}} Sight  the times that are drawn large, and the one that is read */
+/** @typedef {{low: number, high: number, cursor: number | null}} Sight  span of the charts, and time of the cursor */
 
 /** Numbers of what is in sight at most; and samples that there are at least, one for two pixels of a chart. */
 const [MOST, LEAST] = [30_000, 375];
@@ -14,11 +14,14 @@ const ROWS = new Set([
   ...["images", "seenImages", "depths", "size", "errors", "relative", "worst"],
 ]);
 
-/** Parts of 1 that lie apart however many there are, so that what changes with each sample is met at all of its phases. */
+/**
+ * Parts of 1 that lie apart however many there are, so that what changes with each sample is met at all of its phases.
+ */
 const APART = (Math.sqrt(5) - 1) / 2;
 
 /**
- * A result with fewer samples, if it has many: of those in sight as many as can be told apart, of the others fewer.  The
+ * A result with fewer samples, if it has many: of those in sight as many as can be told apart, of the others fewer. 
+ * The
  * first and the last one stay, and those about the time that is read.
  *
  * @param {any} result
@@ -32,11 +35,26 @@ export function thinned(result, sight, room) {
   const most = Math.max(LEAST, MOST / widthOf(result, time.length));
   if (time.length <= most) return result;
   const read = sight.cursor === null ? [] : indicesIn(time, { low: sight.cursor, high: sight.cursor });
-  const some = [...spaced(0, from, most), ...spaced(from, to, most), ...spaced(to, time.length, most), ...read, time.length - 1];
+  const some = [
+    ...spaced(0, from, most),
+    ...spaced(from, to, most),
+    ...spaced(to, time.length, most),
+    ...read,
+    time.length - 1,
+  ];
   const which = Int32Array.from(new Set(some)).sort();
   const picked = new Map();
   const pick = (rows) => {
-    if (!picked.has(rows)) picked.set(rows, rowsAt(rows, rows.length / time.length, which, room(`rows ${picked.size}`, (rows.length / time.length) * which.length)));
+    if (!picked.has(rows))
+      picked.set(
+        rows,
+        rowsAt(
+          rows,
+          rows.length / time.length,
+          which,
+          room(`rows ${picked.size}`, (rows.length / time.length) * which.length),
+        ),
+      );
     return picked.get(rows);
   };
   return { ...changed(result, pick), time: pick(time), whole: false };
@@ -61,7 +79,12 @@ function changed(value, pick, rows = false) {
   if (ArrayBuffer.isView(value)) return rows ? pick(value) : value;
   if (Array.isArray(value)) return value.map((each) => changed(each, pick, rows));
   if (value?.constructor !== Object) return value;
-  return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, name === "settings" ? inner : changed(inner, pick, ROWS.has(name))]));
+  return Object.fromEntries(
+    Object.entries(value).map(([name, inner]) => [
+      name,
+      name === "settings" ? inner : changed(inner, pick, ROWS.has(name)),
+    ]),
+  );
 }
 
 function rowsAt(rows, width, which, found) {

@@ -14,7 +14,9 @@ const MOST = 0.6;
 /** No part is thinner than this part of the whole. */
 const THINNEST = 1e-4;
 
-/** The part of a run in which errors fall, and something else happens until `events`; all of it where one never settles. */
+/**
+ * The part of a run in which errors fall, and something else happens until `events`; all of it where one never settles.
+ */
 export function storyOf(whole, /** @type {(number | null)[]} */ settlings, events = whole.low) {
   const latest = settlings.length ? Math.max(...settlings.map((value) => value ?? Infinity)) : Infinity;
   if (!(latest > 0 && latest < Infinity)) return whole;
@@ -47,7 +49,11 @@ export class Timeline {
    * Follow a run: another question shows its story, and so does another choice, unless the hand had zoomed.  What the
    * hand had `asked` for is shown, whatever was before; null takes a zoom back.
    */
-  follow(whole, { settlings, events }, { question, choice, held, asked = /** @type {Span | null | undefined} */ (undefined) }) {
+  follow(
+    whole,
+    { settlings, events },
+    { question, choice, held, asked = /** @type {Span | null | undefined} */ (undefined) },
+  ) {
     const story = storyOf(whole, settlings, events);
     if (asked) [this.span, this.byHand, this.question] = [asked, true, question];
     else if (asked === null && this.byHand) this.forget();
@@ -60,7 +66,8 @@ export class Timeline {
       this.choice = choice;
     }
     this.question = question;
-    if (this.span.high > whole.high || this.span.low < whole.low) this.span = zoomed(this.span, whole, 1, this.span.low);
+    if (this.span.high > whole.high || this.span.low < whole.low)
+      this.span = zoomed(this.span, whole, 1, this.span.low);
   }
 
   /** Show the story again. */

@@ -1,5 +1,6 @@
 // @ts-check
-// Where a point is and where observers think it is, as a scene shows it: image coordinates and distances at the samples.
+// Where a point is and where observers think it is, as a scene shows it: image coordinates and distances at the
+// samples.
 
 /**
  * @typedef {object} Track
@@ -26,6 +27,10 @@ export function tracksOfPoint(shown, ghost, distancesOf, lookOf) {
   const track = (result, rows, run) => ({ rows, width: result.width, ...distancesOf(result, rows, run) });
   const truth = shown.truth?.length ? { ...track(shown, shown.truth, null), ...lookOf(null) } : null;
   const kept = ghost?.runs.map((run) => ({ ...track(ghost, run.estimate, run), of: {}, kept: true })) ?? [];
-  const estimates = shown.runs.map((run) => ({ ...track(shown, run.estimate, run), ...lookOf(run.order), of: truth ?? {} }));
+  const estimates = shown.runs.map((run) => ({
+    ...track(shown, run.estimate, run),
+    ...lookOf(run.order),
+    of: truth ?? {},
+  }));
   return [...(truth ? [truth] : []), ...kept, ...estimates];
 }

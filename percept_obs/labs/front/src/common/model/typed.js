@@ -1,5 +1,6 @@
 // @ts-check
-// Motions that somebody typed: Python read them, and printed each as a function of time and of the numbers that a lab sets.
+// Motions that somebody typed: Python read them, and printed each as a function of time and of the numbers that a lab
+// sets.
 
 import { instants } from "./tables.js";
 
@@ -8,7 +9,9 @@ export function typedModule({ written }, text) {
   if (!text?.trim()) return [];
   const answer = written?.[text];
   if (!answer?.source) {
-    const why = answer?.refusal ?? "only Python reads what is typed, and it has not: open the lab in a notebook, and run its cell";
+    const why =
+      answer?.refusal ??
+      "only Python reads what is typed, and it has not: open the lab in a notebook, and run its cell";
     return [{ key: `motion ${text}`, texts: {}, refusal: `What is typed, "${text}", cannot be shown: ${why}` }];
   }
   const { source, columns, uses } = answer;
@@ -19,7 +22,9 @@ export function typedModule({ written }, text) {
 /** What Python read of the texts in settings, and in those that are kept. */
 export function readOf(settings, { written = {} }) {
   const texts = [settings, settings.kept].flatMap((each) => Object.values(each ?? {}));
-  return Object.fromEntries(texts.filter((text) => typeof text === "string" && written[text]).map((text) => [text, written[text]]));
+  return Object.fromEntries(
+    texts.filter((text) => typeof text === "string" && written[text]).map((text) => [text, written[text]]),
+  );
 }
 
 /** Rows of numbers at some times, those of a typed motion as it was typed. */

@@ -38,7 +38,10 @@ export function scaled(places, amount) {
   return places.map(({ place, ...more }) => ({ ...more, place: place.map((value) => size * value) }));
 }
 
-/** The step in a hidden image coordinate and the inverse distance that w does not tell, of a size that can be seen, within a reach of the image. */
+/**
+ * The step in a hidden image coordinate and the inverse distance that w does not tell, of a size that can be seen,
+ * within a reach of the image.
+ */
 export function unseenDirection([other, inverse], atInverse, reach = 0.5) {
   const [first, second] = other === 0 && inverse === 0 ? [0, 1] : [-inverse, other];
   const size = Math.min((0.5 * Math.abs(atInverse)) / Math.abs(second), Math.min(reach, 0.5) / Math.abs(first));

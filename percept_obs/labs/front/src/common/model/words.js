@@ -49,7 +49,9 @@ export function verdictInShort({ divergedAt, settling, error }, { time, toleranc
   if (!error) return "no truth to compare with";
   if (settling < Infinity) {
     const sure = settled(settling, time.at(-1) - time[0], settledPart);
-    return sure ? `converged after ${short(settling)} s` : `outside ${percent(tolerance, 6)} until ${short(settling)} s`;
+    return sure
+      ? `converged after ${short(settling)} s`
+      : `outside ${percent(tolerance, 6)} until ${short(settling)} s`;
   }
   const last = error.at(-1);
   if (Number.isNaN(last)) return "ends without an estimate";
@@ -76,7 +78,11 @@ export function readingAt(shown, cursor) {
 /** The text equivalent of the image plane of a point. */
 export function imagePlaneInWords({ problem, time, truth, width, names, runs, foe, circle }) {
   if (problem) return problem;
-  const point = (rows, k = 0) => names.slice(0, 2).map((name, c) => `${name} ${readable(rows[k * width + c])}`).join(", ");
+  const point = (rows, k = 0) =>
+    names
+      .slice(0, 2)
+      .map((name, c) => `${name} ${readable(rows[k * width + c])}`)
+      .join(", ");
   const end = time.length - 1;
   const parts = runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`);
   if (truth) parts.unshift(`the point goes from ${point(truth)} to ${point(truth, end)}`);
@@ -95,7 +101,8 @@ export function sceneInWords(shown, distancesOf) {
     const distances = distancesOf(estimate);
     return `the ${title} estimate begins ${far(distances[0])} and ends ${far(distances[last])}`;
   });
-  if (truth?.length) parts.unshift(`the point goes from ${readable(distancesOf(truth)[0])} m to ${readable(distancesOf(truth)[last])} m of the camera`);
+  if (truth?.length) parts.unshift(`the point goes from ${readable(distancesOf(truth)[0])} m to ` +
+    `${readable(distancesOf(truth)[last])} m of the camera`);
   return `${parts.join("; ")}.`;
 }
 

@@ -13,9 +13,15 @@ export function axesOf(settings, model) {
   const recorded = settings.scenario in model.recordings;
   const at = (place, label, meant) => axisAt(model, place, label, meant);
   const each = (place, labels, meant) => labels.map((label, k) => at(`${place}.${k}`, label, meant));
-  const chosen = each("start.values", ["start of ŷ1", "start of ŷ2", "start of ŷ3"], ({ start }) => start.mode === "chosen");
+  const chosen = each(
+    "start.values",
+    ["start of ŷ1", "start of ŷ2", "start of ŷ3"],
+    ({ start }) => start.mode === "chosen",
+  );
   if (recorded) return chosen;
-  const moved = model.scenarios[settings.scenario]?.track ? [] : [...each("b", ["b1", "b2", "b3"]), ...(varies(settings, model) ? [] : [0, 1].map((c) => focusAxis(model, c)))];
+  const moved = model.scenarios[settings.scenario]?.track
+    ? []
+    : [...each("b", ["b1", "b2", "b3"]), ...(varies(settings, model) ? [] : [0, 1].map((c) => focusAxis(model, c)))];
   return [
     at("noise.size", "noise, bound or σ"),
     at("dropout", "share of lost samples"),

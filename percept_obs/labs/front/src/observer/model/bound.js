@@ -8,7 +8,9 @@ const N = 3;
 /** Why settings have no bound, or nothing. */
 export function noBound({ scenario, noise }, { recordings }) {
   if (scenario in recordings) return "There is no bound of a recording: it does not say how large its noise is.";
-  return noise.size > 0 ? "" : "There is no bound without noise: every error can become as small as you like. Give the samples some noise.";
+  return noise.size > 0
+    ? ""
+    : "There is no bound without noise: every error can become as small as you like. Give the samples some noise.";
 }
 
 /** What the bound begins with: the variance of the noise, and the one that Python takes for hidden coordinates. */

@@ -1,6 +1,6 @@
 // What may keep an observer from the truth, as far as the lab can switch it off: one cause at a time.
 
-/** @type {[string, (settings: Record<string, any>) => any][]} words, and what changes without the cause, if it is there */
+/** @type {[string, (settings: Record<string, any>) => any][]} words, and the changes without the cause, if any */
 const CAUSES = [
   ["with y1 and y2 measured", ({ outputs }) => outputs.length < 2 && { outputs: ["y1", "y2"] }],
   ["without noise", ({ noise }) => noise.size > 0 && { noise: { ...noise, size: 0 } }],
@@ -12,7 +12,11 @@ const CAUSES = [
   }],
   ["with a bound of 100/m instead", ({ gains, observers }) => {
     const bounded = observers.filter((name) => gains[name].bound < 100);
-    return bounded.length > 0 && { gains: { ...gains, ...Object.fromEntries(bounded.map((name) => [name, { ...gains[name], bound: 100 }])) } };
+    return (
+      bounded.length > 0 && {
+        gains: { ...gains, ...Object.fromEntries(bounded.map((name) => [name, { ...gains[name], bound: 100 }])) },
+      }
+    );
   }],
   ["with half the gain", scaled(0.5)],
   ["with twice the gain", scaled(2)],
@@ -25,7 +29,14 @@ const CAUSES = [
 function scaled(factor) {
   return /** @param {Record<string, any>} settings */ ({ gains, observers }) => {
     const chosen = observers.filter((name) => gains[name].gain !== undefined);
-    return chosen.length > 0 && { gains: { ...gains, ...Object.fromEntries(chosen.map((name) => [name, { ...gains[name], gain: factor * gains[name].gain }])) } };
+    return (
+      chosen.length > 0 && {
+        gains: {
+          ...gains,
+          ...Object.fromEntries(chosen.map((name) => [name, { ...gains[name], gain: factor * gains[name].gain }])),
+        },
+      }
+    );
   };
 }
 

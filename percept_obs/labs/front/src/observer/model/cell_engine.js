@@ -22,7 +22,8 @@ export class CellEngine extends Engine {
   /** Most cells share their recording, and all that is known besides. */
   layOut(result, lines, known, hold, exact, own) {
     const of = [result.outputs, result.measured, lines, known, hold, exact?.[0], own];
-    if (!of.every((part, k) => part === this.laid.of[k])) this.laid = { of, inputs: super.layOut(result, lines, known, hold, exact, own) };
+    if (!of.every((part, k) => part === this.laid.of[k]))
+      this.laid = { of, inputs: super.layOut(result, lines, known, hold, exact, own) };
     return this.laid.inputs;
   }
 

@@ -5,13 +5,20 @@ import { switchOf } from "../../common/model/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../common/model/typed.js";
 
-export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import("./bound_map.js").mapOf> | null} */ (null)) {
+export function pythonOf(
+  shown,
+  model,
+  map = /** @type {ReturnType<typeof import("./bound_map.js").mapOf> | null} */ (null),
+) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
   const brought = broughtBy(model.own, [settings.surface, ...settings.observers]);
   const surface = model.own[settings.surface]?.call ?? `${settings.surface}()`;
-  const lines = [...brought.lines, ...(recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names, model))];
+  const lines = [
+    ...brought.lines,
+    ...(recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names, model)),
+  ];
   const motion = recorded ? recorded.kind : "affine";
   names.add(motion);
   if (!model.own[settings.surface]) names.add(settings.surface);
@@ -33,7 +40,10 @@ export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import
   lines.push(...trackings(settings, model, { makerOf, form: "form", options }));
   if (shown.bound) {
     names.add("cramer_rao");
-    lines.push("bound = cramer_rao(recording, form)", 'print(f"least relative error at the end: {bound.relative[-1]:.3g}")');
+    lines.push(
+      "bound = cramer_rao(recording, form)",
+      'print(f"least relative error at the end: {bound.relative[-1]:.3g}")',
+    );
   }
   if (map?.relative.some(Number.isFinite)) {
     names.add("bound_map");
@@ -41,7 +51,8 @@ export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import
     const measured = settings.outputs.map((o) => `"${o}", `).join("");
     lines.push(
       ...["found = bound_map(", "    PerspectiveSystem(motion, scenario.surface),"],
-      `    ${seconds}, ${distance}, (${measured}), (${y1.join(", ")}), (${y2.join(", ")}), ${resolution}, ${period}, ${noiseVariance},`,
+      `    ${seconds}, ${distance}, (${measured}), (${y1.join(", ")}), (${y2.join(", ")}), ${resolution}, ` +
+      `${period}, ${noiseVariance},`,
       ...[")", "print(found)"],
     );
   }
@@ -53,11 +64,17 @@ export function pythonOf(shown, model, map = /** @type {ReturnType<typeof import
 
 /** Lines that make the motion, and what the copied code has to be given. */
 function motionOf({ A, b, motion, scenario }, { written, scenarios }) {
-  if (scenarios[scenario]?.track) return [`# motion = that of the scenario ${JSON.stringify(scenario)} that you gave to the lab`];
+  if (scenarios[scenario]?.track)
+    return [`# motion = that of the scenario ${JSON.stringify(scenario)} that you gave to the lab`];
   if (!isTyped({ motion })) return [`motion = affine(${matrix(A)}, ${list(b)})`];
   const { python } = written[motion];
-  const numbers = Object.fromEntries([...A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])), ...b.map((value, i) => [`b${i + 1}`, value])]);
-  const used = Object.keys(numbers).filter((name) => Object.values(python).some((text) => new RegExp(`\\b${name}\\b`).test(text)));
+  const numbers = Object.fromEntries([
+    ...A.flatMap((row, i) => row.map((value, j) => [`a${i + 1}${j + 1}`, value])),
+    ...b.map((value, i) => [`b${i + 1}`, value]),
+  ]);
+  const used = Object.keys(numbers).filter((name) =>
+    Object.values(python).some((text) => new RegExp(`\\b${name}\\b`).test(text)),
+  );
   const entry = (name) => python[name] ?? numbers[name];
   const rows = matrix(A.map((row, i) => row.map((_, j) => entry(`a${i + 1}${j + 1}`))));
   return [

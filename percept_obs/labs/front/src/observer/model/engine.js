@@ -77,7 +77,14 @@ export class Engine extends Runner {
       return known(read.believed ? constantMotion(read.believed) : motion, shape, lines.grid);
     };
     const table = memory.once("known", settings, believe, lines);
-    return this.layOut(result, lines, table, settings.hold, exact && measured.map((c) => exact[c]), settings.start.mode === "own");
+    return this.layOut(
+      result,
+      lines,
+      table,
+      settings.hold,
+      exact && measured.map((c) => exact[c]),
+      settings.start.mode === "own",
+    );
   }
 
   /** The least relative error that the noise leaves, where it is drawn and there is one. */
@@ -131,7 +138,10 @@ export class Engine extends Runner {
     if (!foe) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
     const found = { foe, foeTowards: null, circle: null };
     if (!form.circle) return found;
-    return { ...found, circle: Array.from(functions.circle([...parametersOf(settings), settings.threshold], [0, 0, 0])) };
+    return {
+      ...found,
+      circle: Array.from(functions.circle([...parametersOf(settings), settings.threshold], [0, 0, 0])),
+    };
   }
 }
 
@@ -145,7 +155,10 @@ export function focusOf(settings, functions, model) {
   return inImage(functions, parametersOf(settings));
 }
 
-/** Where the translation of a motion's numbers points in the image; null where that is at infinity, or nothing translates. */
+/**
+ * Where the translation of a motion's numbers points in the image; null where that is at infinity, or nothing
+ * translates.
+ */
 export function inImage(functions, numbers) {
   const foe = Array.from(functions.foe(numbers, [0, 0]));
   return foe.every((v) => Math.abs(v) < INFINITY) ? foe : null;

@@ -12,7 +12,10 @@ export function smallestEigenvalue(matrix) {
   return mean > 0 ? (a * d - b * b) / (mean + root) : mean - root;
 }
 
-/** Smallest eigenvalue of the integral of w w^T over the window that ends at each sample, from one window on; before that since the first. */
+/**
+ * Smallest eigenvalue of the integral of w w^T over the window that ends at each sample, from one window on; before
+ * that since the first.
+ */
 export function windowed(time, w, hidden, measured, window) {
   const samples = time.length;
   const size = hidden * hidden;

@@ -26,7 +26,9 @@ export function withoutNoise(settings) {
  * @returns {import("../../types.js").Shares}
  */
 export function sharesOf({ time, truth, width, runs: [run] }, quiet) {
-  const [right, noisy, still] = [truth, run.estimate, quiet.runs[0].estimate].map((rows) => columnOf(rows, width, width - 1));
+  const [right, noisy, still] = [truth, run.estimate, quiet.runs[0].estimate].map((rows) =>
+    columnOf(rows, width, width - 1),
+  );
   const each = Math.max(FEWEST, Math.ceil(time.length / PARTS));
   const parts = Math.max(1, Math.floor(time.length / each) - 1);
   const [times, added] = [new Float64Array(parts), new Float64Array(parts)];
@@ -50,7 +52,10 @@ export function lateNoise({ added }) {
   return late.length ? late[Math.floor(late.length / 2)] : NaN;
 }
 
-/** How far each sample moves the estimated inverse distance, less how far the true one moves meanwhile, where it is known. */
+/**
+ * How far each sample moves the estimated inverse distance, less how far the true one moves meanwhile, where it is
+ * known.
+ */
 export function stepOf({ truth, width }, { estimate }) {
   return derived(estimate, "step", () => {
     const [found, right] = [estimate, truth].map((rows) => rows && columnOf(rows, width, width - 1));

@@ -17,23 +17,29 @@ export function reasons(shown, model) {
     const over = `any ${readable(shown.excitation.window)} s`;
     found.push(
       least.value < UNEXCITED
-        ? `Not excited: in the window that ends at ${readable(least.time)} s the image hardly moves with one direction of ` +
+        ? `Not excited: in the window that ends at ${readable(least.time)} s the image hardly moves with one ` +
+          `direction of ` +
             `${hiddenNames.join(", ")} (smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}).`
-        : `Excited: in ${over} the image moves enough to tell ${hiddenNames.join(" and ")} (smallest eigenvalue of ∫ w wᵀ: ` +
+        : `Excited: in ${over} the image moves enough to tell ${hiddenNames.join(" and ")} (smallest eigenvalue of ` +
+          `∫ w wᵀ: ` +
             `${readable(least.value, 2)} or more).`,
     );
   }
   if (measured.length < hiddenNames.length) {
     const [name, drawn] = [names[measured[0]], shown.truth && !(settings.scenario in model.recordings)];
     const others = drawn ? ` Others, with the same ${name} and the same speed along it, are drawn in the image.` : "";
-    found.push(`Only ${name} is measured: one instant never tells both hidden coordinates, a window of time may.${others}`);
+    found.push(
+      `Only ${name} is measured: one instant never tells both hidden coordinates, a window of time may.${others}`,
+    );
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
   }
   const constant = !varies(settings, model);
   if (!constant && !(settings.scenario in model.recordings)) {
-    found.push("The motion varies over time, and so the focus of expansion moves: it is drawn where it is at the time shown.");
+    found.push(
+      "The motion varies over time, and so the focus of expansion moves: it is drawn where it is at the time shown.",
+    );
   }
   if (constant && settings.b.every((value) => value === 0)) {
     found.push("Nothing translates, b = 0: there is no focus of expansion, and images do not tell any distance.");
@@ -52,13 +58,15 @@ export function reasons(shown, model) {
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
     found.push(
-      "The stronger the shade of a place in the image, the less any unbiased observer can know of the distance of a point that is first seen there. " +
+      "The stronger the shade of a place in the image, the less any unbiased observer can know of the distance of a " +
+      "point that is first seen there. " +
         "Where there is no shade, the point comes behind the camera.",
     );
   }
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
   if (settings.noise.size > 0 && measured.length === 1 && biased) {
-    found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the estimate, it pushes it.");
+    found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the " +
+      "estimate, it pushes it.");
   }
   return found;
 }
@@ -66,9 +74,12 @@ export function reasons(shown, model) {
 /** What noise does to the error, in the chart's own parts where they are drawn. */
 function noiseInWords({ shares }) {
   const added = shares && lateNoise(shares);
-  if (!(added > 0)) return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
+  if (!(added > 0))
+    return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
   return (
-    `Noise adds ${percent(added, 2)} to the error after ${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s (filled in its chart). Without noise the error would follow the thin ` +
+    `Noise adds ${percent(added, 2)} to the error after ` +
+    `${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s (filled in its chart). Without noise the ` +
+    `error would follow the thin ` +
     "dashed line. More gain lets that line fall faster, and lifts what noise adds."
   );
 }
@@ -78,7 +89,8 @@ function boundInWords({ settings, bound }) {
   if (!bound) return [];
   const left = Number.isFinite(bound.at(-1)) ? ` At the end it is ${percent(bound.at(-1), 2)} of the distance.` : "";
   const uniform = settings.noise.kind === "uniform" ? " It is that of Gaussian noise of the same variance." : "";
-  return [`The dotted line is the bound: no unbiased observer has a smaller root mean square error; one run alone may be below it at times.${left}${uniform}`];
+  return [`The dotted line is the bound: no unbiased observer has a smaller root mean square error; one run alone ` +
+    `may be below it at times.${left}${uniform}`];
 }
 
 function leastOf({ time, smallest }) {

@@ -28,7 +28,9 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
   const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
   const start = rounded(truth.subarray(0, n));
   const lines = [
-    ...(own ? [] : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
+    ...(own
+      ? []
+      : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
     ...(textOfP(settings) ? [`P = ${settings.size}`] : []),
     ...(own ? [] : movedAs(settings, model)),
     ...formOf(settings, points, names, helpers),
@@ -37,7 +39,9 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
     `camera = Camera(period=${period}, noise=${NOISES[noise.kind]}(${noise.size}), dropout=${dropout}, reach=${view})`,
     `recording = record(scenario, camera=camera, seed=${seed})`,
   ];
-  settings.hidden.forEach((times, k) => times && lines.push(`recording = recording.without(${times.join(", ")}, point=${k})`));
+  settings.hidden.forEach(
+    (times, k) => times && lines.push(`recording = recording.without(${times.join(", ")}, point=${k})`),
+  );
   const options = [`hold="${settings.hold}"`, `step=${settings.step}`];
   if (settings.start === "rays") {
     names.add("FirstSight");
@@ -52,7 +56,10 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
     percept_obs: names,
     "percept_obs.points": helpers,
     "percept_obs.points.manoeuvre": own ? [] : ["Manoeuvre"],
-    ...(isTyped(settings) && { "percept_obs.system.motion": ["TIME as t"], sympy: model.written[settings.motion].functions }),
+    ...(isTyped(settings) && {
+      "percept_obs.system.motion": ["TIME as t"],
+      sympy: model.written[settings.motion].functions,
+    }),
   };
   const math = String(P).includes("math.") ? "import math\n\n" : "";
   const numpy = settings.start === "error" || String(P).includes("np.") ? "import numpy as np\n\n" : "";

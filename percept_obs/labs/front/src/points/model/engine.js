@@ -41,7 +41,9 @@ export class PointsEngine {
       whole: false,
     };
     if (whole) return this.completed(result, functions);
-    return settings.pictures.includes("gramian") ? { ...result, gramian: this.gramian(result, functions, false) } : result;
+    return settings.pictures.includes("gramian")
+      ? { ...result, gramian: this.gramian(result, functions, false) }
+      : result;
   }
 
   /** A result with all that is read off it. */

@@ -12,7 +12,8 @@ const MOST_NUMBERS = 1500;
  * matrix of the window that misses most directions or shows one least.
  *
  * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
- * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows some
+ * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows
+ * some
  * are looked at, and if the whole is wanted all about the weakest.
  */
 export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory, whole }) {
@@ -73,13 +74,28 @@ function partsOf(pairs) {
   let groups = /** @type {Set<number>[]} */ ([]);
   for (const pair of pairs) {
     const joined = groups.filter((group) => pair.some((vector) => group.has(vector)));
-    groups = [...groups.filter((group) => !joined.includes(group)), new Set([...pair, ...joined.flatMap((group) => [...group])])];
+    groups = [
+      ...groups.filter((group) => !joined.includes(group)),
+      new Set([...pair, ...joined.flatMap((group) => [...group])]),
+    ];
   }
-  return groups.map((group) => [...group].sort((u, v) => u - v).flatMap((vector) => [3 * vector, 3 * vector + 1, 3 * vector + 2]));
+  return groups.map((group) =>
+    [...group].sort((u, v) => u - v).flatMap((vector) => [3 * vector, 3 * vector + 1, 3 * vector + 2]),
+  );
 }
 
 /** Integrals from the first sample to each, nine numbers a block. */
-function gather({ begins, axes, states, entries }, { all, ofPoints }, { N, l }, n, time, images, kindOf, flows, memory) {
+function gather(
+  { begins, axes, states, entries },
+  { all, ofPoints },
+  { N, l },
+  n,
+  time,
+  images,
+  kindOf,
+  flows,
+  memory,
+) {
   const points = begins.length - 1;
   const size = 9 * all.length;
   const gathered = memory.room("gathered", size * time.length);
@@ -126,7 +142,8 @@ function between(gathered, { all }, first, last, n, kindOf, back, room) {
   const at = 9 * first;
   all.forEach(([u, v], block) => {
     const [U, V] = [back[kindOf[u]], back[kindOf[v]]];
-    for (let c = 0; c < 9; c++) inside[c] = gathered[9 * (last * all.length + block) + c] - gathered[9 * (first * all.length + block) + c];
+    for (let c = 0; c < 9; c++)
+      inside[c] = gathered[9 * (last * all.length + block) + c] - gathered[9 * (first * all.length + block) + c];
     for (let i = 0; i < 3; i++) {
       const a = inside[3 * i];
       const b = inside[3 * i + 1];

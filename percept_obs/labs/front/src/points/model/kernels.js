@@ -25,14 +25,22 @@ export class PointsKernels extends PrintedKernels {
     const [typed] = typedModule(this.model, motion);
     const coefficients = typed ? written?.[motion]?.states?.[state] : states[state].coefficients;
     const moved = { ...typed, key: typed ? `${state} ${typed.key}` : state, texts: { coefficients } };
-    return [{ key: "points", texts: { locate, point } }, moved, ...this.rates(settings), ...typedModule(this.model, textOfP(settings))];
+    return [
+      { key: "points", texts: { locate, point } },
+      moved,
+      ...this.rates(settings),
+      ...typedModule(this.model, textOfP(settings)),
+    ];
   }
 
   /** The rates of what is followed together, and those of a P that is computed. */
   rates(settings) {
     const layout = layoutFollowed(this.model, settings);
     const n = layout.names.length;
-    const printed = (name, textsOf) => ({ key: `${name} of ${n} states, ${settings.state}`, texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n)) });
+    const printed = (name, textsOf) => ({
+      key: `${name} of ${n} states, ${settings.state}`,
+      texts: derived(layout, `texts of ${name}`, () => textsOf(layout, n)),
+    });
     return [printed("x", textsOfX), ...(isComputed(settings) ? [printed("P", textsOfP)] : [])];
   }
 }

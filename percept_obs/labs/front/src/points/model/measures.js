@@ -62,5 +62,10 @@ export function spansOf(time, outputs, points, point) {
     if (open && open.last === k - 1) open.last = k;
     else spans.push({ first: k, last: k });
   }
-  return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: time[Math.min(last + 1, time.length - 1)] }));
+  return spans.map(({ first, last }) => ({
+    first,
+    last,
+    begin: time[first],
+    end: time[Math.min(last + 1, time.length - 1)],
+  }));
 }

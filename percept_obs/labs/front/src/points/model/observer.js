@@ -101,7 +101,16 @@ export class Observer {
     for (let s = 0; s < stops.length; s++) {
       const sample = stops[s];
       if (began.has(sample)) {
-        this.onRays(scene, { layout, own, first }, outputs.subarray(2 * sample * points), began.get(sample), seen, x, P, begun);
+        this.onRays(
+          scene,
+          { layout, own, first },
+          outputs.subarray(2 * sample * points),
+          began.get(sample),
+          seen,
+          x,
+          P,
+          begun,
+        );
         began.get(sample).forEach((k) => seen.add(k));
       }
       for (let i = 0; i < own; i++) estimate[sample * n + states + i] = x[i];
@@ -113,7 +122,9 @@ export class Observer {
         steps: steps.subarray(from, to),
         coefficients: coefficients.subarray(EACH * from * width),
         width,
-        inverses: inverses.constant ? inverses : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.entries) },
+        inverses: inverses.constant
+          ? inverses
+          : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.entries) },
         images: held.subarray((EACH + 1) * 2 * points * from),
         points,
         first,
@@ -160,7 +171,8 @@ export class Observer {
 
 /** How P moves, where it is computed. */
 function lawOf({ weight, forgetting, decrease }, begun, n) {
-  if (weight === "riccati") return { computed: true, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
+  if (weight === "riccati")
+    return { computed: true, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
   if (weight === "lyapunov") return { computed: true, information: 0, forgetting: 0, pull: unit(n, -decrease) };
   return { computed: false, information: 0, forgetting: 0, pull: null };
 }

@@ -6,7 +6,8 @@
 const LONGEST = 400;
 
 /**
- * Where the entries of P stand that ever differ from 0, when it begins as blocks of 3 x 3: those of one vector, those of
+ * Where the entries of P stand that ever differ from 0, when it begins as blocks of 3 x 3: those of one vector,
+ * those of
  * two states that a point has, and what A carries these to.  One of a pair is kept: `at`
  * says where, or -1.
  */
@@ -37,14 +38,17 @@ export function entriesOf({ rows, columns, begins, states }, n) {
 }
 
 /**
- * Texts of the functions of an estimate for a layout: `moveX` fills its rates without any correction, `place` the points'
+ * Texts of the functions of an estimate for a layout: `moveX` fills its rates without any correction, `place` the
+ * points'
  * coordinates, and `correct` what all points together say of the state.
  */
 export function textsOfX({ rows, columns, which, begins, axes, states, entries }, n) {
   const sums = (count) => Array.from({ length: count }, () => /** @type {string[]} */ ([]));
   const [rates, places, corrections] = [sums(n), sums(3 * (begins.length - 1)), sums(n)];
   const times = (factor, text) => (factor === 1 ? text : `${factor} * ${text}`);
-  rows.forEach((row, e) => rates[row].push(`known[at + ${which[e]}]${columns[e] === n ? "" : ` * now[${columns[e]}]`}`));
+  rows.forEach((row, e) =>
+    rates[row].push(`known[at + ${which[e]}]${columns[e] === n ? "" : ` * now[${columns[e]}]`}`),
+  );
   for (let p = 0; p + 1 < begins.length; p++) {
     for (let e = begins[p]; e < begins[p + 1]; e++) {
       places[3 * p + axes[e]].push(times(entries[e], `now[${states[e]}]`));
@@ -88,8 +92,12 @@ function moveText({ rows, columns, which, begins, axes, states, entries }, { at,
     }
   }
   const statements = pairs.map(([i, j], k) => {
-    const term = (e, other) => (at[rows[e] * n + other] < 0 ? [] : [`a${which[e]} * now[${n + at[rows[e] * n + other]}]`]);
-    const moved = rows.flatMap((_, e) => [...(columns[e] === i ? term(e, j) : []), ...(columns[e] === j ? term(e, i) : [])]);
+    const term = (e, other) =>
+      at[rows[e] * n + other] < 0 ? [] : [`a${which[e]} * now[${n + at[rows[e] * n + other]}]`];
+    const moved = rows.flatMap((_, e) => [
+      ...(columns[e] === i ? term(e, j) : []),
+      ...(columns[e] === j ? term(e, i) : []),
+    ]);
     const less = moved.length ? ` - (${moved.join(" + ")})` : "";
     const more = learnt[k].length ? ` + information * (${learnt[k].join(" + ")})` : "";
     return `out[${n + k}] = pull[${k}] - forgetting * now[${n + k}]${less}${more};`;
@@ -99,7 +107,8 @@ function moveText({ rows, columns, which, begins, axes, states, entries }, { at,
 }
 
 /**
- * Cholesky's method; not finite where P is not positive definite.  States with the fewest neighbours go first, so that little is
+ * Cholesky's method; not finite where P is not positive definite.  States with the fewest neighbours go first, so
+ * that little is
  * filled in.
  */
 function solveText({ at }, n) {

@@ -7,7 +7,8 @@ const SWEEPS = 30;
  * Smallest and largest eigenvalue, and how many lie below a share of the largest: reflections make the matrix
  * tridiagonal, and halving an interval finds them by counting.
  *
- * @param {number[][]} parts  numbers of rows that have no entry with those of another part: each part is a matrix by itself
+ * @param {number[][]} parts  numbers of rows that have no entry with those of another part: each part is a matrix by
+ *   itself
  */
 export function spectrum(matrix, n, share, parts) {
   const found = parts.map((rows) => tridiagonal(partOf(matrix, n, rows), rows.length));

@@ -22,7 +22,8 @@ export function verdict({ time, worst, settling, divergedAt }, model) {
 /** How fast the error decays, and what is guaranteed. */
 export function decayInWords({ fit }, bound) {
   if (!fit) return "no rate can be fitted to the last two thirds of the run";
-  const measured = `${readable(Math.abs(fit.rate) < NO_RATE ? 0 : fit.rate, 2)} per second, fitted from ${readable(fit.begin)} s on`;
+  const measured = `${readable(Math.abs(fit.rate) < NO_RATE ? 0 : fit.rate, 2)} per second, fitted from ` +
+    `${readable(fit.begin)} s on`;
   return bound === null ? measured : `${measured}; at least ${readable(bound, 2)} is guaranteed`;
 }
 
@@ -33,7 +34,11 @@ export function gramianInWords(shown, { verdicts, unseen }) {
   const found = derived(gramian.matrix, "eigen", () => eigen(gramian.matrix, n));
   const largest = Math.max(found.at(-1).value, 1e-300);
   const lost = found.filter(({ value }) => value <= unseen * largest).map(({ vector }) => vector);
-  const words = { window: short(window, 6), begin: short(shown.time[weakest]), least: short(Math.min(...gramian.smallest)) };
+  const words = {
+    window: short(window, 6),
+    begin: short(shown.time[weakest]),
+    least: short(Math.min(...gramian.smallest)),
+  };
   if (!lost.length) return filled(verdicts.holds, { ...words, direction: mainly(found[0].vector, names) });
   const directions = inWords(lost, names);
   const one = directions.length === 1;
@@ -44,7 +49,9 @@ export function gramianInWords(shown, { verdicts, unseen }) {
   });
   const state = truth.subarray(weakest * n, weakest * n + n);
   const size = Math.hypot(...state) || 1e-300;
-  const along = Math.hypot(...lost.map((vector) => vector.reduce((sum, value, i) => sum + (value * state[i]) / size, 0)));
+  const along = Math.hypot(
+    ...lost.map((vector) => vector.reduce((sum, value, i) => sum + (value * state[i]) / size, 0)),
+  );
   return along > 1 - 1e-4 ? text + verdicts[one ? "the scale" : "the scale too"] : text;
 }
 
@@ -52,10 +59,12 @@ export function reasons(shown, model) {
   const { settings } = shown;
   const found = [`${gramianInWords(shown, model)}.`, ...absencesInWords(shown)];
   if (settings.noise.size > 0 && settings.hold === "exact") {
-    found.push('Between samples the observer takes the exact signal, which has no noise. Choose "the last sample" for Hold to see what noise does.');
+    found.push('Between samples the observer takes the exact signal, which has no noise. Choose "the last sample" ' +
+      'for Hold to see what noise does.');
   }
   if (settings.input === 0 && settings.velocity.every((v) => v === 0)) {
-    found.push("There is no input, v = 0. Then twice all places move to twice all places, and the images stay the same: they never tell the scale.");
+    found.push("There is no input, v = 0. Then twice all places move to twice all places, and the images stay the " +
+      "same: they never tell the scale.");
   }
   return found;
 }
@@ -99,7 +108,9 @@ export function imagePlaneInWords({ points, images, estimated, absences, time })
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
   const points = Array.from({ length: shown.points }, (_, p) => {
-    const [depth, estimate] = [shown.depths, shown.estimated.depths].map((rows) => readable(rows[k * shown.points + p]));
+    const [depth, estimate] = [shown.depths, shown.estimated.depths].map((rows) =>
+      readable(rows[k * shown.points + p]),
+    );
     return `point ${p + 1}: depth ${depth} m, estimated ${estimate} m`;
   });
   return [`At ${readable(shown.time[k])} s`, `|error| ${readable(shown.size[k])}`, ...points].join(" · ");

@@ -19,7 +19,10 @@ export function readP({ written = {} }, settings) {
   return { entries, varies, python };
 }
 
-/** The inverse of a given P, as entries of its diagonal: a row for each of the times, or a single one where it is constant. */
+/**
+ * The inverse of a given P, as entries of its diagonal: a row for each of the times, or a single one where it is
+ * constant.
+ */
 export function inversesOf(model, settings, times, { typed }) {
   const { weight, size, final, duration } = settings;
   const scheduled = (t) => 1 / (size * (final / size) ** (t / duration));

@@ -21,7 +21,8 @@ export function pythonOf(shown, model) {
     ...(zero.length ? [`zero=(${zero.map((name) => `"${name}",`).join(" ")})`] : []),
     ...(earlier && !unknown.includes("d_s") ? ['earlier=("d_s",)'] : []),
   ];
-  if (refusal) return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
+  if (refusal)
+    return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
   const brought = broughtBy(model.own, settings.observers);
   const make = NOISES[noise.kind];
   const lines = [
@@ -39,10 +40,14 @@ export function pythonOf(shown, model) {
   const start = settings.start === "zero" ? ['{"y1": 0.0, "y2": 0.0, "ybar3": 0.0}'] : [];
   const makerOf = (name) => MAKERS[name] ?? [name, ""];
   const how = [...start, `hold="${settings.hold}"`, `step=${settings.step}`];
-  lines.push(...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }));
+  lines.push(
+    ...trackings(settings, model, { makerOf, form: "choice.form", options: how, tolerance: settings.tolerance }),
+  );
   const wanted = {
     percept_obs: [make, "StructureAndMotion", "pinhole", "record", "track", ...(isSampled(settings) ? [] : ["rigid"])],
-    "percept_obs.observers": new Set(settings.observers.filter((name) => !model.own[name]).map((name) => makerOf(name)[0])),
+    "percept_obs.observers": new Set(
+      settings.observers.filter((name) => !model.own[name]).map((name) => makerOf(name)[0]),
+    ),
     ...brought.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };

@@ -23,7 +23,17 @@ export class StructureEngine extends Runner {
     const recording = this.camera.record(settings, functions);
     const image = recording.truth;
     const { settledPart } = this.model;
-    const seen = { settings, ...recording, image, sampled: 3, scale, tolerance, settledPart, refusal, measured: [0, 1, 2] };
+    const seen = {
+      settings,
+      ...recording,
+      image,
+      sampled: 3,
+      scale,
+      tolerance,
+      settledPart,
+      refusal,
+      measured: [0, 1, 2],
+    };
     if (recording.problem || refusal) {
       const nothing = { hidden: [], hiddenNames: [], runs: [], choice: null, guard: null, limits: [], whole: true };
       return { ...seen, ...nothing, width: 3, names: OUTPUTS };
@@ -37,7 +47,18 @@ export class StructureEngine extends Runner {
     const judged = unknown.map((name) => (name === "d_s" ? this.model.judged : name)).join(", ");
     const fastest = (read) => this.greatestSpeed(read, seen.time, functions);
     const speed = this.memory.once("speed", settings, fastest, settings.period, seen.time.length);
-    const result = { ...seen, judged, speed, choice: { unknown, scaled, square }, hidden, hiddenNames, width, names, truth, runs: [] };
+    const result = {
+      ...seen,
+      judged,
+      speed,
+      choice: { unknown, scaled, square },
+      hidden,
+      hiddenNames,
+      width,
+      names,
+      truth,
+      runs: [],
+    };
     const lines = this.lines(result);
     const known = this.known(result, lines, functions);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
@@ -77,7 +98,10 @@ export class StructureEngine extends Runner {
     const { rows } = this.camera.velocities(settings, functions, time);
     let most = 0;
     for (let k = 0; k < rows.length; k += 9) {
-      most = Math.max(most, Math.hypot(rows[k + 6] - rows[k + 3], rows[k + 7] - rows[k + 4], rows[k + 8] - rows[k + 5]));
+      most = Math.max(
+        most,
+        Math.hypot(rows[k + 6] - rows[k + 3], rows[k + 7] - rows[k + 4], rows[k + 8] - rows[k + 5]),
+      );
     }
     return most;
   }

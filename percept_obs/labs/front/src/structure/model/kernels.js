@@ -37,7 +37,9 @@ export class StructureKernels extends PrintedKernels {
   /** The corollary that states a choice, with what it wants to be zero; null for another one. */
   corollary(settings) {
     const choice = this.model.unknowns[keyOf(settings)];
-    return choice?.corollary && choice.zero.every((name) => isZero(settings, name, this.model)) ? choice.corollary : null;
+    return choice?.corollary && choice.zero.every((name) => isZero(settings, name, this.model))
+      ? choice.corollary
+      : null;
   }
 
   /** Observers that somebody brought and that do not exist for so many unknowns, with the reasons. */

@@ -59,6 +59,8 @@ function scales({ choice, scale, width, time }, rows) {
 export function innovationOf({ outputs, width }, { estimate }) {
   return derived(estimate, "innovation", () => {
     const pairs = [0, 1, 2].map((c) => [lastSamples(columnOf(outputs, 3, c)), columnOf(estimate, width, c)]);
-    return pairs[0][0].map((_, k) => pairs.reduce((most, [last, found]) => Math.max(most, Math.abs(last[k] - found[k])), 0));
+    return pairs[0][0].map((_, k) =>
+      pairs.reduce((most, [last, found]) => Math.max(most, Math.abs(last[k] - found[k])), 0),
+    );
   });
 }

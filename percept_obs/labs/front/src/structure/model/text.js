@@ -9,7 +9,8 @@ const ONE_GAIN = ["identifier_based", "de_luca"];
 
 export function reasons(shown, model) {
   if (shown.problem) return [shown.problem];
-  if (shown.refusal) return ["The charts show what is measured. It cannot tell the unknowns apart, so nothing is estimated."];
+  if (shown.refusal)
+    return ["The charts show what is measured. It cannot tell the unknowns apart, so nothing is estimated."];
   const { settings, choice } = shown;
   const found = shown.limits.map(({ name, time, rate, step, remedy, shorter }) => {
     const values = {
@@ -23,16 +24,20 @@ export function reasons(shown, model) {
   if (choice.unknown.includes("d_s") && settings.noise.size + settings.noise.depth > 0) {
     const { sizes, determinants } = shown.guard;
     const most = sizes.reduce((largest, size, k) => Math.max(largest, size / Math.abs(determinants[k])), 0);
-    found.push(`Dividing by Ωg makes an error of the rate up to ${readable(most, 2)} times larger, about 1/ȳ3² times, and noise with it.`);
+    found.push(`Dividing by Ωg makes an error of the rate up to ${readable(most, 2)} times larger, about 1/ȳ3² ` +
+      `times, and noise with it.`);
   }
   if (choice.unknown.includes("d_s") && shown.runs.some(({ name }) => ONE_GAIN.includes(name))) {
     found.push(
-      "The identifier-based observer and De Luca's have one gain for all unknowns. But the columns of Ωg differ in size by a " +
+      "The identifier-based observer and De Luca's have one gain for all unknowns. But the columns of Ωg differ in " +
+      "size by a " +
         "factor of ȳ3: with the gain that fits the others, d_s hardly moves.",
     );
   }
   if (settings.bias !== 0 || settings.drift !== 0) {
-    found.push("ȳ3 is measured with a bias or a drift, which no observer can know: it becomes an error of the unknowns.");
+    found.push(
+      "ȳ3 is measured with a bias or a drift, which no observer can know: it becomes an error of the unknowns.",
+    );
   }
   if (settings.hold === "zero" && settings.period >= 1e-3) {
     found.push("The last sample is held: until the next one the innovation grows, and that shifts what ISMO finds.");
@@ -55,7 +60,8 @@ function plain(value) {
 
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
-  const row = (rows) => shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");
+  const row = (rows) =>
+    shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");
   const runs = shown.runs.map((run) => `${run.title} ${row(run.estimate)}`);
   return [`At ${readable(shown.time[k])} s`, `true ${row(shown.truth)}`, ...runs].join(" · ");
 }
