@@ -97,6 +97,7 @@ def motions(draw):
     return Scenario("drawn", affine(numbers((3, 3), 0.2), sideways + numbers(3, 0.1)), position, 1.0, pinhole())
 
 
+@pytest.mark.slow
 @given(motions())
 @drawn(50)
 def test_the_drawn_points_stay_in_view(scenario):
@@ -291,6 +292,7 @@ CHAINED = {"y1": SLOPE, "y2": PerspectiveSystem(affine(), chained()).measure("y2
 CHAINED["y1+y2"] = PerspectiveSystem(affine(), chained()).measure("y1", "y2")
 
 
+@pytest.mark.slow
 @each(EVERY)
 def test_chained_is_the_pinhole_with_the_axes_exchanged(name, form):
     """Ma 2005, (34), for every observer and all outputs."""

@@ -20,6 +20,7 @@ def found(recordings=SEEN, candidates=GAINS, **settings):
     return all_observers(recordings, candidates=candidates, **settings)
 
 
+@pytest.mark.slow
 def test_it_is_what_choosing_and_reporting_finds():
     start = {"y3": 1 / (2 * np.median(np.concatenate([1 / each.truth[:, 2] for each in SEEN[::2]])))}
     table = choose_and_report(SEEN[::2], SEEN[1::2], BOTH, lambda r, o: track(r, o, start), GAINS, after=(1.0, 2.0))

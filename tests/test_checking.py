@@ -44,7 +44,7 @@ def test_equivalent_forms_are_accepted():
 
 
 @pytest.mark.slow
-def test_equivalent_forms_are_accepted():
+def test_many_equivalent_forms_are_accepted():
     made = cases()
     gc.freeze()  # going through all cases to collect garbage is not what is timed
     hows, failed, seconds = accepted(range(FORMS), made)

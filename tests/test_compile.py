@@ -144,6 +144,7 @@ def test_javascript_agrees_without_a_canonical_form(monkeypatch, node):
     np.testing.assert_allclose(there.states, here.states, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize(("name", "outputs"), [pair for pair in PAIRS if pair[0] != "sliding_mode"])
 def test_javascript_agrees(monkeypatch, node, name, outputs):

@@ -67,6 +67,7 @@ def assert_alike(one, run, after, rtol):
         np.testing.assert_allclose(one[name].item(), value, rtol=rtol, atol=1e-12, err_msg=name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_a_run_is_that_of_track(make):
     observer = make(BOTH)

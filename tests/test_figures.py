@@ -137,6 +137,7 @@ def paint(figure, layout=False):
 # ---- signals
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MAKERS)
 def test_signals_draws_samples_truth_and_estimate_of_every_coordinate(runs, name):
     run = runs(name)
@@ -684,6 +685,7 @@ def test_pyplots_axes_are_shown_once(runs):
     assert not plt.fignum_exists(figure.number)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
     figure = figures.excitation(windowed(form("y1"), runs("chained").recording, 5))

@@ -13,6 +13,7 @@ from percept_obs.system.forms import partition
 OUTPUTS = [("y1",), ("y2",), ("y1", "y2"), ("y2", "y1")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_the_form_is_the_system_again(motion, surface):

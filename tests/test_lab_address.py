@@ -57,6 +57,7 @@ def random_states(name, count):
     return lab, found
 
 
+@pytest.mark.slow
 @pytest.mark.node
 def test_random_settings_go_into_an_address_and_back_unchanged(node):
     models, states = {}, []

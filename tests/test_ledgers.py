@@ -137,10 +137,11 @@ def test_every_entry_says_how_it_is_known(known):
             assert entry.expected in (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("entry", "letters"),
     [
-        pytest.param(entry, letters, id=f"{name} {entry.place}", marks=[pytest.mark.slow] * runs_observers(entry))
+        pytest.param(entry, letters, id=f"{name} {entry.place}")
         for name, known in PAPERS.items()
         for letters in [known.letters]
         for entry in known.formulas_that_hold

@@ -10,7 +10,8 @@ from percept_obs.points import constant, lyapunov, riccati, scheduled
 from percept_obs.points.scenarios import moving_body
 
 
-@pytest.mark.parametrize(("points", "states"), [(1, 3), (1, 4), pytest.param(2, 3, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("points", "states"), [(1, 3), (1, 4), (2, 3)])
 def test_the_error_dynamics_are_the_printed_ones(points, states):
     """rho' = (A - P^-1 C^T B^T B C) rho, Inaba et al. 2005, (12), for symbols in every place."""
     observer = luenberger(generic(points, states))

@@ -81,6 +81,7 @@ def test_the_derivation_ends_at_the_rate_and_shows_every_part():
     assert r"\frac{d}{dt}" in AFFINE._repr_latex_()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 @pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
 def test_every_step_that_leads_on_leads_to_the_rate(motion, surface):

@@ -173,12 +173,13 @@ ONE_POINT = {"points": [[0.0, 1.2, 2.5]], "duration": 60.0, "start": "error"}
 TWO_POINTS = {**ONE_POINT, "points": [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9]]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "rate", "least"),
     [
         (ONE_POINT, 0.179, 0.749),
-        pytest.param(TWO_POINTS, 0.085, 0.277, marks=pytest.mark.slow),
-        pytest.param({**TWO_POINTS, "size": 10.0}, 0.029, 0.277, marks=pytest.mark.slow),
+        (TWO_POINTS, 0.085, 0.277),
+        ({**TWO_POINTS, "size": 10.0}, 0.029, 0.277),
     ],
 )
 def test_the_lab_is_the_set_up_of_the_verified_figures(lab, settings, rate, least):

@@ -30,6 +30,7 @@ def slope(recording, observer, start, entry, change=2e-4):
     return (4 * difference(change / 2) - difference(change)) / 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", [BOTH, ONE], ids=START)
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_it_is_the_derivative_of_every_smooth_observer(make, form):
