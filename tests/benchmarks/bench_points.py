@@ -12,6 +12,7 @@ import os
 import sys
 import tempfile
 import time
+import timeit
 
 import numpy as np
 
@@ -26,12 +27,7 @@ STEPS = 6000
 
 def best_of(function, repeats):
     """Least time of several calls, in seconds."""
-    times = []
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - begin)
-    return min(times)
+    return min(timeit.repeat(function, number=1, repeat=repeats))
 
 
 def full(states):
