@@ -66,6 +66,14 @@ def chatter(
     See Also
     --------
     effort : steps of an adaptive solver
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, record, scenarios, smo
+    >>> observer = smo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"), switch="sign")
+    >>> table = chatter(record(scenarios.ma2005_eq35(), 2), observer, [0.01, 0.005], after=1)
+    >>> table["step"].round(4).tolist()
+    [0.01, 0.005]
     """
     import pandas as pd
 
@@ -140,6 +148,10 @@ def effort(
     most : int
         Evaluations after which it gives up.
 
+    Returns
+    -------
+    Effort
+
     Raises
     ------
     ValueError
@@ -148,6 +160,13 @@ def effort(
     See Also
     --------
     chatter : errors at fixed steps
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, scenarios, smo
+    >>> observer = smo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"))
+    >>> effort(scenarios.ma2005_eq35(), observer, 0.5).finished
+    True
     """
     from scipy import integrate
 

@@ -78,6 +78,14 @@ def compare(
     --------
     summary : medians and quantiles of the table
     percept_obs.ensemble : many runs of one observer
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ekf, ibo, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [ibo(form), ekf(form)])
+    >>> summary(table)["failed"].tolist()
+    [0, 0]
     """
     import pandas as pd
 
@@ -212,6 +220,14 @@ def relative_distance_errors(
     See Also
     --------
     compare : errors of the inverse distance of several observers, over time
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> run = track(record(scenarios.ma2005_eq35(), 5), ibo(form))
+    >>> bool(relative_distance_errors([run], after=4)[0] < 0.05)
+    True
     """
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
@@ -263,6 +279,10 @@ def best_setting(
     reference : str
         "truth", or the name of a measured distance of the recordings.
 
+    Returns
+    -------
+    Observer
+
     Raises
     ------
     ValueError
@@ -272,6 +292,14 @@ def best_setting(
     --------
     percept_obs.studies.tuning.choose_and_report : chooses the gains of several observers and reports their errors
     percept_obs.studies.likelihood.tune_by_likelihood : chooses a filter's gains without a truth
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen, settings = [record(scenarios.ma2005_eq35(), 3)], [ibo(form, gain=gain) for gain in (2, 10)]
+    >>> best_setting(seen, settings, lambda recording, observer: track(recording, observer)) is settings[1]
+    True
     """
     candidates = list(observers)
     if not (len(recordings) and candidates and len(after)):

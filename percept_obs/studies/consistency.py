@@ -32,6 +32,11 @@ JUDGEMENTS = MappingProxyType(
 def claimed_interval(run: Run) -> tuple[Array, Array]:
     """Ends of the interval of two claimed standard deviations around the estimate.
 
+    Parameters
+    ----------
+    run : Run
+        Of an observer that claims a covariance.
+
     Returns
     -------
     low, high : arrays of shape (K, n)
@@ -41,6 +46,14 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
     ------
     ValueError
         If the observer claims no covariance.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> low, high = claimed_interval(track(record(scenarios.ma2005_eq35(), 2), ekf(form)))
+    >>> bool((low <= high).all())
+    True
     """
     variances = np.diagonal(run.covariance, axis1=1, axis2=2)
     spread = DEVIATIONS * np.sqrt(np.maximum(variances, 0))  # round-off may leave one a little below zero
@@ -53,6 +66,11 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
 
     An interval of the inverse distance that reaches zero stands for distances without an upper end.
 
+    Parameters
+    ----------
+    run : Run
+        Of an observer that claims a covariance.
+
     Returns
     -------
     low, high : arrays of shape (K,)
@@ -63,6 +81,14 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     ------
     ValueError
         If the observer claims no covariance.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> nearest, farthest = claimed_distance(track(record(scenarios.ma2005_eq35(), 2), ekf(form)))
+    >>> bool((nearest <= farthest).all())
+    True
     """
     low, high = (end[:, -1] for end in claimed_interval(run))
     nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
@@ -186,6 +212,10 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
     confidence : float
         Probability of the two-sided intervals, between 0 and 1.
+
+    Returns
+    -------
+    Consistency
 
     Raises
     ------

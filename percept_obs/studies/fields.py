@@ -135,6 +135,10 @@ def field_bound(
     doubt : float
         Relative standard deviation of the prior, in each direction of space.
 
+    Returns
+    -------
+    FieldBound
+
     Raises
     ------
     ValueError

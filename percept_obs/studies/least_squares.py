@@ -80,6 +80,13 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     Notes
     -----
     Between samples the motion's coefficients are taken from the middle of the interval.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record, scenarios
+    >>> run = moving_window_least_squares(record(scenarios.ma2005_eq35(), 3, Camera(0.05)), window=1.0)
+    >>> bool(run.relative_error[-1] < 1e-6)
+    True
     """
     surface = recording.imaging_surface
     names = tuple(symbol.name for symbol in surface.image_coordinates)

@@ -106,6 +106,10 @@ def sensitivity(
     **settings
         Passed to `track`, such as ``hold``.
 
+    Returns
+    -------
+    Sensitivity
+
     Raises
     ------
     ValueError

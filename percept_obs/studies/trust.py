@@ -89,6 +89,10 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
     count : int
         Number of times, evenly spread from the first at which there are enough samples to the end.
 
+    Returns
+    -------
+    TrustOverTime
+
     Raises
     ------
     ValueError

@@ -96,6 +96,16 @@ def choose_and_report(
     --------
     side_by_side : the table as text, one row an observer
     percept_obs.studies.all_observers.all_observers : splits the recordings and chooses the start as well
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = [record(scenarios.ma2005_eq35(), 3, Camera(0.05, Uniform(0.01)), seed) for seed in range(2)]
+    >>> gains = {ibo: [{"gain": 2.0}, {"gain": 10.0}]}
+    >>> table = choose_and_report(seen[:1], seen[1:], form, lambda r, o: track(r, o), gains, after=[1.0])
+    >>> side_by_side(table).loc["identifier-based", "diverged"]
+    '0'
     """
     import pandas as pd
 

@@ -117,6 +117,10 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     recordings : Recording or sequence of Recording
         Of single points at rest, with the motion that is believed; no truth is needed.
 
+    Returns
+    -------
+    Diagnosis
+
     Raises
     ------
     ValueError

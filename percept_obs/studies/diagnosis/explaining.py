@@ -61,6 +61,21 @@ def explain(recording: Recording) -> Explained:
 
     The unknowns are its image coordinates and inverse distance at the middle sample.  Images do not change with the
     length of a ray, so that a point infinitely far away needs no other formula.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of a single point.
+
+    Returns
+    -------
+    Explained
+
+    Examples
+    --------
+    >>> from percept_obs import record, scenarios
+    >>> explain(record(scenarios.ma2005_eq35(), 4)).squares < 1e-8
+    True
     """
     from scipy.optimize import leastsq
 
