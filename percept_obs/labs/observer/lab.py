@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -35,6 +34,7 @@ from percept_obs.labs.observer.tracks import (
     with_affine_motion,
 )
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
+from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
@@ -202,7 +202,7 @@ class ObserverLab(Lab):
         """The true motion of a simulated point."""
         if settings["scenario"] in self._tables:
             return self._tables[settings["scenario"]]
-        return _motion(json.dumps({name: settings[name] for name in ("A", "b", "motion")}))
+        return _motion(settings)
 
     def analyse(self) -> Settings:
         """Sentences on excitation, error dynamics and the bias of noise for the present settings."""
@@ -254,9 +254,7 @@ class ObserverLab(Lab):
         """Recording of the camera, as far as the point stays in front of it."""
         if recording := self._recordings.get(settings["scenario"]):
             return recording
-        keys = ("surface", *SHAPES.values(), "X0", "noise", "dropout", "seed", "period", "duration")
-        used = json.dumps({key: settings[key] for key in keys})
-        return _simulated(used, self._motion_of(settings), self._registry.surfaces[settings["surface"]])
+        return _simulated(settings, self._motion_of(settings), self._registry.surfaces[settings["surface"]])
 
     def _chosen(self, settings: Settings, name: str) -> tuple[Observer, str]:
         """An observer with its default gains, and its switch."""
@@ -310,10 +308,9 @@ def _numbers(settings: Settings) -> np.ndarray:
     return np.array([*np.ravel(settings["A"]), *settings["b"]], dtype=float)
 
 
-@lru_cache(maxsize=16)
-def _motion(text: str) -> Motion:
+@kept_by_reads
+def _motion(settings: Settings) -> Motion:
     """The motion of settings: constant, or as it was typed."""
-    settings = json.loads(text)
     if settings["motion"].strip():
         typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
         return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers))))
@@ -322,17 +319,14 @@ def _motion(text: str) -> Motion:
         return affine(settings["A"], settings["b"])
 
 
-@lru_cache(maxsize=4)
-def _simulated(text: str, motion: Motion, seen_on: ImagingSurface) -> Recording:
-    settings = json.loads(text)
-    return record_while_seen(*_scene(settings, motion, seen_on), settings["seed"])
-
-
-def _scene(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> tuple[Scenario, Camera]:
+@kept_by_reads
+def _simulated(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> Recording:
+    """Recording of a simulated point, as far as it stays in front of the camera."""
     surface = shaped_surface(settings) if settings["surface"] in SHAPES else seen_on
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
-    return scenario, Camera(settings["period"], noise, settings["dropout"])
+    camera = Camera(settings["period"], noise, settings["dropout"])
+    return record_while_seen(scenario, camera, settings["seed"])
 
 
 def _believed(settings: Settings) -> Motion | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -16,6 +15,7 @@ from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.common_settings import gains, offering, over
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
+from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
@@ -24,7 +24,7 @@ from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_p
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.labs.structure.analysis import late_errors
 from percept_obs.labs.structure.samples import refuse_samples, zero_in
-from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VECTORS, VELOCITIES
+from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of
 from percept_obs.observers import Observer
@@ -299,15 +299,9 @@ def _velocities(settings: Settings, times: Array) -> Array:
 _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 
+@kept_by_reads
 def _recorded(settings: Settings, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
     """Recording of the camera, as far as the point stays in front of it."""
-    keys = ("ybar", "scale", *VECTORS, "motion", "rate", "noise", "bias", "drift", "seed", "period", "duration")
-    return _recorded_once(json.dumps({key: settings[key] for key in keys}), unknowns, samples)
-
-
-@lru_cache(maxsize=4)
-def _recorded_once(text: str, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
-    settings = json.loads(text)
     (y1, y2, ybar3), scale = settings["ybar"], settings["scale"]
     depth = 1 / (scale * ybar3)
     place = (y1 * depth, y2 * depth, depth)

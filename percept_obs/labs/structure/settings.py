@@ -19,7 +19,6 @@ MAPPED = (
 LONGEST = 100.0
 """Seconds that a run lasts at most."""
 
-VECTORS = ("v_c", "v_p", "v_c_swing", "v_p_swing", "w")
 STANDARD_GAINS: dict[str, dict[str, float]] = {
     "extended_kalman": {"noise_variance": 1e-7, "hidden_process_noise": 1.0, "hidden_variance": 100.0},
     "identifier_based": {"bound": 1e3},
