@@ -159,6 +159,20 @@ def test_every_folder_s_public_names_are_in_the_reference():
             assert name in MODULES, f"{name} has public names; put it into percept_obs/site/pages.py"
 
 
+def test_docstrings_begin_with_what_is_returned_or_done():
+    paths = [path for path in (ROOT / "percept_obs").rglob("*.py") if "node_modules" not in path.parts]
+    trees = [ast.parse(path.read_text("utf-8")) for path in paths]
+    things = ast.Module | ast.ClassDef | ast.FunctionDef
+    texts = [
+        text
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, things) and (text := ast.get_docstring(node))
+    ]
+    askew = [text for text in texts if re.match(r"(What|How|Whether|The same|Of|As what)\b", text)]
+    assert len(askew) < 0.02 * len(texts), askew
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_examples_of_the_docstrings_run(name, monkeypatch):

@@ -141,6 +141,11 @@ class Camera:
     ValueError
         If a number is out of its range.
 
+    See Also
+    --------
+    record : Records a scenario with a camera.
+    Uniform, Gaussian : Noise.
+
     Examples
     --------
     >>> from percept_obs import Camera, Gaussian

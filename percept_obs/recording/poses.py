@@ -67,19 +67,16 @@ class Poses:
         time, position, turns = (numbers(each, f"the poses' {name}") for name, each in vars(self).items())
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
-        if position.shape != (len(time), 3):
-            raise ValueError(
-                f"the positions have the shape {position.shape}; expected ({len(time)}, 3), as the times have it"
-            )
-        if turns.shape not in ((len(time), 4), (len(time), 3, 3)):
-            raise ValueError(
-                f"the orientations have the shape {turns.shape}; expected ({len(time)}, 4) for quaternions x, y, z, w "
-                f"or ({len(time)}, 3, 3) for matrices"
-            )
-        for what, values in (("time", time), ("position", position), ("orientation", turns)):
+        shapes = {"time": [()], "position": [(3,)], "orientation": [(4,), (3, 3)]}
+        for (name, expected), values in zip(shapes.items(), (time, position, turns), strict=True):
+            if values.shape not in [(len(time), *shape) for shape in expected]:
+                raise ValueError(
+                    f"the {name}s have the shape {values.shape}; expected {len(time)} rows, as the times have, of "
+                    f"shape {' or '.join(map(str, expected))}; a quaternion is x, y, z, w"
+                )
             bad = ~np.isfinite(values.reshape(len(time), -1)).all(axis=1)
             if bad.any():
-                raise ValueError(f"the {what} in row {bad.argmax() + 1} of the poses is not finite; leave the row out")
+                raise ValueError(f"the {name} in row {bad.argmax() + 1} of the poses is not finite; leave the row out")
         late = np.diff(time) <= 0
         if late.any():
             raise ValueError(
