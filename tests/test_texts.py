@@ -102,15 +102,13 @@ UNFINISHED = set(
     AllObservers AngleNoise Bound BoundMap Codistribution Consistency DecayBound DepthSource Derivation Derived
     Diagnosis Effort ErrorGramian FieldBound Finding GivenDepth Gramian LeastSquares Ledger LieRanks LyapunovMatrix
     MapKernel Measure Observability Option PatchDepth PerspectiveSystem PixelNoise RayError ScaledDepthCamera
-    Sensitivity SignalToNoise Step Target TrustOverTime Tuned affine along_the_line_of_sight apparent_size
-    best_setting bound_map chained chatter check_consistency choose_and_report chwa2019_crossing chwa2019_experiment
-    chwa2019_semigeneral chwa2019_simulation claimed_distance claimed_interval compare competitors constant
-    decay_bound diagnose efficiency effort ellipsoid explain family field_bound find first_seen grid hats homography
-    innovation instantaneous judge kept_within lie_ranks linear_gramian linear_view load_utias_points log_likelihood
-    lost_offset lyapunov map_kernel misbelieved moving_body moving_window_least_squares output_injection page
-    pinhole plane point_block ray_error ray_turning relative_distance_errors report riccati rigid scale_spread
-    scaled_dynamics scheduled seen_as semigeneral sensitivity side_by_side sphere summary sweep target_of
-    tolerable_amplification true_images trust_over_time ultimate_bound unified with_point
+    Sensitivity SignalToNoise Step Target TrustOverTime Tuned affine along_the_line_of_sight apparent_size bound_map
+    chained chwa2019_crossing chwa2019_experiment chwa2019_semigeneral chwa2019_simulation competitors constant
+    decay_bound efficiency ellipsoid family find first_seen grid hats homography innovation instantaneous judge
+    kept_within lie_ranks linear_gramian linear_view load_utias_points log_likelihood lost_offset lyapunov
+    map_kernel moving_body output_injection page pinhole plane point_block ray_error ray_turning report riccati
+    rigid scale_spread scaled_dynamics scheduled seen_as semigeneral side_by_side sphere summary sweep
+    tolerable_amplification true_images ultimate_bound unified with_point
     """.split()  # noqa: SIM905
 )
 """Public names whose docstrings still miss a section; none may be added."""
