@@ -206,10 +206,6 @@ def test_the_canary_sings():
     assert not watched
 
 
-def test_there_are_sixty_hostile_inputs():
-    assert len(set(HOSTILE)) >= 60
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [

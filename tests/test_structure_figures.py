@@ -63,13 +63,15 @@ def test_a_scale_that_is_not_positive_is_a_gap(unguarded):
 def test_the_image_has_rows_of_its_own(recording, run):
     straight = linear_view(recording)
     kalman = track(straight, ekf(straight.view.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
-    figure = figures.quantities([run, kalman], image=True)
+    figure = figures.quantities([run, kalman], ["sliding", "filter"], image=True)
     assert [ax.get_ylabel() for ax in figure.axes[:4]] == ["$y_{1}$", "$y_{2}$", "$y_{3}$ (1/m)", "$d_{s}$ (1/m)"]
     for ax, true in zip(figure.axes, (*recording.truth[-1, :2], 0.52), strict=False):
         for line in ax.lines:
             assert line.get_ydata()[-1] == pytest.approx(true, rel=2e-3)
     assert figure.text.startswith("Image coordinates, inverse depth and unknown quantities from 0 to 1.5 s")
     assert "y1: the truth, from 0.32 to" in figure.text
+    assert "filter 10.4" in figure.text
+    assert all(len(ax.lines) == 3 for ax in figure.axes)
 
 
 def test_cases_stand_side_by_side_with_one_legend(run):
@@ -91,14 +93,6 @@ def test_cases_of_different_heights_are_refused(run):
     for columns in ({}, {"no run": []}, {"three": run, "one": sliding(recording)}):
         with pytest.raises(ValueError, match="equally many unknown quantities are needed"):
             figures.cases(columns)
-
-
-def test_an_observer_of_the_linear_view_stands_beside_the_others(recording, run):
-    straight = linear_view(recording)
-    kalman = track(straight, ekf(straight.view.form, noise_variance=1e-6, hidden_variance=100.0), **fine)
-    figure = figures.quantities([run, kalman], ["sliding", "filter"])
-    assert all(len(ax.lines) == 3 for ax in figure.axes)
-    assert "filter 10.4" in figure.text
 
 
 def test_what_does_not_belong_together_is_refused(recording, run):

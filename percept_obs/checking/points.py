@@ -90,7 +90,7 @@ class Point:
             return self.mp.mpf(str(e.n(DIGITS + 5)))
         if isinstance(e, Intermediate):
             return self(e.written_out)
-        if e.func in _FUNCTIONS:
+        if e.func in _FUNCTIONS and not (self.opaque and isinstance(e, sp.Abs | sp.sign)):
             return getattr(self.mp, _FUNCTIONS[e.func])(*map(self, e.args))
         return self._opaque(e) if self.opaque and e.args else self._special(e)
 
@@ -110,58 +110,23 @@ class Point:
         return f"{complex(self(e)):.10e}"
 
     def _special(self, e: sp.Basic) -> Any:
-        if isinstance(e, sp.Abs | sp.sign):
-            return (abs if isinstance(e, sp.Abs) else self.mp.sign)(self(e.args[0]))
-        if e.func in (sp.Max, sp.Min):
-            return (max if e.func is sp.Max else min)(map(self._real, e.args))
-        if isinstance(e, sp.Piecewise):
-            for branch, condition in e.args:
-                if self._holds(condition):
-                    return self(branch)
-        if isinstance(e, sp.Integral) and [len(limit) for limit in e.limits] == [3]:
-            return self._integral(e)
-        raise NoValue
+        """Return the value of branches, extrema or an integral, as sympy finds it."""
+        parts = e.free_symbols | e.atoms(Intermediate)
+        try:
+            value = e.xreplace({part: sp.Float(self.mp.nstr(self(part), DIGITS), DIGITS) for part in parts})
+            return self.mp.convert(value.evalf(DIGITS))
+        except TypeError:  # it has no value, or a complex one is compared
+            raise NoValue from None
 
     def _drawn(self, name: str) -> Any:
         bits, sign = _random(self.seed, name)
         return sign * (self.mp.mpf(bits) / 2**60 + 0.2)
 
-    def _integral(self, e: sp.Integral) -> Any:
-        """Return a definite integral over one variable by quadrature; no value where that does not settle."""
-        variable, low, high = e.limits[0]
-
-        def integrand(value: Any) -> Any:
-            inside = Point(self.seed, self.exact)
-            inside.known[variable] = value
-            return inside(e.function)
-
-        value, error = self.mp.quad(integrand, [self(low), self(high)], error=True)
-        if not error < (1e-45 if self.exact else 1e-9):
-            raise NoValue
-        return value
-
-    def _real(self, e: sp.Basic) -> Any:
-        value = self(e)
-        if isinstance(value, complex | self.mp.mpc):
-            raise NoValue
-        return value
-
-    def _holds(self, condition: sp.Basic) -> bool:
-        if condition in (sp.true, sp.false):
-            return condition == sp.true
-        if isinstance(condition, sp.And | sp.Or):
-            return (all if isinstance(condition, sp.And) else any)(map(self._holds, condition.args))
-        if isinstance(condition, sp.Not):
-            return not self._holds(condition.args[0])
-        if not isinstance(condition, Relational):
-            raise NoValue
-        left, right = map(self._real, condition.args)
-        return bool(condition.func(*(sp.Integer(x) for x in ((left > right) - (left < right), 0))))
-
 
 _FUNCTIONS = {
     **{f: f.__name__ for f in (sp.exp, sp.log, sp.sin, sp.cos, sp.tan, sp.sinh, sp.cosh, sp.tanh, sp.sech)},
-    **{f: f.__name__ for f in (sp.asin, sp.acos, sp.atan, sp.atan2)},
+    **{f: f.__name__ for f in (sp.asin, sp.acos, sp.atan, sp.atan2, sp.sign)},
+    sp.Abs: "fabs",
 }
 
 

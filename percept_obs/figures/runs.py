@@ -81,9 +81,8 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     yield _levels(run, residuals, names, what)
     legend_above(last)
     for ax in (*upper, last):
-        _mark_resets_and_divergence(ax, run)
+        _mark_resets_and_divergence(ax, run, named=ax is last)
     legend_above(upper[0])
-    _say_where_it_diverged(last, run)
     return [*upper, last]
 
 
@@ -116,7 +115,7 @@ def _levels(run: Run, residuals: Array, names: Sequence[str], what: str) -> str:
     return f"Below them the absolute {what}s on a logarithmic axis{over}."
 
 
-def _mark_resets_and_divergence(ax: Axes, run: Run) -> None:
+def _mark_resets_and_divergence(ax: Axes, run: Run, named: bool) -> None:
     ax.set_xlim(run.elapsed[0], run.elapsed[-1])
     if len(run.resets):
         tick: dict[str, Any] = {"color": look.PURPLE, "linewidth": 1, "clip_on": False, "label": "reset"}
@@ -125,15 +124,9 @@ def _mark_resets_and_divergence(ax: Axes, run: Run) -> None:
         diverged = run.diverged_at - run.time[0]
         ax.axvspan(diverged, run.elapsed[-1], color=look.PALE, zorder=0)
         ax.axvline(diverged, color=look.GREY, linewidth=1)
-
-
-def _say_where_it_diverged(ax: Axes, run: Run) -> None:
-    if run.diverged_at is None:
-        return
-    diverged = run.diverged_at - run.time[0]
-    aside, ha = (6, "left") if diverged < run.elapsed[-1] / 2 else (-6, "right")
-    place: dict[str, Any] = {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points", "va": "center"}
-    ax.annotate(f"diverged at {diverged:.3g} s", (diverged, 0.5), (aside, 0), ha=ha, **place)
+        aside, ha = (6, "left") if diverged < run.elapsed[-1] / 2 else (-6, "right")
+        place: dict[str, Any] = {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points", "va": "center"}
+        ax.annotate(f"diverged at {diverged:.3g} s" if named else "", (diverged, 0.5), (aside, 0), ha=ha, **place)
 
 
 @figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
@@ -193,7 +186,7 @@ def runs_over_time(
     lower.set_ylabel(f"|error of {describe.letter(coordinate)}|")
     outside = curves.linear(upper, truth, estimates, f"the estimates of {said}")
     yield (
-        f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {_counted(runs)}, "
+        f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {len(runs)} run{'s'[: len(runs) - 1]}, "
         "and below them the absolute errors on a logarithmic axis."
     )
     for name, run, each in zip(labels, runs, looks, strict=True):
@@ -257,7 +250,7 @@ def distance(
     firm = known[reference] if reference else curves.bulk(estimates)
     errors = 100 * np.abs(estimates / firm - 1) if reference else np.full_like(estimates, np.nan)
     outside = curves.linear(upper, firm, estimates, f"the estimated {word}", reach=0.5)
-    yield f"Estimated {word} in metres over {describe.times(runs[0])}, {_counted(runs)}."
+    yield f"Estimated {word} in metres over {describe.times(runs[0])}, {len(runs)} run{'s'[: len(runs) - 1]}."
     for name, values in known.items():
         yield f"By the {name} it is {describe.span(values)} m."
     for name, run, error, each in zip(labels, runs, errors, looks, strict=True):
