@@ -186,7 +186,7 @@ def runs_over_time(
     lower.set_ylabel(f"|error of {describe.letter(coordinate)}|")
     outside = curves.linear(upper, truth, estimates, f"the estimates of {said}")
     yield (
-        f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {len(runs)} run{'s'[: len(runs) - 1]}, "
+        f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {_counted(runs)}, "
         "and below them the absolute errors on a logarithmic axis."
     )
     for name, run, each in zip(labels, runs, looks, strict=True):
@@ -250,7 +250,7 @@ def distance(
     firm = known[reference] if reference else curves.bulk(estimates)
     errors = 100 * np.abs(estimates / firm - 1) if reference else np.full_like(estimates, np.nan)
     outside = curves.linear(upper, firm, estimates, f"the estimated {word}", reach=0.5)
-    yield f"Estimated {word} in metres over {describe.times(runs[0])}, {len(runs)} run{'s'[: len(runs) - 1]}."
+    yield f"Estimated {word} in metres over {describe.times(runs[0])}, {_counted(runs)}."
     for name, values in known.items():
         yield f"By the {name} it is {describe.span(values)} m."
     for name, run, error, each in zip(labels, runs, errors, looks, strict=True):
