@@ -7,7 +7,7 @@ import pytest
 from examples import AFFINE, BOTH, NOISE, NOISY, ONE, ZERO
 from scipy.integrate import solve_ivp
 
-from percept_obs import Camera, ekf, ibo, record, scenarios, smo, track, windowed, with_point
+from percept_obs import Camera, ibo, record, scenarios, smo, track, windowed, with_point
 
 EQ35, EQ36 = scenarios.ma2005_eq35(), scenarios.ma2005_eq36()
 FROM_SAMPLE = None
@@ -87,13 +87,6 @@ def test_starting_from_the_first_sample_cures():
         run = track(record(EQ35, camera=NOISY, seed=seed), ibo(ONE), FROM_SAMPLE, language="numba")
         assert len(run.resets) == 0
         assert abs(run.error[-1, 2]) < 0.15
-
-
-@pytest.mark.slow
-def test_the_filter_converges_with_one_output():
-    for seed in range(10):
-        run = track(record(EQ35, camera=NOISY, seed=seed), ekf(ONE), ZERO)
-        assert abs(run.error[2000, 2]) < 0.01
 
 
 def ends(variance, seeds, period=0.01):

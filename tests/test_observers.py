@@ -270,19 +270,6 @@ def test_a_start_that_needs_parameters_says_so():
         range_identification(BOTH).initial_state({"y1": 0.1, "y2": 0.2}, {})
 
 
-def test_the_identifier_based_observer_with_both_outputs_is_de_lucas():
-    gain, lyapunov = 7.0, -0.3
-    recording = record(scenarios.ma2005_eq35(), 20)
-    runs = [
-        track(recording, observer, ZERO)
-        for observer in (
-            ibo(BOTH, gain=gain, lyapunov=lyapunov),
-            de_luca(BOTH, measured_gain=gain, hidden_gain=-(gain**2) * lyapunov),
-        )
-    ]
-    np.testing.assert_allclose(runs[0].estimate, runs[1].estimate, atol=1e-12)
-
-
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_the_identifier_based_flow_is_de_lucas_for_any_outputs(form):
     G, A, P, H, Lam = sp.symbols("G A P H Lambda", real=True)

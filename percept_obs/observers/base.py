@@ -123,6 +123,10 @@ class Observer:
         ------
         ValueError
             If a name is unknown, or a value is not finite or out of its range.
+
+        See Also
+        --------
+        in_units
         """
         known = [gain.name for gain in self.gains]
         unknown = sorted(set(values) - set(known))

@@ -37,6 +37,11 @@ def de_luca(form: CanonicalForm) -> Derived:
 
     It is the identifier-based observer with H = G A and Lambda = -G^2 P, without its reset.
 
+    See Also
+    --------
+    identifier_based : with a reset
+    spica : critically damped
+
     Notes
     -----
     A. De Luca, G. Oriolo, P. Robuffo Giordano, Feature depth observation for image-based visual servoing,
@@ -67,6 +72,10 @@ def spica(form: CanonicalForm) -> Derived:
 
     The error then shrinks like a critically damped oscillator with the natural frequency sqrt(Lambda) |w|, if |w| were
     constant: fast where the point is well observable, and at rest where it is not.
+
+    See Also
+    --------
+    de_luca
 
     Notes
     -----

@@ -52,6 +52,10 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     A measured output that starts from its first sample has the variance R of that sample, which then corrects nothing;
     `measured_variance` is that of a start that is given.
 
+    See Also
+    --------
+    linear_approximation
+
     Notes
     -----
     Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  R is by default that of uniform noise of

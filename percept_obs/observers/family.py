@@ -1,6 +1,7 @@
 """Families: each makes observers of one kind, and holds their title, gains and needs."""
 
 import inspect
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -180,7 +181,7 @@ class Family:
 
     def _docstring(self) -> str:
         text = inspect.getdoc(self.derive) or self.about.title
-        head, mark, notes = text.partition("\n\nNotes\n-----\n")
+        head, *rest = re.split(r"\n\n(?=See Also\n|Notes\n)", text, maxsplit=1)
         form = f"form : PartitionedSystem, or PerspectiveSystem\n    What is observed; needed: {self.about.needs}."
         parameters = "\n".join(map(str, (form, *self.options, *self.gains)))
         errors = "ValueError\n    If `refusal` has a reason against this form, or a gain or an option is refused."
@@ -188,7 +189,7 @@ class Family:
             errors = f"NotAffine\n    If there is no canonical form.\n{errors}"
         sections = {"Parameters": parameters, "Returns": "Observer", "Raises": errors}
         made = "".join(f"\n\n{title}\n{'-' * len(title)}\n{lines}" for title, lines in sections.items())
-        return f"{head}{made}{mark}{notes}"
+        return "\n\n".join([f"{head}{made}", *rest])
 
     def __repr__(self) -> str:
         return f"{self.key}{self._signature()}"

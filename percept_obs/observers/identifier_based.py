@@ -48,6 +48,10 @@ def identifier_based(form: CanonicalForm) -> Derived:
         x2hat' = -G^2 P w e + g(x1, x2hat)
         when |xhat| >= gamma M:  xhat <- M xhat / |xhat|
 
+    See Also
+    --------
+    de_luca : without the reset
+
     Notes
     -----
     Ma, Chen and Moore 2005, (11)-(16), pp. 65-66.  A and P are factors of the identity; the printed P = -1/2 has a sign

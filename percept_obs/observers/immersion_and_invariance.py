@@ -51,6 +51,10 @@ def immersion_and_invariance(form: CanonicalForm) -> Derived:
     The error e = x2 - x2hat then obeys e' = -lambda w w^T e + g(x1, x2) - g(x1, x2hat), without an innovation.
     Its estimate of the measured coordinates is the measurement.
 
+    See Also
+    --------
+    de_luca : with an innovation
+
     Notes
     -----
     D. Karagiannis, A. Astolfi, A new solution to the problem of range identification in perspective vision systems,

@@ -82,6 +82,10 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
     larger than the absolute value of each entry of w^T x2.  With b = 0 the observer's gain, and so the noise that it
     passes on, does not grow with time; Theorem 1 asks b to be positive.
 
+    See Also
+    --------
+    range_identification, sliding_mode, ultimate_bound, tolerable_amplification
+
     Notes
     -----
     D. Chwa, Integral-sliding-mode-observer-based structure and motion estimation of a single object in general motion
@@ -147,6 +151,10 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     ------
     GainTooSmall
         If alpha is 1 or more.
+
+    See Also
+    --------
+    integral_sliding_mode
 
     Notes
     -----

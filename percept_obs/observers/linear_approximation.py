@@ -55,6 +55,10 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
 
     The iterates run side by side, as one cascade; the last one is the estimate.
 
+    See Also
+    --------
+    extended_kalman
+
     Notes
     -----
     L. Ma, Vision-based measurements for dynamic systems and control, PhD thesis, Utah State University, 2004, after

@@ -50,6 +50,10 @@ def range_identification(form: CanonicalForm, switch: str) -> Derived:
 
     With both image coordinates measured there is no estimate near the focus of expansion, where w = 0.
 
+    See Also
+    --------
+    integral_sliding_mode
+
     Notes
     -----
     W. E. Dixon, Y. Fang, D. M. Dawson, T. J. Flynn, Range identification for perspective vision systems, IEEE Trans.

@@ -55,6 +55,10 @@ def sliding_mode(form: CanonicalForm, switch: str) -> Derived:
         lambda' = 2 alpha1 |e| where |e| > 2 delta, else 0
         when |xhat| >= gamma M:  xhat <- M xhat / |xhat|
 
+    See Also
+    --------
+    identifier_based, integral_sliding_mode
+
     Notes
     -----
     Ma, Chen and Moore 2005, (21)-(23), pp. 67-68.  lambda starts at `switching_gain`.  `noise_variance`

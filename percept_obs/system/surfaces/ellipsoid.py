@@ -49,6 +49,10 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
     ValueError
         If Q is not symmetric and positive definite, or outputs is not 2 or 3.
 
+    See Also
+    --------
+    sphere
+
     Examples
     --------
     >>> ellipsoid([[1, 0, 0], [0, 1, 0], [0, 0, 4]]).project([0, 0, 2])

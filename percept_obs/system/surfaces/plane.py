@@ -27,6 +27,10 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
     ValueError
         If the normal vector is not three finite numbers with n3 not zero, or outputs is not 2 or 3.
 
+    See Also
+    --------
+    pinhole, chained
+
     Examples
     --------
     >>> from percept_obs import plane

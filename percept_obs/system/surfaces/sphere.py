@@ -26,6 +26,10 @@ def sphere(outputs: int = 2) -> ImagingSurface:
     ValueError
         If outputs is not 2 or 3.
 
+    See Also
+    --------
+    unified, ellipsoid
+
     Examples
     --------
     >>> from percept_obs import sphere

@@ -32,6 +32,10 @@ def unified(xi: float | None = None) -> ImagingSurface:
     ValueError
         If xi is negative or not finite.
 
+    See Also
+    --------
+    pinhole, sphere
+
     Notes
     -----
     C. Geyer, K. Daniilidis, A unifying theory for central panoramic systems and practical implications, ECCV 2000;
