@@ -63,7 +63,7 @@ def spoiled(recordings, fault, draw):
 
 
 def named(fault, seed):
-    """What is named first when a mistake was made, or none with the fault "nothing"."""
+    """Key of the mistake that is named first; the fault "nothing" leaves the recordings as they are."""
     recordings, draw = drawn(seed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -71,7 +71,7 @@ def named(fault, seed):
 
 
 def figures(count, clean):
-    """What is named first in so many recordings with each mistake, and in so many clean ones."""
+    """Counts of the keys that are named first, by the mistake that was made."""
     found = {fault: Counter(named(fault, seed) for seed in range(count)) for fault in FAULTS}
     return found | {"nothing": Counter(named("nothing", 1000 + seed) for seed in range(clean))}
 

@@ -85,7 +85,7 @@ GAINS = {
     "spica": {"hidden_gain": 110},
     "integral_sliding_mode": {"feedback": 2, "switching_gain": 0.5, "sharpening": 0},
 }
-"""Those for a camera that a hand carries, where the defaults are for another one."""
+"""Gains for a camera that a hand carries, where the defaults are for another one."""
 
 
 def judged(make, seed, kind):

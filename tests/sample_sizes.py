@@ -1,4 +1,4 @@
-"""How many samples a study takes: enough to notice what breaks, and all of them with ALL_SAMPLES=1."""
+"""Sample sizes of studies: enough to notice what breaks, and all of them with ALL_SAMPLES=1."""
 
 import os
 

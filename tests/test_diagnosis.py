@@ -1,4 +1,4 @@
-"""What a camera's owner got wrong is named first, with its size, and nothing is named where nothing is wrong."""
+"""A mistake of a camera's owner is named first, with its size, and nothing is named where nothing is wrong."""
 
 from dataclasses import replace
 

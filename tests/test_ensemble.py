@@ -41,7 +41,7 @@ LOSSY = Camera(0.02, NOISY.noise, dropout=0.1)
 
 
 def expected(run, after):
-    """What `track` knows of what an ensemble counts."""
+    """Statistics of a run of `track`."""
     error, late = np.abs(run.error[:, -1]), run.elapsed >= after - 1e-9
     found = run.outcome()
     told = {

@@ -41,7 +41,7 @@ b1 = [0.4, 0.5]
 
 @pytest.fixture(scope="module")
 def alone():
-    """The same on this machine."""
+    """The ensemble computed on this machine."""
     return ensemble(EQ35, ibo(BOTH), **SETTINGS)
 
 
@@ -92,6 +92,7 @@ def test_a_killed_sweep_goes_on_where_it_was(alone, tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("", "cannot read"),
         ("scenario = ", "is no TOML"),
         ('scenario = "ma2005_eq35"\nobserver = "ibo"\nnoise = 1\nstore = "a.zarr"', "does not know noise"),
         ('scenario = "eq99"\nobserver = "ibo"\nstore = "a.zarr"', "no scenario 'eq99'; there are ma2005_eq35"),
@@ -100,13 +101,9 @@ def test_a_killed_sweep_goes_on_where_it_was(alone, tmp_path):
         ('scenario = "ma2005_eq35"\nobserver = "identifier_based"\nstore = "a.zarr"\nduration = "long"', "duration"),
     ],
 )
-def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, message, capsys):
+def test_a_file_that_makes_no_sense_or_is_not_there_is_refused(tmp_path, text, message, capsys):
     file = tmp_path / "sweep.toml"
-    file.write_text(text)
+    if text:
+        file.write_text(text)
     assert main(["sweep", str(file)]) == 2
     assert message in capsys.readouterr().err
-
-
-def test_a_file_that_is_not_there_is_told(tmp_path, capsys):
-    assert main(["sweep", str(tmp_path / "none.toml")]) == 2
-    assert "cannot read" in capsys.readouterr().err

@@ -83,16 +83,16 @@ def test_what_leaves_the_field_of_view_tells_no_more():
 
 @pytest.mark.parametrize("surface", [pinhole(), sphere()], ids=["pinhole", "sphere"])
 def test_it_is_the_bound_of_the_trajectory(surface):
-    away, seconds, doubt = 4.0, 1.0, 0.5
+    away, seconds, prior = 4.0, 1.0, 0.5
     motion = affine([[0.0, -0.1, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.0]], [0.5, 0.1, 0.2])
-    found = field_bound(surface, motion, PixelNoise(), RIGHT, seconds=seconds, distance=away, size=5, doubt=doubt)
+    found = field_bound(surface, motion, PixelNoise(), RIGHT, seconds=seconds, distance=away, size=5, prior=prior)
     start = away * np.array([np.sin(RIGHT / 4), 0.0, np.cos(RIGHT / 4)])
     variance = (PixelNoise().sigma * pixel(surface, RIGHT, PixelNoise().across)) ** 2
     recording = record(Scenario("one direction", motion, start, seconds, surface), camera=Camera(0.05))
     seen = sp.Matrix([*surface.image, 1 / surface.distance]).jacobian(POINT)
     there = np.array(seen.subs(dict(zip(POINT, start, strict=True))), dtype=float)
     form = PerspectiveSystem(motion, surface).measure("y1", "y2")
-    bound = cramer_rao(recording, form, there @ there.T * (doubt * away) ** 2, variance)
+    bound = cramer_rao(recording, form, there @ there.T * (prior * away) ** 2, variance)
     end = recording.points[-1]
     back = np.linalg.inv(np.array(seen.subs(dict(zip(POINT, end, strict=True))), dtype=float))
     along = end / np.linalg.norm(end) @ back

@@ -32,16 +32,18 @@ def test_a_varying_motion_is_followed_by_its_middles():
     assert worst[1] < worst[0] / 3
 
 
-def test_one_sample_determines_nothing():
-    found = moving_window_least_squares(record(scenarios.ma2005_eq35(), 1), 0.5)
-    assert np.isinf(found.points[0]).all()
-    assert np.isinf(found.distance[0])
-
-
-def test_on_the_focus_of_expansion_nothing_is_determined():
-    towards = Scenario("towards", affine(np.zeros((3, 3)), [0.1, 0.05, 0.5]), (0.4, 0.2, 2.0), 3, pinhole())
-    found = moving_window_least_squares(record(towards, camera=Camera(period=0.1)), 2.0)
-    assert not np.isfinite(found.distance).any()
+@pytest.mark.parametrize(
+    ("scenario", "window"),
+    [
+        (scenarios.ma2005_eq35(), 0.05),  # one sample
+        (Scenario("towards", affine(np.zeros((3, 3)), [0.1, 0.05, 0.5]), (0.4, 0.2, 2.0), 3, pinhole()), 2.0),
+    ],
+    ids=["one sample", "focus of expansion"],
+)
+def test_what_determines_no_point_has_no_distance(scenario, window):
+    found = moving_window_least_squares(record(scenario, 3, Camera(period=0.1)), window)
+    assert np.isinf(found.points).all()
+    assert np.isinf(found.distance).all()
 
 
 def test_lost_samples_are_left_out():

@@ -1,4 +1,4 @@
-"""What cannot be right is flagged without a truth, good estimates are not, and a picture says when."""
+"""Estimates that cannot be right are flagged without a truth, good ones are not, and a picture says when."""
 
 from dataclasses import replace
 
@@ -75,7 +75,7 @@ def test_a_pause_is_shaded_and_not_trusted():
 
 
 def test_it_says_what_was_known_then():
-    """What comes later changes nothing."""
+    """Later samples change nothing."""
     run = track(paused(), FILTER, {"y3": 0.25})
     early = trust_over_time(track(paused().between(0, run.time[50]), FILTER, {"y3": 0.25}), count=1)
     whole = trust_over_time(run, count=3)

@@ -15,17 +15,17 @@ from percept_obs.studies.likelihood import tune_by_likelihood
 
 RIGID = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 RANGES = {"noise_variance": (1e-7, 1e-2), "process_noise": (1e-9, 1e-2), "hidden_variance": (1e-3, 10)}
-"""What is searched by likelihood."""
+"""Ranges that are searched by likelihood."""
 
 GRID = grid(
     noise_variance=(1e-6, 1e-5, 1e-4, 1e-3), process_noise=(0, 1e-6, 1e-5, 1e-4, 1e-3), hidden_variance=(0.1, 1)
 )
-"""What is searched by the median error; it includes what is right."""
+"""Gains that are searched by the median error; they include the right ones."""
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a tuning did on recordings that it did not see: mean NIS over its expectation, median NEES, depth error."""
+    """Result on other recordings: mean NIS over its expectation, median NEES, depth error, share within 2 sigma."""
 
     gains: dict
     nis: float
@@ -42,7 +42,7 @@ class Report:
 
 
 def reported(observer, recordings, follow, after):
-    """How a filter does on recordings."""
+    """Report of a filter on recordings."""
     runs = [follow(recording, observer) for recording in recordings]
     nis = np.concatenate([run.nis[np.isfinite(run.nis)] for run in runs])
     nees = np.concatenate([run.nees("y3") for run in runs])
@@ -81,7 +81,7 @@ def far_away():
 
 
 def by_hand():
-    """What a hand carries past points at several metres."""
+    """A camera that a hand carries past points at several metres."""
 
     def make(seed):
         camera = Camera(0.04, Gaussian(0.002))

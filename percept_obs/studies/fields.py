@@ -106,7 +106,7 @@ def field_bound(
     distance: float = 5.0,
     period: float = 0.05,
     size: int = 41,
-    doubt: float = 1.0,
+    prior: float = 1.0,
 ) -> FieldBound:
     """Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
 
@@ -132,8 +132,8 @@ def field_bound(
         Seconds between samples.
     size : int
         Directions across the field of view.
-    doubt : float
-        Relative standard deviation of the prior, in each direction of space.
+    prior : float
+        Relative standard deviation of a point before the first image, in each direction of space.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def field_bound(
     >>> wide[0] > wide[1]
     True
     """
-    positive(seconds=seconds, distance=distance, period=period, doubt=doubt)
+    positive(seconds=seconds, distance=distance, period=period, prior=prior)
     if motion.signal is None:
         raise ValueError(f"the {motion.name} motion has no numbers; give it some, such as affine(A, b)")
     if not 0 < field_of_view <= surface.field_of_view + 1e-6:
@@ -176,7 +176,7 @@ def field_bound(
     starts = distance * _directions(angles).reshape(-1, 3)
     inside = _inside(starts, field_of_view) & surface.sees(starts)
     starts = starts[inside]
-    information = np.eye(3) / (doubt * distance) ** 2 + np.zeros((len(starts), 3, 3))
+    information = np.eye(3) / (prior * distance) ** 2 + np.zeros((len(starts), 3, 3))
     rows = [surface.image[names.index(name)] for name in measured]
     gradient = vectorised(POINT, [row.diff(axis) for row in rows for axis in POINT], surface.values)
     for Phi, moved in zip(*displacements(motion, times), strict=True):

@@ -35,7 +35,7 @@ USUAL_SPEED = 0.2
 
 COLUMNS = (
     *("observer", "gains", "at_edge", "reference", "after", "median", "nine_in_ten"),
-    *("behind", "reset", "diverged", "cost", "refusal", "doubt"),
+    *("behind", "reset", "diverged", "cost", "refusal", "warning"),
 )
 """Columns of the table."""
 
@@ -83,7 +83,7 @@ def choose_and_report(
         smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
         nine_in_ten (the 90 % quantile), behind (number of recordings without an estimate in front of the camera
         then), reset, diverged (numbers of recordings), cost (seconds of computing for a second of data), refusal (why
-        the observer cannot follow these recordings, if it cannot; its numbers are then NaN) and doubt (that the steps
+        the observer cannot follow these recordings, if it cannot; its numbers are then NaN) and warning (that the steps
         were too long for it, if they were).
 
     Raises
@@ -130,7 +130,7 @@ def choose_and_report(
         except DoesNotFit as error:
             refusal, chosen = str(error), None
         if chosen is None:
-            about = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal, "doubt": ""}
+            about = {"observer": make.name, "gains": "", "at_edge": "", "refusal": refusal, "warning": ""}
             rows += [about | {"reference": reference, "after": seconds} for reference, seconds in questions]
             continue
         values = {gain.name: gain.value for gain in chosen.gains if gain.name in settings[0]}
@@ -157,7 +157,7 @@ def _errors(
         warnings.simplefilter("always", StepTooLong)
         runs, cost = timed(estimate, recordings)
     too_long = [str(warning.message) for warning in caught if issubclass(warning.category, StepTooLong)]
-    about = about | {"cost": cost, "refusal": "", "doubt": "".join(too_long[:1])}
+    about = about | {"cost": cost, "refusal": "", "warning": "".join(too_long[:1])}
     about["reset"] = sum(len(run.resets) > 0 for run in runs)
     about["diverged"] = sum(run.diverged_at is not None for run in runs)
     rows = []
@@ -218,7 +218,7 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
             found[name] = "–" if first.refusal else f"{rows[name].max():.0f}"
         found["cost"] = "–" if first.refusal else f"{1e6 * first.cost:.0f} us/s"
         edge = first.at_edge and f"; at the edge of what was tried: {first.at_edge}"
-        remark = "; ".join(filter(None, [first.gains + edge, first.doubt]))
+        remark = "; ".join(filter(None, [first.gains + edge, first.warning]))
         return found | {"remark": f"cannot: {first.refusal}" if first.refusal else remark}
 
     lines = {label: line(rows) for label, rows in table.groupby("observer", sort=False)}

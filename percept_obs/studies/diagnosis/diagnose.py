@@ -177,9 +177,9 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
         best, after, left = _scan(undone, experiment.values, experiment.continuous)
         if abs(best - experiment.none) < experiment.smallest:
             continue
-        told, value = experiment.sentence(best), best if experiment.continuous else math.nan
+        sentence, value = experiment.sentence(best), best if experiment.continuous else math.nan
         gain, evidence = after.gain(before, 1), after.evidence(before)
-        findings.append(Finding(experiment.key, told, evidence, gain, value, experiment.values, left))
+        findings.append(Finding(experiment.key, sentence, evidence, gain, value, experiment.values, left))
     if len(bare) > 1:
         findings.append(_mismatch(bare, before))
     else:

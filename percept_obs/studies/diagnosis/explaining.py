@@ -1,4 +1,4 @@
-"""How well a point explains the samples of a recording, if the motion is as it is known: nonlinear least squares."""
+"""Nonlinear least squares: how well one point explains the samples of a recording, under the motion as it is known."""
 
 from __future__ import annotations
 
