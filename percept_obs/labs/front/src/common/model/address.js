@@ -26,7 +26,7 @@ export function partsOf(fragment) {
   return new Map(text.split("&").map((part) => [part.split("=", 1)[0], part.slice(part.indexOf("=") + 1)]));
 }
 
-/** Whether a fragment is longer than any link of a lab. */
+/** True if a fragment is longer than any link of a lab. */
 export function isTooLong(fragment) {
   return fragment.length > MOST;
 }
@@ -108,7 +108,7 @@ function kindAt(root, place) {
   return kind;
 }
 
-/** What stands at a place only with all of its parts must have them. */
+/** Refuse a group that lacks one of its parts. */
 function complain(kind, value, place) {
   if (kind.kind === "optional" && value !== null) complain(kind.of, value, place);
   if (!GROUPS.includes(kind.kind)) return;
@@ -203,7 +203,7 @@ function decoded(text) {
   }
 }
 
-/** What an address has, in words short enough for a sentence. */
+/** A part of an address, short enough for a sentence. */
 function quoted(text) {
   return `"${text.length > 40 ? `${text.slice(0, 40)}…` : text}"`;
 }

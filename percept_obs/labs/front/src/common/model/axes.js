@@ -98,7 +98,7 @@ export function ticksOn({ low, high, log }, linear) {
 }
 
 /**
- * What the map of settings is over: an observer that is followed, and two axes that have a meaning for it.
+ * Observer and two axes of the map of settings.
  *
  * @param {any} settings
  * @param {any} model

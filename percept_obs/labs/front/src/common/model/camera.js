@@ -1,5 +1,5 @@
 // @ts-check
-// What cameras of single points share: when they sample, what noise adds, how far the point stays in front.
+// Cameras of single points: sample times, noise, the time until the point leaves the front.
 
 import { constantPath } from "./path.js";
 import { draws } from "./random.js";
@@ -10,7 +10,7 @@ const NOTHING = new Float64Array(0);
 /** The kinks of a motion that has none. */
 export const NO_BREAKS = /** @type {number[]} */ ([]);
 
-/** What is recorded where there is a problem. */
+/** An empty recording with the problem that there is. */
 function nothing(problem) {
   return { problem, time: NOTHING, truth: NOTHING, outputs: NOTHING, leavesAt: null };
 }
@@ -38,7 +38,7 @@ export function errorOf(kind, size, draw) {
 export class PointCamera {
   constructor(model, memory, drawsOf, remedy) {
     this.model = model;
-    /** What to do, in the panel's words, when the point starts behind the camera. */
+    /** Remedy in the panel's words when the point starts behind the camera. */
     this.remedy = remedy;
     this.memory = memory;
     this.drawsOf = drawsOf;

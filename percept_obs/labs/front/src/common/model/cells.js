@@ -3,13 +3,13 @@
 
 import { gainAxes, valueIn } from "./axes.js";
 
-/** What became of a run. */
+/** Outcomes of a run. */
 export const [NOT_YET, FOLLOWED, DIVERGED, IMPOSSIBLE] = [0, 1, 2, 3];
 
 /** Numbers of a cell: what became of it, its settling time in s, its relative error at the end. */
 export const EACH_CELL = 3;
 
-/** How many cells along a side the first picture may have, for which a hand that moves waits, and those that follow. */
+/** Cells along a side of the first picture, for which a moving hand waits, and of those that follow. */
 export const FIRST = [4, 6, 8, 12, 16];
 export const THEN = [24, 64, 128];
 

@@ -1,4 +1,4 @@
-// What the Python texts of all labs have in common.
+// Python code of a run: the parts that all labs share.
 
 import { switchOf } from "./settings.js";
 
@@ -14,17 +14,17 @@ export function imports(wanted) {
   return lines.filter(([, names]) => names).map(([place, names]) => `from ${place} import ${names}\n`).join("");
 }
 
-/** How long the point is seen, which may be shorter than what was asked for. */
+/** Duration until the point leaves, which may be shorter than the one of the settings. */
 export function durationOf({ settings, time, leavesAt }) {
   return leavesAt === null ? settings.duration : time.at(-1);
 }
 
-/** What of the names is in modules, and a line for each that is in none and must be there already. */
-export function broughtBy(own, names) {
-  const brought = names.map((name) => own?.[name]).filter(Boolean);
+/** Imports of the user's observers and surfaces, and a comment for each that cannot be imported. */
+export function userDefined(own, names) {
+  const used = names.map((name) => own?.[name]).filter(Boolean);
   const modules = {};
-  for (const { module, name } of brought) if (module) (modules[module] ??= []).push(name);
-  const lines = brought
+  for (const { module, name } of used) if (module) (modules[module] ??= []).push(name);
+  const lines = used
     .filter(({ module }) => !module)
     .map(({ name }) => `# ${name} = the one that you gave to the lab`);
   return { modules, lines };

@@ -1,10 +1,10 @@
-// What follows from a result's rows of numbers: made when it is first asked for, and kept as long as they are.
+// Values derived from a result's rows: made when they are first needed, and kept as long as the rows.
 
 import { column, knownAt, withColumns } from "./tables.js";
 
 const kept = new WeakMap();
 
-/** What is made of these rows under a name, once. */
+/** The value made of these rows under a name, once. */
 export function derived(rows, name, make) {
   if (!kept.has(rows)) kept.set(rows, new Map());
   const found = kept.get(rows);

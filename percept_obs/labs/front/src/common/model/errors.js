@@ -1,4 +1,4 @@
-// How far an estimate is from the truth, and since when it has settled.
+// Relative errors of estimates, and settling times.
 
 /**
  * |estimated distance / true distance - 1| at each sample, from inverse distances, as OnePoint.relative_error():
@@ -14,7 +14,7 @@ export function distanceError(right, found, estimate, width) {
   return error;
 }
 
-/** The same of one estimate, whose coordinates begin at a place. */
+/** Relative error of one estimate, whose coordinates begin at a place. */
 export function errorOfOne(right, found, estimate, begin, width) {
   let sum = 0;
   for (let at = begin; at < begin + width; at++) sum += estimate[at] - estimate[at];
@@ -22,7 +22,7 @@ export function errorOfOne(right, found, estimate, begin, width) {
   return found > 0 ? Math.abs(right / found - 1) : Infinity;
 }
 
-/** Whether an error has been in its tolerance for long enough, as a part of the run, to be sure of it. */
+/** True if an error has been in its tolerance for a large enough part of the run. */
 export function settled(settling, length, part) {
   return length - settling >= part * length;
 }
@@ -32,7 +32,7 @@ export function settlingTime(time, error, tolerance) {
   return settlingFrom(time, (k) => error[k], tolerance);
 }
 
-/** The same of errors that are asked for from the last one back, as far as need be. */
+/** Settling time from errors that are computed from the last one back, as far as needed. */
 export function settlingFrom(time, errorAt, tolerance) {
   let inside = time.length;
   while (inside > 0 && errorAt(inside - 1) < tolerance) inside--;

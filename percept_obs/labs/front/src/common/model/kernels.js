@@ -61,7 +61,7 @@ export class PrintedKernels {
     return { key, observer, texts: Object.fromEntries(texts) };
   }
 
-  /** Whether an observer's gain may have this value. */
+  /** True if an observer's gain may have this value. */
   allows(observer, gain, value) {
     return this.modules.get("gains")?.[`${observer}_${gain}`]([value], [0])[0] === 1;
   }

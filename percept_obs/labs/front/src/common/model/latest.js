@@ -9,7 +9,7 @@
  */
 
 /**
- * What was found last.  Once there is something beside the page to ask, of all tasks that wait only the latest is sent.
+ * The latest result.  Once there is a worker, of all tasks that wait only the latest is sent.
  */
 export class Latest {
   constructor(results, onFound) {
@@ -33,7 +33,7 @@ export class Latest {
     this.spare = [];
   }
 
-  /** Whether what was found is of these settings. */
+  /** True if the latest result is of these settings. */
   has({ settings, whole }) {
     return this.shown?.settings === settings && (this.shown.whole || !whole);
   }
@@ -89,7 +89,7 @@ export class Latest {
     if (error) throw new Error(error);
   }
 
-  /** What was beside the page is gone: from now on all is found here. */
+  /** The worker is gone: from now on the page computes. */
   lose() {
     this.beside = this.waiting = null;
     if (this.asked) this.take({});

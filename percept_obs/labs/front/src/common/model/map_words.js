@@ -12,7 +12,7 @@ export function placeInWords({ across, up }, place) {
   return [across, up].map(({ label }, c) => `${label} ${readable(place[c], 4)}`).join(", ");
 }
 
-/** What became of a cell's run. */
+/** Outcome of a cell's run in words. */
 export function cellInWords({ kind, settling, error }) {
   if (kind === IMPOSSIBLE) return "no run";
   if (kind === DIVERGED) return "diverges";
@@ -46,7 +46,7 @@ export function mapInWords({ found, present }, shows, title) {
   return parts.map((part) => `${part}.`).join(" ");
 }
 
-/** How far a map is. */
+/** Progress of a map in words. */
 export function stateInWords({ found, present, whole, finest }) {
   if (!found) return "being computed";
   const cells = whole ? finest : found.levels.at(-1).cells;

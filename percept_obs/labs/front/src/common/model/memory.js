@@ -1,4 +1,4 @@
-// What a computation keeps from one run to the next. Arrays of a room are never handed out.
+// Results and arrays that are kept from one run to the next. Arrays of a room are never handed out.
 
 import { same, valueAt } from "./settings.js";
 

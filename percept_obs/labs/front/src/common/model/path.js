@@ -38,7 +38,7 @@ export function constantPath(start, rates, grid, index, points) {
 }
 
 /**
- * What a time adds to a position: the rows of a matrix and beside it those of a vector, from what is added to 0 and
+ * Motion of a position over a time: the rows of a matrix and beside it those of a vector, from the images of 0 and
  * to the
  * unit vectors.  The position itself is left out, since its rounding would add up over the steps.
  */

@@ -3,7 +3,7 @@
 
 import { sampleAt } from "./tables.js";
 
-/** How many seconds of the recording pass in one second. */
+/** Seconds of the recording that pass in one second. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 
 /** Parts into which steps by hand divide what is in sight. */

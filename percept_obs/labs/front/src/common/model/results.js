@@ -9,7 +9,7 @@ export class Results {
     this.found = [null, null];
   }
 
-  /** What is shown of settings, and of the run that they keep; whole, or as far as it is drawn. */
+  /** Result of settings and of their kept run; whole, or as far as it is drawn. */
   of(settings, whole) {
     const { kept } = settings;
     const ghost = kept ? this.find(1, kept, true) : null;

@@ -6,7 +6,7 @@ import { settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
 import { arriving, EACH, held, lastSamples } from "./tables.js";
 
-/** What the engines of labs share; each lays out the inputs of its observers by itself. */
+/** Base class of the engines that run observers. */
 export class Runner {
   constructor(model) {
     this.model = model;
@@ -24,7 +24,7 @@ export class Runner {
     throw new Error("a lab says what its verdicts judge");
   }
 
-  /** What all observers of a run are given: steps, held outputs, samples as they arrive, known numbers. */
+  /** Inputs of all observers of a run: steps, held outputs, samples as they arrive, known numbers. */
   layOut({ time, outputs, measured, sampled, tolerance }, lines, known, hold, exact, own) {
     const { grid, index } = lines;
     const columns = measured.map((c) => columnOf(outputs, sampled, c));
@@ -137,7 +137,7 @@ function readEstimates(functions, kernel, states, inputs, gains, { width, time, 
     functions.estimate(x, out);
     for (let c = 0; c < width; c++) estimate[k * width + c] = out[c];
     if (!functions.gap) continue;
-    // Of the first sample, the innovation counts for all that follow.
+    // The innovation of the first sample counts for all that follow.
     if (k === 0) measured.forEach((c, m) => (x[after + 1 + m] = columns[m][0] - out[c]));
     x[after] = time[k] - time[0];
     lacking[k] = functions.gap(x, which)[0];

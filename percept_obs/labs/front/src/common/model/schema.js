@@ -1,7 +1,7 @@
-// What may be set: the kinds and ranges that Python's schema says, in the words of the page; types.js says what each
+// Settings of a lab: kinds and ranges of Python's schema, with the page's words; types.js says what each
 // holds.
 
-/** What observers may take for the outputs between samples. */
+/** Holds of the outputs between samples. */
 export const HOLD = { choices: { zero: "the last sample", first: "a line to the next", exact: "the exact signal" } };
 export const NOISE = { kind: { choices: { uniform: "uniform", gaussian: "Gaussian" } } };
 

@@ -1,6 +1,6 @@
 // Settings: comparing them, reading and changing them by the place of a value such as "noise.size" or "b.0".
 
-/** Whether two settings are the same, whatever the order of their keys. */
+/** True if two settings are equal, whatever the order of their keys. */
 export function same(one, other) {
   if (Object.is(one, other)) return true;
   if (typeof one !== "object" || typeof other !== "object" || !one || !other) return false;
@@ -13,7 +13,7 @@ export function valueAt(settings, place) {
   return place.split(".").reduce((part, key) => part?.[key], settings);
 }
 
-/** What of the settings changes when a value is put at a place. */
+/** Changes of the settings that put a value at a place. */
 export function changeAt(settings, place, value) {
   const [key, ...rest] = place.split(".");
   if (!rest.length) return { [key]: value };
@@ -22,7 +22,7 @@ export function changeAt(settings, place, value) {
   return { [key]: Array.isArray(part) ? Object.assign([...part], change) : { ...part, ...change } };
 }
 
-/** How an observer switches, or nothing; under this name its loop is filed. */
+/** The switch of an observer, or an empty text; its loop has this name. */
 export function switchOf(settings, name) {
   return settings.switches?.[name] ?? "";
 }
@@ -49,7 +49,7 @@ export function settingsAfter(act, standard) {
   return changed;
 }
 
-/** What has changed from some settings to others, in a lab's names of them. */
+/** Sentence on the changes from some settings to others, with a lab's names of them. */
 export function changesInWords(before, after, names) {
   const changed = Object.keys(after).filter((key) => key !== "kept" && !same(before[key], after[key]));
   if (!changed.length) return "Nothing has changed.";

@@ -2,7 +2,7 @@
 // The geometry of a scene in the camera's X, Y, Z: how it is looked at, how much of it, and where a point comes to lie.
 
 /**
- * How a scene is looked at when it opens: from the side and a little from above, so that depths do not hide each other.
+ * View of a scene when it opens: from the side and a little from above, so that depths do not hide each other.
  */
 export const OPENING_LOOK = { turn: 0.95, tilt: 0.35 };
 

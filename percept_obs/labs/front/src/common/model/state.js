@@ -1,4 +1,4 @@
-// What a lab is asked to show: settings, the preset that is open, which time is in sight and which line; and the way
+// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way
 // back.
 
 import { same } from "./settings.js";
@@ -23,7 +23,7 @@ import { same } from "./settings.js";
  */
 
 const MOST_STEPS = 200;
-/** What is held while a zoom may go on; no setting is called so. */
+/** Name of the step while a zoom may go on; no setting is called so. */
 const LOOKING = "sight";
 
 /** Settings with their history: one step is what a hand does from taking hold to letting go. */

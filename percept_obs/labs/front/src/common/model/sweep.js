@@ -68,24 +68,24 @@ export class Sweep {
     this.key = key;
     this.id += 1;
     if (!base) return;
-    // What fills maps may have changed, while the map is the same.
+    // Another worker may fill the same map.
     const levels = found?.key === key ? found.levels : [];
     this.sent.set(this.id, { key, plan, base, tolerance, duration: settings.duration, levels });
     const first = FIRST.findLast((cells) => cells * cells * this.cost < SOON) ?? FIRST[0];
     this.filler.ask({ id: this.id, settings, base, first });
   }
 
-  /** Whether what is shown is of the present settings. */
+  /** True if the shown map is of the present settings. */
   get present() {
     return this.found?.key === this.key;
   }
 
-  /** How many cells a side the finest level has that is all there; 0 as long as there is none. */
+  /** Cells along a side of the finest complete level; 0 as long as there is none. */
   get finest() {
     return this.found?.levels.findLast(({ cells, done }) => done === cells ** 2)?.cells ?? 0;
   }
 
-  /** Whether all is there that the page fills. */
+  /** True if the map is complete. */
   get whole() {
     return this.present && this.finest >= LAST;
   }
@@ -161,7 +161,7 @@ export function sharesOf({ across, up }, settings, functions) {
 }
 
 /**
- * What a level holds: how many runs settle, diverge, or are none, and the cells with the least and the greatest value.
+ * Summary of a level: numbers of runs that settle, diverge, or are none, and the cells of least and greatest value.
  */
 export function countsOf({ values }, what) {
   const counts = { settled: 0, never: 0, diverged: 0, none: 0, least: -1, greatest: -1 };

@@ -1,4 +1,4 @@
-// What an observer may know at the instants of every step, laid out once; see tracking.py.
+// Tables of the signals that an observer knows at the instants of every step; see tracking.py.
 
 import { INSTANTS, PLANT_STEP, STEP_ROUNDING } from "./integrator.js";
 

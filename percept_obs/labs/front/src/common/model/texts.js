@@ -1,4 +1,4 @@
-// What was printed for the page when the package was built: unpacked when a lab opens, parsed part by part when needed.
+// Printed texts of the page: unpacked when a lab opens, parsed part by part when needed.
 
 /** @returns {Promise<Record<string, any>>} a lab's model: its printed texts, and the data from Python */
 export async function modelOf(texts, given) {

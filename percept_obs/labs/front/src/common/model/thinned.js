@@ -8,7 +8,7 @@ import { indicesIn } from "./timeline.js";
 /** Numbers of what is in sight at most; and samples that there are at least, one for two pixels of a chart. */
 const [MOST, LEAST] = [30_000, 375];
 
-/** What a result has rows of, one for each sample; what it has by other clocks has other names. */
+/** Names of a result's arrays with a row for each sample; those of other clocks have other names. */
 const ROWS = new Set([
   ...["outputs", "truth", "image", "estimate", "deviation", "error", "bound", "quiet", "sizes", "determinants"],
   ...["images", "seenImages", "depths", "size", "errors", "relative", "worst"],
@@ -67,14 +67,14 @@ function spaced(from, to, most) {
   return Array.from({ length: count }, (_, j) => (j ? Math.floor(from + every * (j + ((j * APART) % 1))) : from));
 }
 
-/** How many numbers a sample has in all. */
+/** Total of numbers of a sample. */
 function widthOf(result, count) {
   const all = new Set();
   changed(result, (rows) => all.add(rows) && rows);
   return Array.from(all, (rows) => rows.length / count).reduce((sum, width) => sum + width, 0);
 }
 
-/** The same with other rows: of the result itself, of its runs, and of what else it is made of. */
+/** A result with other rows: its own, those of its runs, and those of its other parts. */
 function changed(value, pick, rows = false) {
   if (ArrayBuffer.isView(value)) return rows ? pick(value) : value;
   if (Array.isArray(value)) return value.map((each) => changed(each, pick, rows));

@@ -33,7 +33,7 @@ export function zoomed({ low, high }, whole, factor, about) {
   return { low: begin, high: begin + length };
 }
 
-/** What of the time is shown; it stays as it is while a hand moves settings. */
+/** The span of time that is shown; it stays as it is while a hand moves settings. */
 export class Timeline {
   constructor() {
     /** @type {Span} */

@@ -19,7 +19,7 @@ export function typedModule({ written }, text) {
   return [{ key: `motion ${text}`, texts: { typed } }];
 }
 
-/** What Python read of the texts in settings, and in those that are kept. */
+/** Python's answers to the texts in settings and in the kept ones. */
 export function readOf(settings, { written = {} }) {
   const texts = [settings, settings.kept].flatMap((each) => Object.values(each ?? {}));
   return Object.fromEntries(
@@ -36,7 +36,7 @@ export function typedRows(typed, numbers, times) {
 }
 
 /**
- * The same at the instants of a grid's steps, in rows that are kept: while a hand moves a number, only its column is
+ * Rows at the instants of a grid's steps, which are kept: while a hand moves a number, only its column is
  * written again, and what was typed is evaluated again only if it uses that number.
  */
 export function typedAlong(kept, typed, numbers, grid) {
@@ -71,7 +71,7 @@ function evaluate(typed, numbers, times, rows) {
   }
 }
 
-/** Whether settings have a motion that is typed. */
+/** True if settings have a typed motion. */
 export function isTyped({ motion }) {
   return motion.trim() !== "";
 }

@@ -1,4 +1,4 @@
-// What happened, in words. Those of verdicts come from Python, so that both say the same.
+// Verdicts in words, which come from Python, so that both say the same.
 
 import { settled } from "./errors.js";
 import { readable, short } from "./scales.js";
@@ -10,7 +10,7 @@ export function filled(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
 }
 
-/** What happened to one observer, as Run.verdict() in Python. */
+/** Verdict on one observer, as Run.verdict() in Python. */
 export function verdict(run, shown, model) {
   const { verdicts, remedy } = model;
   const say = (which, values) => filled(verdicts[which], values);
@@ -30,7 +30,7 @@ export function verdict(run, shown, model) {
   return settledInWords(judged, run.settling, length, model) + besides;
 }
 
-/** What became of a relative error, with its last value; `settling` is infinite where it ends outside. */
+/** Verdict on a relative error, with its last value; `settling` is infinite where it ends outside. */
 export function settledInWords({ judged, error, tolerance }, settling, length, { verdicts, settledPart, farOff }) {
   const inside = settled(settling, length, settledPart) ? "converged" : "late";
   const outside = Number.isNaN(error) ? "none" : error === Infinity ? "behind" : "outside";
@@ -43,7 +43,7 @@ export function settledInWords({ judged, error, tolerance }, settling, length, {
   });
 }
 
-/** The same of one observer in a few words, for those who compare. */
+/** Short verdict on one observer, for comparisons. */
 export function verdictInShort({ divergedAt, settling, error }, { time, tolerance }, { settledPart, farOff }) {
   if (divergedAt !== null) return `diverged after ${short(divergedAt - time[0])} s`;
   if (!error) return "no truth to compare with";
@@ -66,7 +66,7 @@ export function percent(share, digits = 3) {
 
 export function readingAt(shown, cursor) {
   const k = sampleAt(shown.time, cursor);
-  // Of many observers only what is hidden: what is measured differs little.
+  // Of many observers only the hidden coordinates: the measured ones differ little.
   const told = shown.runs.length > MANY ? shown.hidden : shown.names.map((_, c) => c);
   const row = (rows) => told.map((c) => `${shown.names[c]} = ${readable(rows[k * shown.width + c])}`).join(", ");
   const parts = [`At ${readable(shown.time[k])} s`];

@@ -1,4 +1,4 @@
-// What a map of the observer lab may be over, besides gains: settings, and what several of them say together.
+// Axes of a map of the observer lab besides gains: settings, and combinations of several.
 
 import { axisAt } from "../../common/model/axes.js";
 import { shapeOf, varies } from "./camera.js";

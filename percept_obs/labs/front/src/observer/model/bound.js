@@ -13,7 +13,7 @@ export function noBound({ scenario, noise }, { recordings }) {
     : "There is no bound without noise: every error can become as small as you like. Give the samples some noise.";
 }
 
-/** What the bound begins with: the variance of the noise, and the one that Python takes for hidden coordinates. */
+/** Variances at the start of the bound: of the noise, and of hidden coordinates as in Python. */
 export function variancesOf({ noise: { kind, size } }, { bound }) {
   return { noise: size * size * bound.noise[kind], hidden: bound.hidden };
 }
@@ -82,7 +82,7 @@ function move(P, Phi) {
   }
 }
 
-/** What a sample of a coordinate leaves of P. */
+/** Update P by a sample of a coordinate. */
 function correct(P, c, noise) {
   const total = P[(N + 1) * c] + noise;
   const shared = P.slice(N * c, N * c + N);

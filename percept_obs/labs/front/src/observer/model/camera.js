@@ -1,4 +1,4 @@
-// What a camera records: a point moves, is projected and sampled; or a real track. As record() does in Python.
+// Camera of one point, which moves, is projected and sampled; or a real track. As record() in Python.
 
 import { errorOf, NO_BREAKS, PointCamera } from "../../common/model/camera.js";
 import { derived } from "../../common/model/derived.js";
@@ -66,12 +66,12 @@ export class Camera extends PointCamera {
   }
 }
 
-/** Whether the motion of settings is not the same at all times. */
+/** True if the motion of settings varies. */
 export function varies(settings, { recordings, scenarios }) {
   return settings.scenario in recordings || Boolean(scenarios[settings.scenario]?.track) || isTyped(settings);
 }
 
-/** The numbers of the surface's shape, as Python's offered.py keeps them. */
+/** The numbers of the surface's shape, as in Python's surfaces.py. */
 export function shapeOf({ surface, normal, xi }) {
   return { plane: normal, unified: [xi] }[surface] ?? [];
 }

@@ -1,4 +1,4 @@
-// What may keep an observer from the truth, as far as the lab can switch it off: one cause at a time.
+// Causes of an error that the lab can switch off, one at a time.
 
 /** @type {[string, (settings: Record<string, any>) => any][]} words, and the changes without the cause, if any */
 const CAUSES = [

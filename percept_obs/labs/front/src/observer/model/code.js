@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { broughtBy, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { userDefined, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
 import { switchOf } from "../../common/model/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../common/model/typed.js";
@@ -13,10 +13,10 @@ export function pythonOf(
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
-  const brought = broughtBy(model.own, [settings.surface, ...settings.observers]);
+  const own = userDefined(model.own, [settings.surface, ...settings.observers]);
   const surface = model.own[settings.surface]?.call ?? `${settings.surface}()`;
   const lines = [
-    ...brought.lines,
+    ...own.lines,
     ...(recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names, model)),
   ];
   const motion = recorded ? recorded.kind : "affine";
@@ -57,7 +57,7 @@ export function pythonOf(
     );
   }
   const ours = settings.observers.filter((name) => !model.own[name]);
-  const wanted = { percept_obs: names, "percept_obs.observers": ours, ...brought.modules };
+  const wanted = { percept_obs: names, "percept_obs.observers": ours, ...own.modules };
   const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
   return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
 }

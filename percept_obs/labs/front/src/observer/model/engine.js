@@ -99,7 +99,7 @@ export class Engine extends Runner {
     return this.memory.once("bound", settings, make, result.outputs, result.measured, table);
   }
 
-  /** Of the distance, whose inverse is the last coordinate. */
+  /** Relative error of the distance, whose inverse is the last coordinate. */
   relativeError({ truth, width }, estimate) {
     const [right, found] = [truth, estimate].map((rows) => columnOf(rows, width, width - 1));
     return distanceError(right, found, estimate, width);

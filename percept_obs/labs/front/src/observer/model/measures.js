@@ -1,4 +1,4 @@
-// What is read off a run: excitation.
+// Excitation of a run.
 
 import { slackOf } from "../../common/model/tables.js";
 

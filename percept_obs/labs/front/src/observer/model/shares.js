@@ -1,4 +1,4 @@
-// What of an error is due to noise: the same run without noise, and how far noise moves the estimate from it.
+// Share of an error that is due to noise: the same run without noise, and the difference of both.
 
 import { columnOf, derived } from "../../common/model/derived.js";
 
@@ -7,7 +7,7 @@ const PARTS = 400;
 /** Samples that a mean square needs at least. */
 const FEWEST = 10;
 
-/** Whether a run's error is shown with its parts: of one observer, of samples with noise, where the truth is known. */
+/** True if a run's error is shown with its parts: one observer, samples with noise, a known truth. */
 export function divides({ observers, noise, pictures, scenario }, { recordings }) {
   return observers.length === 1 && noise.size > 0 && pictures.includes("error") && !(scenario in recordings);
 }
@@ -46,14 +46,14 @@ export function sharesOf({ time, truth, width, runs: [run] }, quiet) {
   return { quiet: quiet.runs[0].error, time: times, added };
 }
 
-/** What noise adds in the second half, as the middle of its mean squares; NaN where there is none. */
+/** Error by noise in the second half, as the median of its mean squares; NaN where there is none. */
 export function lateNoise({ added }) {
   const late = Array.from(added.subarray(Math.floor(added.length / 2))).filter(Number.isFinite).sort((a, b) => a - b);
   return late.length ? late[Math.floor(late.length / 2)] : NaN;
 }
 
 /**
- * How far each sample moves the estimated inverse distance, less how far the true one moves meanwhile, where it is
+ * Change of the estimated inverse distance at each sample, less that of the true one, where it is
  * known.
  */
 export function stepOf({ truth, width }, { estimate }) {
@@ -63,7 +63,7 @@ export function stepOf({ truth, width }, { estimate }) {
   });
 }
 
-/** What is measured less what the observer has for it. */
+/** Measured output less its estimate. */
 export function innovationOf({ outputs, sampled, width }, { estimate }, c) {
   const [seen, expected] = [columnOf(outputs, sampled, c), columnOf(estimate, width, c)];
   return derived(estimate, `innovation ${c}`, () => seen.map((value, k) => value - expected[k]));

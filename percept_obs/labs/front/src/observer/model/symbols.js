@@ -1,4 +1,4 @@
-// What the letters and words of the observer lab stand for; letters as MathML.
+// Glossary of the observer lab; letters as MathML.
 
 const letter = (name, index = "") =>
   `<math>${index ? `<msub><mi>${name}</mi><mn>${index}</mn></msub>` : `<mi>${name}</mi>`}</math>`;

@@ -71,7 +71,7 @@ export function reasons(shown, model) {
   return found;
 }
 
-/** What noise does to the error, in the chart's own parts where they are drawn. */
+/** Sentence on the error by noise, with the chart's own parts where they are drawn. */
 function noiseInWords({ shares }) {
   const added = shares && lateNoise(shares);
   if (!(added > 0))
@@ -84,7 +84,7 @@ function noiseInWords({ shares }) {
   );
 }
 
-/** What the bound is, and what it comes to. */
+/** Sentence on the bound. */
 function boundInWords({ settings, bound }) {
   if (!bound) return [];
   const left = Number.isFinite(bound.at(-1)) ? ` At the end it is ${percent(bound.at(-1), 2)} of the distance.` : "";

@@ -14,7 +14,7 @@ export class Camera {
     this.memory = memory;
   }
 
-  /** What the camera records. */
+  /** Recording of the camera. */
   record(scene) {
     const { memory } = this;
     const { settings, points } = scene;
@@ -85,7 +85,7 @@ export class Camera {
     return states;
   }
 
-  /** How each kind of vector moves, at some of the ends of steps; made anew only when motion or clock changes. */
+  /** Flow of each kind of vector at some of the ends of steps; made anew only when motion or clock changes. */
   flows(scene, purpose, { grid, steps }, wanted) {
     const { settings, layout, n, width } = scene;
     const kinds = kindsOf(layout, n);

@@ -13,7 +13,7 @@ const WEIGHTS = {
   riccati: ({ size, forgetting }, { text = size }) => [`riccati(${text}, ${forgetting})`, ["riccati"]],
 };
 
-/** What is typed for P, in Python, for a state of so many entries. */
+/** The typed P in Python, for a state of n entries. */
 function typedP(model, settings, n) {
   const { entries, varies, python } = readP(model, settings);
   return { varies, text: entries === 1 ? python : `np.diag(${n / entries} * ${python})` };
@@ -66,7 +66,7 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
   return `${math}${numpy}${imports(wanted)}\n${lines.join("\n")}\n`;
 }
 
-/** How camera and body move, changed as it was typed. */
+/** Motion of camera and body, with the typed changes. */
 function movedAs(settings, { written }) {
   const lines = ["turning, velocity, spinning = moves.velocities"];
   if (!isTyped(settings)) return lines;

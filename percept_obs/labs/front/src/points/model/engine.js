@@ -51,7 +51,7 @@ export class PointsEngine {
     return { ...result, gramian: this.gramian(result, functions, true), whole: true };
   }
 
-  /** What the images of each window tell, or as much of it as a chart shows while a hand moves. */
+  /** Gramian of each window, or as much of it as a chart shows while a hand moves. */
   gramian(result, functions, whole) {
     const { settings, time, seenImages: images } = result;
     const scene = this.scene(settings, functions);

@@ -1,5 +1,5 @@
 // @ts-check
-// How a state moves: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
+// Flow of a state: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
 
 import { INSTANTS } from "../../common/model/integrator.js";
 import { stepper } from "../../common/model/runge_kutta.js";

@@ -134,7 +134,7 @@ function gather(
   return gathered;
 }
 
-/** What was gathered between two samples, from the state at the first of them, in the room for a matrix. */
+/** Integral between two samples, from the state at the first of them, in the room for a matrix. */
 function between(gathered, { all }, first, last, n, kindOf, back, room) {
   const found = room.fill(0);
   const inside = new Float64Array(9);

@@ -7,7 +7,7 @@ import { typedModule } from "../../common/model/typed.js";
 import { textsOfP, textsOfX } from "./sparse.js";
 import { isComputed, textOfP } from "./weight.js";
 
-/** The name of a state that somebody brought. */
+/** The name of a user's state. */
 export const OWN = "own";
 
 /** The layout of what is followed together: points that share nothing unknown are followed one by one. */

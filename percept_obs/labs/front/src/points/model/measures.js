@@ -1,4 +1,4 @@
-// What is read off a run of many points: the error's size, its decay, when points were not seen.
+// Measures of a run of many points: size and decay of the error, times when points were not seen.
 
 export function norms(truth, estimate, n) {
   const found = new Float64Array(truth.length / n);
@@ -10,7 +10,7 @@ export function norms(truth, estimate, n) {
   return found;
 }
 
-/** How far each point's estimate is from it, a column each. */
+/** Distance of each point's estimate from it, a column each. */
 export function pointErrors({ begins, axes, states, entries }, truth, estimate, n) {
   const count = truth.length / n;
   const off = new Float64Array(3);

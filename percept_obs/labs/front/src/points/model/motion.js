@@ -4,7 +4,7 @@ import { valueBetween } from "../../common/model/playback.js";
 import { coefficientsAt } from "./camera.js";
 import { kindsOf } from "./flow.js";
 
-/** Of each point: its place, and the velocity of a copy so many times as far, which moves by the same A(t) and v(t). */
+/** Position of each point, and velocity of a copy so many times as far under the same A(t) and v(t). */
 export function motionAt(lab, shown, at) {
   const { settings, n, points, truth, time } = shown;
   const layout = lab.model.states[settings.state].layouts[points - 1];

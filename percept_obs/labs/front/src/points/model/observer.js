@@ -54,7 +54,7 @@ export class Observer {
     return memory.once("inverse of P", settings, make, places, functions.typed);
   }
 
-  /** What the observer takes for the images between samples: a row for each instant of each step. */
+  /** Images as held between samples: a row for each instant of each step. */
   held(scene, { time, outputs }, { index, steps, places }) {
     const { camera } = this;
     const { memory } = camera;
@@ -169,7 +169,7 @@ export class Observer {
   }
 }
 
-/** How P moves, where it is computed. */
+/** Law of P, where it is computed. */
 function lawOf({ weight, forgetting, decrease }, begun, n) {
   if (weight === "riccati")
     return { computed: true, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };

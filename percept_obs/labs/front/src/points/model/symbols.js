@@ -1,4 +1,4 @@
-// What the letters and words of the lab of many points stand for; letters as MathML.
+// Glossary of the lab of many points; letters as MathML.
 
 const letter = (name, index = "") =>
   `<math>${index ? `<msub><mi>${name}</mi><mi>${index}</mi></msub>` : `<mi>${name}</mi>`}</math>`;

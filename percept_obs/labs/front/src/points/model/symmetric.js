@@ -64,7 +64,7 @@ function tridiagonal(a, n) {
     for (let i = k + 1; i < n; i++) v[i] = (a[i * n + k] - (i === k + 1 ? end : 0)) / size;
     let product = 0;
     w.fill(0, k + 1);
-    // Of each pair of entries that are the same only the lower one is kept.
+    // Only the lower triangle is kept.
     for (let i = k + 1; i < n; i++) {
       const row = i * n;
       const part = v[i];
@@ -89,7 +89,7 @@ function tridiagonal(a, n) {
   return { diagonal, beside: Float64Array.from({ length: n - 1 }, (_, i) => a[(i + 1) * n + i]) };
 }
 
-/** How many eigenvalues of a tridiagonal matrix lie below a number, by Sturm's sequence. */
+/** Number of eigenvalues of a tridiagonal matrix below a value, by Sturm's sequence. */
 function countBelow(diagonal, beside, value) {
   let count = 0;
   let ratio = 1;

@@ -1,4 +1,4 @@
-// What happened, and why, in words. The words of verdicts come from Python, so that both say the same.
+// Verdicts and their reasons in words. Those of verdicts come from Python, so that both say the same.
 
 import { derived } from "../../common/model/derived.js";
 import { readable, short } from "../../common/model/scales.js";
@@ -11,7 +11,7 @@ const MOST_ABSENCES = 3;
 /** Rates below this, per second, are those of rounding. */
 const NO_RATE = 1e-9;
 
-/** What happened to the error, as PointsRun.verdict() in Python. */
+/** Verdict on the error, as PointsRun.verdict() in Python. */
 export function verdict({ time, worst, settling, divergedAt }, model) {
   const { verdicts, remedy, judged, tolerance } = model;
   if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
@@ -19,7 +19,7 @@ export function verdict({ time, worst, settling, divergedAt }, model) {
   return settledInWords(error, settling, time.at(-1) - time[0], model);
 }
 
-/** How fast the error decays, and what is guaranteed. */
+/** Sentence on the decay of the error, and on the guaranteed rate. */
 export function decayInWords({ fit }, bound) {
   if (!fit) return "no rate can be fitted to the last two thirds of the run";
   const measured = `${readable(Math.abs(fit.rate) < NO_RATE ? 0 : fit.rate, 2)} per second, fitted from ` +
@@ -27,7 +27,7 @@ export function decayInWords({ fit }, bound) {
   return bound === null ? measured : `${measured}; at least ${readable(bound, 2)} is guaranteed`;
 }
 
-/** Whether condition (14) holds, as Gramian.verdict() in Python. */
+/** Verdict on condition (14), as Gramian.verdict() in Python. */
 export function gramianInWords(shown, { verdicts, unseen }) {
   const { gramian, names, truth, n } = shown;
   const { weakest, window } = gramian;

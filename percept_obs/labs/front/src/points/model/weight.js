@@ -13,7 +13,7 @@ export function textOfP({ weight, P, P0 }) {
   return weight === "typed" ? P : COMPUTED.includes(weight) ? P0.trim() : "";
 }
 
-/** What Python read of the typed P: how many entries it has, 1 or 3, whether they vary, and their Python text. */
+/** Python's answer to the typed P: its number of entries, 1 or 3, whether they vary, their Python text. */
 export function readP({ written = {} }, settings) {
   const { entries = 1, varies = true, python } = written[textOfP(settings)] ?? {};
   return { entries, varies, python };

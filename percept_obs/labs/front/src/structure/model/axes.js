@@ -1,4 +1,4 @@
-// What a map of the structure lab may be over, besides gains.
+// Axes of a map of the structure lab besides gains.
 
 import { axisAt } from "../../common/model/axes.js";
 import { isSampled } from "./camera.js";

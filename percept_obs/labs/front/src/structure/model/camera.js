@@ -1,4 +1,4 @@
-// What is measured of an object: a point moves, and its image and scaled inverse depth are sampled. As record().
+// Camera of a moving object: image and scaled inverse depth are sampled, as record() in Python.
 
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
@@ -6,12 +6,12 @@ import { instants } from "../../common/model/tables.js";
 import { isTyped } from "../../common/model/typed.js";
 
 
-/** Whether the velocities are the samples that somebody brought. */
+/** True if the velocities are the user's samples. */
 export function isSampled({ velocities }) {
   return velocities === "samples";
 }
 
-/** Whether a velocity swings or is typed, so that it is not the same at all times. */
+/** True if a velocity swings or is typed. */
 export function varies(settings) {
   return isTyped(settings) || swings(settings);
 }

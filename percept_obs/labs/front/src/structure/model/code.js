@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { broughtBy, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { userDefined, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { isSampled, varies } from "./camera.js";
 import { isZero, valuesAtStart } from "./kernels.js";
@@ -23,10 +23,10 @@ export function pythonOf(shown, model) {
   ];
   if (refusal)
     return `from percept_obs import StructureAndMotion\n\nStructureAndMotion(${options.join(", ")})  # is refused\n`;
-  const brought = broughtBy(model.own, settings.observers);
+  const own = userDefined(model.own, settings.observers);
   const make = NOISES[noise.kind];
   const lines = [
-    ...brought.lines,
+    ...own.lines,
     ...motionIn(settings, model),
     `depth = 1 / (${scale} * ${ybar[2]})`,
     `position = (${ybar[0]} * depth, ${ybar[1]} * depth, depth)`,
@@ -48,7 +48,7 @@ export function pythonOf(shown, model) {
     "percept_obs.observers": new Set(
       settings.observers.filter((name) => !model.own[name]).map((name) => makerOf(name)[0]),
     ),
-    ...brought.modules,
+    ...own.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
   const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";

@@ -93,7 +93,7 @@ export class StructureEngine extends Runner {
     return error;
   }
 
-  /** Of the point against the camera, in m/s. */
+  /** Greatest speed of the point relative to the camera, in m/s. */
   greatestSpeed(settings, time, functions) {
     const { rows } = this.camera.velocities(settings, functions, time);
     let most = 0;
@@ -153,7 +153,7 @@ export class StructureEngine extends Runner {
     return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
   }
 
-  /** What the observers know of the motion: rows of w, M, m. */
+  /** Known signals of the observers: rows of w, M, m. */
   known({ settings, hidden }, { grid }, functions) {
     const count = hidden.length;
     const make = (read) => {
@@ -169,7 +169,7 @@ export class StructureEngine extends Runner {
     return this.memory.once("known", settings, make, grid, functions.signals);
   }
 
-  /** How much recovering theta amplifies errors along the run, and the determinant that it divides by. */
+  /** Amplification of errors by recovering theta along the run, and the determinant that it divides by. */
   guard({ time, outputs }, { index }, known, { guard }) {
     const last = [0, 1, 2].map((c) => lastSamples(columnOf(outputs, 3, c)));
     const sizes = new Float64Array(time.length);

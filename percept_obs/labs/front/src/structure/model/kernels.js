@@ -9,7 +9,7 @@ export function keyOf({ unknown, earlier }) {
   return [...unknown, ...(earlier && !unknown.includes("d_s") ? ["earlier"] : [])].join(" ");
 }
 
-/** Whether a velocity such as v_c1 is zero and stays so. */
+/** True if a velocity such as v_c1 stays zero. */
 export function isZero(settings, name, { written, samples }) {
   if (isSampled(settings)) return samples.zero.includes(name);
   const typed = isTyped(settings) ? written[settings.motion] : null;
@@ -42,7 +42,7 @@ export class StructureKernels extends PrintedKernels {
       : null;
   }
 
-  /** Observers that somebody brought and that do not exist for so many unknowns, with the reasons. */
+  /** The user's observers that do not exist for so many unknowns, with the reasons. */
   refused({ unknown }) {
     return this.model.forms[unknown.length]?.refused ?? {};
   }

@@ -1,4 +1,4 @@
-// What rows of ybar and theta say of the unknown quantities and of the range, as StructureAndMotion.quantities().
+// Unknown quantities and range from rows of ybar and theta, as StructureAndMotion.quantities().
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { lastSamples } from "../../common/model/tables.js";
@@ -37,7 +37,7 @@ export function inverseRange(result, rows, run) {
   const scaleAt = (k) => (at < 0 ? result.scale : rows[k * width + 3 + at]);
   const inverse = derived(rows, "inverse range", () => columnOf(rows, width, 2).map((value, k) => value * scaleAt(k)));
   if (!run?.deviation) return { inverse };
-  // Of the product d_s ybar3, to first order.
+  // Standard deviation of the product d_s ybar3, to first order.
   const deviation = derived(run.deviation, "inverse range", () =>
     columnOf(run.deviation, width, 2).map((own, k) =>
       Math.hypot(scaleAt(k) * own, at < 0 ? 0 : rows[k * width + 2] * run.deviation[k * width + 3 + at]),

@@ -1,4 +1,4 @@
-// What the letters and words of the structure lab stand for; letters as MathML.
+// Glossary of the structure lab; letters as MathML.
 
 const indexed = (name, index) => `<math><msub><mi>${name}</mi><mi>${index}</mi></msub></math>`;
 
