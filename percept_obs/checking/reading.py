@@ -5,7 +5,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import pairwise
 from math import prod
 from pathlib import Path
@@ -144,6 +144,11 @@ def _parser() -> Lark:
     return Lark(grammar, parser="lalr", lexer="basic", start=["lines", "words"], propagate_positions=True)
 
 
+@lru_cache(maxsize=256)
+def _lexed(text: str) -> tuple[Token, ...]:
+    return tuple(_parser().lex(text))
+
+
 class _Reader:
     """Reads one text; a method named like a rule of the grammar returns the rule's value."""
 
@@ -167,7 +172,7 @@ class _Reader:
         if len(self.text) > LONGEST:
             raise CannotRead(self.text, LONGEST, f"the formula has {len(self.text)} characters; at most {LONGEST}")
         try:
-            raw = [*_parser().lex(self.plain), Token("END", "", len(self.plain))]
+            raw = [*_lexed(self.plain), Token("END", "", len(self.plain))]
         except UnexpectedCharacters as error:
             position = self.origin[error.pos_in_stream or 0]
             raise CannotRead(self.text, position, _about_character(self.text[position])) from None
