@@ -1,4 +1,4 @@
-"""What README.md takes from the package, its pictures, and the repository's name: ``python tests/readme.py`` writes it.
+"""README.md's parts that come from the package, its pictures and the repository's name: `python tests/readme.py`.
 
 The name of the repository stands in ``pyproject.toml``, under ``[project.urls]``, and nowhere else by hand.
 """
@@ -114,7 +114,7 @@ def gallery(texts):
 
 
 def with_part(text, name, part):
-    """A text with a part anew, which stands between comments."""
+    """Replace a part of a text between comments."""
     start, end = f"<!-- {name} -->\n", "\n<!-- end -->"
     before, rest = text.split(start)
     return f"{before}{start}{part}{rest[rest.index(end) :]}"

@@ -214,16 +214,16 @@ def test_another_file_is_not_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.mark.usefixtures("unset")
 def test_the_recording_is_fetched_once(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    content, asked = (folder / "dataset3.mat").read_bytes(), []
+    content, addresses = (folder / "dataset3.mat").read_bytes(), []
 
     def answer(address: str, timeout: float) -> io.BytesIO:
-        asked.append(address)
+        addresses.append(address)
         return io.BytesIO(content)
 
     monkeypatch.setattr(urllib.request, "urlopen", answer)
     kept = cache / "dataset3.mat"
     assert find_utias() == find_utias() == kept
-    assert asked == [ADDRESS]
+    assert addresses == [ADDRESS]
     kept.write_bytes(content[:-1])
     assert find_utias().read_bytes() == content
     assert [file.name for file in cache.iterdir()] == ["dataset3.mat"]

@@ -1,4 +1,4 @@
-"""Frames are PNG files of equal right, whatever they were given as, and a recording can be drawn as a film."""
+"""Frames are PNG files, whatever they are made of, and a recording can be drawn as a film."""
 
 import matplotlib.image
 import numpy as np
@@ -28,16 +28,16 @@ def pixels(data, tmp_path):
 
 def test_arrays_paths_and_a_folder_are_the_same_frames(tmp_path):
     coloured = np.stack([RAMP, 1 - RAMP, RAMP**2], axis=-1)
-    given = Frames([RAMP, (255 * RAMP).round().astype(int), coloured], [0, 1, 2], EXTENT)
-    np.testing.assert_allclose(pixels(given.images[0], tmp_path), RAMP, atol=1 / 255)
-    assert given.images[0] == given.images[1]
-    np.testing.assert_allclose(pixels(given.images[2], tmp_path), coloured, atol=1 / 255)
+    frames = Frames([RAMP, (255 * RAMP).round().astype(int), coloured], [0, 1, 2], EXTENT)
+    np.testing.assert_allclose(pixels(frames.images[0], tmp_path), RAMP, atol=1 / 255)
+    assert frames.images[0] == frames.images[1]
+    np.testing.assert_allclose(pixels(frames.images[2], tmp_path), coloured, atol=1 / 255)
     folder = tmp_path / "frames"
     folder.mkdir()
-    for k, image in enumerate(given.images):
+    for k, image in enumerate(frames.images):
         (folder / f"{k:03}.png").write_bytes(image)
-    assert Frames(folder, [0, 1, 2], EXTENT).images == given.images
-    assert Frames(sorted(folder.iterdir()), [0, 1, 2], EXTENT).images == given.images
+    assert Frames(folder, [0, 1, 2], EXTENT).images == frames.images
+    assert Frames(sorted(folder.iterdir()), [0, 1, 2], EXTENT).images == frames.images
 
 
 def test_what_is_no_film_is_refused_with_the_reason(tmp_path, monkeypatch):
@@ -78,8 +78,8 @@ def test_a_drawn_ball_is_where_the_point_is_seen_and_looms(film, tmp_path):
 
 def test_a_lab_takes_frames_of_its_own_recordings_only(film):
     drawn = render(film, count=3, size=20)
-    (told,) = observer_lab(film, frames=drawn).frames.values()
-    assert told["time"] == drawn.time.tolist()
+    (shown,) = observer_lab(film, frames=drawn).frames.values()
+    assert shown["time"] == drawn.time.tolist()
     with pytest.raises(ValueError, match="which is no recording of this lab"):
         observer_lab(frames=drawn)
     late = Frames(drawn.images and [RAMP], [99.0], EXTENT)

@@ -51,11 +51,11 @@ def test_a_check_follows_each_solution_and_nothing_else_reads_an_answer(notebook
     programs = [k for k, cell in enumerate(notebook["cells"]) if cell["cell_type"] == "code"]
     for k in solutions:
         assert isinstance(ast.parse(source(notebook, k + 1)).body[-1], ast.Expr), "it ends with what it shows"
-        given = {n.id for n in ast.walk(ast.parse(source(notebook, k))) if isinstance(n, ast.Name)}
-        given -= names_read(source(notebook, k)) - {answer_name(source(notebook, k))}
+        assigned = {n.id for n in ast.walk(ast.parse(source(notebook, k))) if isinstance(n, ast.Name)}
+        assigned -= names_read(source(notebook, k)) - {answer_name(source(notebook, k))}
         assert answer_name(source(notebook, k)) in names_read(source(notebook, k + 1))
         for other in set(programs) - set(checks) - set(solutions):
-            assert not given & names_read(source(notebook, other))
+            assert not assigned & names_read(source(notebook, other))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -116,7 +116,7 @@ warns.observe(lambda _: warnings.warn("a warning"), "value")
 swallows, words = widgets.ToggleButton(), widgets.HTML()
 def swallow(_):
     words.add_class("percept-obs-error")
-    words.value = "told to the student only"
+    words.value = "shown to the student only"
 swallows.observe(swallow, "value")
 
 unknown = widgets.ColorPicker()
@@ -129,13 +129,13 @@ def test_an_error_in_a_callback_fails_the_test(tmp_path):
 
     with pytest.raises(CellExecutionError) as failure:
         run_alone(FAILING, tmp_path)
-    for told in (
+    for message in (
         *(f"ArithmeticError: {name}" for name in ("observed", "clicked", "interactive", "put off")),
         "UserWarning: a warning",
-        "the lab says: told to the student only",
+        "the lab says: shown to the student only",
         "how is a ColorPicker moved?",
     ):
-        assert told in str(failure.value)
+        assert message in str(failure.value)
 
 
 @pytest.mark.slow

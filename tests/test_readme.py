@@ -1,4 +1,4 @@
-"""README.md says what the package says, its pictures can be made anew, and one line names the repository everywhere."""
+"""README.md says what the package says, its pictures can be drawn again, and one line names the repository."""
 
 import re
 import tomllib
@@ -22,20 +22,20 @@ from readme import (
 
 from percept_obs import cli
 
-ANEW = "python tests/readme.py writes it anew"
+REMEDY = "python tests/readme.py writes it again"
 TEXT = README.read_text("utf-8")
 
 
 def shipped(name):
     """A picture's text in README.md, and its size."""
     found = re.search(rf"!\[(.*)\]\({(PICTURES / name).relative_to(ROOT)}\.png\)", TEXT)
-    assert found, ANEW
+    assert found, REMEDY
     with Image.open(PICTURES / f"{name}.png") as image:
         return found[1], image.size
 
 
 def test_the_table_has_a_row_for_each_observer():
-    assert with_part(TEXT, "observers", observer_table()) == TEXT, ANEW
+    assert with_part(TEXT, "observers", observer_table()) == TEXT, REMEDY
 
 
 def test_every_picture_has_a_text_and_they_are_light():
@@ -50,26 +50,26 @@ def test_every_picture_has_a_text_and_they_are_light():
 def test_a_figure_can_be_made_anew(name):
     figure = FIGURES[name]()
     text, size = shipped(name)
-    assert text == figure.text, ANEW
-    assert picture(figure).size == size, ANEW
+    assert text == figure.text, REMEDY
+    assert picture(figure).size == size, REMEDY
 
 
 @pytest.mark.slow
 @pytest.mark.browser
 def test_the_pictures_of_labs_can_be_made_anew(browser):
-    for name, (make, told) in LABS.items():
+    for name, (make, expected) in LABS.items():
         text, size = shipped(name)
-        assert text == told, ANEW
-        anew = picture_of_lab(browser, make)
-        assert anew.size == size, ANEW
-        assert len(anew.getcolors()) > 10, "nothing is drawn"
+        assert text == expected, REMEDY
+        drawn = picture_of_lab(browser, make)
+        assert drawn.size == size, REMEDY
+        assert len(drawn.getcolors()) > 10, "nothing is drawn"
 
 
 @pytest.mark.parametrize("path", NAMES_THE_REPOSITORY, ids=lambda path: path.name)
 def test_one_line_names_the_repository(path):
     text = path.read_text("utf-8")
     assert repository() in text
-    assert with_repository(text) == text, ANEW
+    assert with_repository(text) == text, REMEDY
 
 
 def test_the_link_to_binder_opens_what_binder_copies(tmp_path, monkeypatch):
@@ -80,8 +80,8 @@ def test_the_link_to_binder_opens_what_binder_copies(tmp_path, monkeypatch):
 
 
 def test_the_citation_names_the_version_of_the_package():
-    told = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.MULTILINE)
-    assert told[1] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    version = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.MULTILINE)
+    assert version[1] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 
 def test_a_repository_that_is_renamed_is_renamed_everywhere(monkeypatch):

@@ -41,9 +41,9 @@ class Links(HTMLParser):
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag, attrs):
-        told = dict(attrs)
-        self.places |= {told["id"]} if "id" in told else set()
-        self.targets += [told[name] for name in ("href", "src") if told.get(name)]
+        attributes = dict(attrs)
+        self.places |= {attributes["id"]} if "id" in attributes else set()
+        self.targets += [attributes[name] for name in ("href", "src") if attributes.get(name)]
 
 
 @pytest.fixture(scope="module")
@@ -99,8 +99,10 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     complaints = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda said: complaints.append(said.text) if said.type in ("error", "warning") else None)
-    page.on("request", lambda asked: complaints.append(asked.url) if asked.url.startswith("http") else None)
+    page.on(
+        "console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None
+    )
+    page.on("request", lambda request: complaints.append(request.url) if request.url.startswith("http") else None)
     labs, looked_at = 0, to_look_at(pages)
     for path in sorted(pages.rglob("*.html")):
         page.goto(path.as_uri())
@@ -124,9 +126,9 @@ def test_the_first_lab_draws_within_a_second_and_a_half_of_computing(pages, brow
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri(), wait_until="commit")
     page.wait_for_function(DRAWN)
-    told = {metric["name"]: metric["value"] for metric in session.send("Performance.getMetrics")["metrics"]}
-    print(f"first lab: {told['ProcessTime']:.2f} s of computing, {page.evaluate('performance.now()') / 1000:.2f} s")
-    assert told["ProcessTime"] < 1.5
+    metrics = {metric["name"]: metric["value"] for metric in session.send("Performance.getMetrics")["metrics"]}
+    print(f"first lab: {metrics['ProcessTime']:.2f} s of computing, {page.evaluate('performance.now()') / 1000:.2f} s")
+    assert metrics["ProcessTime"] < 1.5
     page.close()
 
 
@@ -155,8 +157,8 @@ def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
     names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
     command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *names]
-    told = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
-    found = [json.loads(line) for line in told]
+    lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    found = [json.loads(line) for line in lines]
     least = min(found, key=lambda page: page["mark"])
     print(f"{len(found)} pages; the least mark is {least}")
     assert least["mark"] >= 95, least
