@@ -26,6 +26,10 @@ def reported(form=BOTH, **settings):
     return choose_and_report(CHOOSING, REPORTING, form, follow, GAINS, after=(1.0, 2.0), length=1.0, **settings)
 
 
+def test_the_grid_has_every_combination():
+    assert grid(a=(1, 2), b=(3, 4)) == ({"a": 1, "b": 3}, {"a": 1, "b": 4}, {"a": 2, "b": 3}, {"a": 2, "b": 4})
+
+
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_there_are_candidates_for_every_observer_and_all_are_valid(make):
     observer = make(BOTH)
