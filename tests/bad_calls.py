@@ -283,7 +283,8 @@ def outcome(function, arguments, key, value):
     except BaseException as error:
         verdict = _judged(error, key, value)
     else:
-        verdict = "NaN without a word" if _has_nan(found) and function.__name__ != "without" else "right"
+        unseen = function.__name__ in ("without", "read_stereo_mat")  # NaN is what a camera did not see
+        verdict = "NaN without a word" if _has_nan(found) and not unseen else "right"
         if verdict == "right" and any(value is alien for alien in ALIEN) and not _may_be_text(function, key, value):
             verdict = "accepted"
     return "it ran text" if "CANARY" in os.environ else verdict

@@ -234,6 +234,8 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [-0.1, 0.2]
     """
+    if frame not in ("world", "camera"):
+        raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
     poses = Poses(
         numbers(times, "the times"), numbers(positions, "the positions"), numbers(orientations, "the orientations")
     )
