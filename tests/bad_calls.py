@@ -7,7 +7,6 @@ import atexit
 import json
 import os
 import random
-import resource
 import shutil
 import signal
 import sys
@@ -344,6 +343,8 @@ def _stop(*_):
 
 def main(count, seed):
     """Make the calls and print, as JSON, how many ended how, and those that ended wrong."""
+    import resource  # which Windows has not
+
     chosen = drawn(count, seed)
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (used + BYTES, used + BYTES))

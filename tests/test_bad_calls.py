@@ -7,8 +7,9 @@ from pathlib import Path
 
 import bad_calls
 import pytest
+from sample_sizes import sampled
 
-COUNT, SEED, QUICK = 1200, 11, 60
+COUNT, SEED, QUICK = sampled(300, 1200), 11, 60
 
 
 @pytest.mark.slow
