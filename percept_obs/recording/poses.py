@@ -217,7 +217,7 @@ def rigid_from_poses(
     Raises
     ------
     ValueError
-        If there are too few poses or they are none; see `Poses`.
+        If there are too few poses or they are none, see `Poses`; if the frame is neither of the two.
 
     See Also
     --------
