@@ -67,7 +67,11 @@ class Poses:
         time, position, turns = (numbers(each, f"the poses' {name}") for name, each in vars(self).items())
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
-        shapes = {"time": [()], "position": [(3,)], "orientation": [(4,), (3, 3)]}
+        shapes: dict[str, list[tuple[int, ...]]] = {
+            "time": [()],
+            "position": [(3,)],
+            "orientation": [(4,), (3, 3)],
+        }
         for (name, expected), values in zip(shapes.items(), (time, position, turns), strict=True):
             if values.shape not in [(len(time), *shape) for shape in expected]:
                 raise ValueError(
