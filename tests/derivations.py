@@ -45,7 +45,7 @@ def cases():
 
 @cache
 def few_cases():
-    """What is derived of one system, and a teacher's own formulas."""
+    """Derivations of one system, and a teacher's own formulas."""
     return tuple(Case(name, target_of(thing)) for name, thing in [*islice(_systems(), 20), *own_formulas().items()])
 
 
@@ -198,7 +198,7 @@ def whole(case, row, mine):
 
 
 def differ(one, other):
-    """Whether two formulas differ in value somewhere: looked at with floats, apart from the checker."""
+    """Return True if two formulas differ in value somewhere, by floats and without the checker."""
     letters = sorted(one.free_symbols | other.free_symbols, key=str)
     for seed in range(6):
         draw = random.Random(seed)
@@ -251,7 +251,7 @@ def drawn(draw, slips, among):
 
 
 def _is_found(term, marked):
-    """Whether a term is among those marked, or inside of one of them where few are."""
+    """Return True if a term is marked, or inside of one that is where few are."""
     inside = len(marked) <= 2 and any(term in sp.preorder_traversal(m) for m in marked)
     wanted = sp.expand(term)
     return inside or any(
@@ -261,7 +261,7 @@ def _is_found(term, marked):
 
 @dataclass(frozen=True)
 class Found:
-    """What a review found of a formula with slips: answers to what is asked of the checker, and seconds."""
+    """Result of a review of a formula with slips, and its seconds."""
 
     refused: bool
     line: bool

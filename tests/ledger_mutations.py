@@ -1,4 +1,4 @@
-"""Whether a formula with a slip says the same as before."""
+"""Tell formulas with a slip that say the same as before from those that do not."""
 
 import sympy as sp
 
@@ -6,7 +6,7 @@ from percept_obs.papers import base
 
 
 def say_the_same(one: tuple[sp.Basic, ...], other: tuple[sp.Basic, ...]) -> bool:
-    """Whether relations are proven to say the same; one that has become X = X says nothing, and so nothing wrong."""
+    """Return True if relations are proven to say the same; X = X says nothing, and so nothing wrong."""
     return all(map(_same, one, other))
 
 

@@ -59,7 +59,7 @@ def test_many_equivalent_forms_are_accepted():
 
 
 def shares(count, slips, among):
-    """What share of formulas with slips was refused, with the right line, term and slip; and seconds."""
+    """Shares of formulas with slips that were refused, with the right line, term and slip; and seconds."""
     found = [reviewed(seed, slips, among) for seed in range(count)]
     for one in found:
         if not (one.refused and one.line and one.term and (one.slip or slips > 1)):

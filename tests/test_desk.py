@@ -31,7 +31,7 @@ MISTAKES = {
 
 
 def answer(typed, hints=0, step=6, part="rate", **settings):
-    """What the desk says of lines of a step by their names."""
+    """Return the desk's answer to lines of a step by their names."""
     lines = {f"{part} {step} {name}": text for name, text in typed.items()}
     desk = derivation_desk(part=part, step=step, typed=lines, hints={f"{part} {step}": hints}, **settings)
     return desk.analysis

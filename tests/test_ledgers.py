@@ -29,7 +29,7 @@ from percept_obs.papers.entries import Known as How
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a paper's ledger.
+    """Known facts of a paper's ledger.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ each_paper = pytest.mark.parametrize("known", PAPERS.values(), ids=PAPERS)
 
 
 def runs_observers(entry):
-    """Whether an entry is judged by a simulation: its check stands in a module that tracks or uses its runs."""
+    """Return True if an entry is judged by a simulation: its check's module tracks or uses runs."""
     return not vars(sys.modules[entry.check.__module__]).keys().isdisjoint({"track", "followed"})
 
 

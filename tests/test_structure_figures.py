@@ -31,7 +31,7 @@ def run(recording):
 
 @pytest.fixture(scope="module")
 def unguarded(recording):
-    """The same run with what the observer's start makes of the unknowns."""
+    """Run whose estimates of the unknowns begin with the observer's start."""
     return track(recording, replace(ismo(recording.view.form), unobservable=()), ZERO, **fine)
 
 

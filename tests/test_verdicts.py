@@ -1,4 +1,4 @@
-"""What is said of a run is true, whatever the unit of length, the clock and the observer, with a truth or without."""
+"""Verdicts on runs are true, whatever the unit of length, the clock and the observer, with a truth or without."""
 
 import re
 import warnings
@@ -58,7 +58,7 @@ def blind(recording):
 
 
 def shifted(recording, seconds):
-    """The same recording by a clock that shows so many seconds more."""
+    """Return a recording by a clock that shows so many seconds more."""
     signal, motion = recording.motion.signal, recording.motion
     if callable(signal.samples):
         moved = Signal(lambda time: signal.samples(time - seconds))

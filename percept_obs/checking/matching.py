@@ -47,8 +47,8 @@ class Judged:
 
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
     """Return each line with its verdict."""
-    given = _assigned(readings, target)
-    lines = [Judged(row, formula, _verdict(formula, target, row)) for row, formula in given]
+    assigned = _assigned(readings, target)
+    lines = [Judged(row, formula, _verdict(formula, target, row)) for row, formula in assigned]
     return tuple(_carried(_by_convention(_turned(lines, readings, target), target), target))
 
 
@@ -66,7 +66,7 @@ def _verdict(mine: sp.Expr, target: Target, row: int) -> Verdict:
 def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr]]:
     """Return the row of the target and the expression of each formula."""
     count, rows = len(target.lines), target.rows
-    given: list[tuple[int, sp.Expr]] = []
+    assigned: list[tuple[int, sp.Expr]] = []
     unnamed = [r for r in readings if r.name not in rows and r.name not in target.blocks]
     start = 0
     nameless = range(count) if len(unnamed) == count else [k for k, line in enumerate(target.lines) if not line.key]
@@ -81,7 +81,7 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
                 start += len(formula) if name not in target.blocks else 0
             if len(block) != len(formula):
                 raise ValueError(f"a matrix with {len(formula)} entries does not fit: {_asked(target)} are asked for")
-            given += zip(block, formula.T if name == "wT" else formula, strict=True)
+            assigned += zip(block, formula.T if name == "wT" else formula, strict=True)
             continue
         if name in rows:
             # of lines with the same name, such as a formula that is printed in two forms, the one that is meant
@@ -98,8 +98,8 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
         else:
             what = f"the line {name}" if name else "a line without a name"
             raise ValueError(f"{what} is none of those asked for: {_asked(target)}; begin it with its name and =")
-        given.append((row, _scalar(formula, target, row)))
-    return given
+        assigned.append((row, _scalar(formula, target, row)))
+    return assigned
 
 
 def _asked(target: Target) -> str:

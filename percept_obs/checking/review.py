@@ -92,9 +92,9 @@ class Review:
             return (what if count > 1 else "Not right yet") + more + "."
         if self.right is None:
             return CANNOT_BE_TOLD
-        given, asked = len({line.row for line in self.lines}), len(self.target.lines)
+        checked, asked = len({line.row for line in self.lines}), len(self.target.lines)
         notes = sorted({line.note for line in self.lines if line.note})
-        return "; ".join(["Right" + (f", {given} of {asked} lines" if given < asked else ""), *notes]) + "."
+        return "; ".join(["Right" + (f", {checked} of {asked} lines" if checked < asked else ""), *notes]) + "."
 
     def __str__(self) -> str:
         out = [self.summary]

@@ -402,9 +402,9 @@ def matrix_target(relations: Iterable[Relational]) -> Target:
     integrals = sp.Tuple(*relations).atoms(sp.Integral)
     if len(set(named)) < len(named) or any(isinstance(i.function, sp.MatrixExpr) for i in integrals):
         raise ValueError("matrices in several forms, or integrals of them, are not compared; name one of the formulas")
-    given = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
-    sizes = sizes_of(*given)
-    names = {m: m.name for m in given} | {m.inv(): f"{m.name}inv" for m in given if m.is_square}
+    symbols = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
+    sizes = sizes_of(*symbols)
+    names = {m: m.name for m in symbols} | {m.inv(): f"{m.name}inv" for m in symbols if m.is_square}
     matrices = {m: entries_of(m.xreplace(sizes), "{}_{}{}", 1, name) for m, name in names.items()}
     lines: list[Line] = []
     blocks = {}

@@ -107,12 +107,12 @@ def _counts(row: pd.Series) -> str:
 
 def _medians(row: pd.Series) -> str:
     """Medians and quantiles, in describe."""
-    told = []
+    sentences = []
     for column, what, unit in (("settling_time", "settling time", "s"), ("rms", "rms error", "1/m")):
         values = (row[column + end] for end in ("", "_low", "_high"))
         middle, low, high = (f"{value:.2g} {unit}" if np.isfinite(value) else "none" for value in values)
-        told.append(f"{what} {middle} in the median, {low} to {high} for 16 to 84 % of the runs")
-    return "; ".join(told)
+        sentences.append(f"{what} {middle} in the median, {low} to {high} for 16 to 84 % of the runs")
+    return "; ".join(sentences)
 
 
 @figure("there is nothing to draw on one of the sides, or there are not two axes")
@@ -275,11 +275,13 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     ax, run = canvas(ax, 3.2), found.run
     word, symbol = describe.depth_or_range(run.view)
     _shade(ax, found)
-    told, spread = found.distance, 2 * found.deviation
-    there = np.isfinite(told) & (spread < 1)
-    ends = told[there] * spread[there] / np.array([1 + spread[there], 1 - spread[there]])
+    sampled, spread = found.distance, 2 * found.deviation
+    there = np.isfinite(sampled) & (spread < 1)
+    ends = sampled[there] * spread[there] / np.array([1 + spread[there], 1 - spread[there]])
     name = r"what the samples tell, $\pm 2\sigma$"
-    ax.errorbar(found.time[there], told[there], ends, color=look.BLUE, linestyle="", marker=".", capsize=2, label=name)
+    ax.errorbar(
+        found.time[there], sampled[there], ends, color=look.BLUE, linestyle="", marker=".", capsize=2, label=name
+    )
     estimate = np.where(np.isfinite(run.distance), run.distance, np.nan)
     ax.plot(run.elapsed, estimate, **look.ESTIMATE)
     if run.recording.truth is not None:
@@ -289,7 +291,7 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     over = describe.times(run)
     yield f"Estimated {word} in metres over {over}, with what the samples tell at {len(found.time)} times."
     yield found.sentence
-    firm = told[there & (spread < 0.5)]
+    firm = sampled[there & (spread < 0.5)]
     yield curves.linear(ax, firm if firm.size else curves.bulk(estimate), estimate, f"the estimated {word}", reach=1.0)
     legend_above(ax)
     return [ax]

@@ -107,10 +107,10 @@ def review_of(sheet: Sheet, step: int, texts: Mapping[int, str]) -> Review:
 def state_of(sheet: Sheet, step: int, texts: Mapping[int, str]) -> dict[str, Any]:
     """Return the state of a step: how many of its lines are typed, and whether these are right."""
     rows = sheet.rows(step)
-    given = [row for row in rows if row in texts]
-    verdicts = [line.verdict if (line := alone(sheet, row, texts[row])) else None for row in given]
+    filled = [row for row in rows if row in texts]
+    verdicts = [line.verdict if (line := alone(sheet, row, texts[row])) else None for row in filled]
     mark = "wrong" if Verdict.WRONG in verdicts else "right" if verdicts and None not in verdicts else ""
-    return {"mark": mark, "given": len(given), "asked": len(rows)}
+    return {"mark": mark, "given": len(filled), "asked": len(rows)}
 
 
 def summary_of(review: Review, asked: int) -> str:
@@ -183,7 +183,7 @@ def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Se
     rows, review = sheet.rows(step), review_of(sheet, step, texts)
     hints = int(settings["hints"].get(f"{part} {step}", 0))
     hint, says = next_hint(review, hints)
-    told = hints_of(review, hints)
+    found = hints_of(review, hints)
     reasons = [sheet.derivation[number - 1].reason.rstrip(":") for number in steps]
     return {
         "given": sheet.given,
@@ -191,7 +191,7 @@ def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Se
         "steps": [{"reason": reasons[k - 1], **state_of(sheet, k, texts)} for k in steps],
         "step": step,
         "lines": [
-            {"key": keys[row], "name": names[row][1], "label": _label(names[row][1]), **_line(sheet, row, texts, told)}
+            {"key": keys[row], "name": names[row][1], "label": _label(names[row][1]), **_line(sheet, row, texts, found)}
             for row in rows
         ],
         "words": summary_of(review, len(rows)),
@@ -202,14 +202,14 @@ def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Se
     }
 
 
-def _line(sheet: Sheet, row: int, texts: Mapping[int, str], told: Mapping[int, Settings]) -> Settings:
+def _line(sheet: Sheet, row: int, texts: Mapping[int, str], hinted: Mapping[int, Settings]) -> Settings:
     """Return the answer to a line."""
     if row not in texts:
         return {"markup": "", "mark": "", "told": []}
     entry = entry_of(sheet, row, texts[row])
     if entry.reading is None:
         return {"markup": entry.markup, "mark": "", "told": [], "refusal": entry.refusal, "position": entry.position}
-    return {"markup": entry.markup, **told[row]}
+    return {"markup": entry.markup, **hinted[row]}
 
 
 def _label(name: str) -> str:
