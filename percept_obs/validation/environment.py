@@ -1,4 +1,4 @@
-"""What depends on the machine and the caller: optional modules, cores, progress bars, whole files, warnings."""
+"""Optional modules, cores, progress bars, whole files and warnings: whatever depends on the machine or the caller."""
 
 from __future__ import annotations
 
