@@ -95,6 +95,24 @@ def browser(chromium):
         browser.close()
 
 
+@pytest.fixture
+def show(browser):
+    """Opens labs in pages of their own, which have drawn when they are returned and close after the test."""
+    from lab_alone import DRAWN, opened
+
+    pages = []
+
+    def show_in_page(lab, *arguments, **options):
+        pages.append(opened(browser, lab, *arguments, **{"viewport": {"width": 1280, "height": 800}, **options}))
+        pages[-1].wait_for_function(DRAWN)
+        pages[-1].set_default_timeout(15_000)
+        return pages[-1]
+
+    yield show_in_page
+    for page in pages:
+        page.close()
+
+
 @pytest.fixture(scope="module")
 def lab(browser, python):
     """A page with one lab that the tests of a module share; Python's lab, `python`, answers it."""

@@ -6,12 +6,17 @@ from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
+import pytest
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
-from lab_settings import FRONT
+from lab_settings import FRONT, assert_follows_python
 from sample_sizes import sampled
+from structure_settings import assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.observer.lab import observer_lab
+from percept_obs.labs.observer.lab import observer_lab, runs
+from percept_obs.labs.points.lab import run_of
+from percept_obs.labs.structure.lab import structure_lab
+from percept_obs.system.surfaces import BehindCamera
 
 KERNEL = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
 
@@ -48,23 +53,29 @@ RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.pe
 
 STATE = """(which) => {
     const lab = [...window.perceptObsLabs][which];
+    const { drawn, settings, shown, view: { root } } = lab;
     const numbers = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
+    const told = (selector) => [...root.querySelectorAll(selector)].map((node) => node.textContent);
+    const runs = shown.runs ?? [{ ...shown, name: "points" }];  // many points are one run
+    const by = (pick) => Object.fromEntries(runs.map((run) => [run.name, pick(run)]));
+    const charts = (pick) => Object.fromEntries(Object.entries(drawn).map(([name, chart]) => [name, pick(chart)]));
     return {
-        settings: lab.settings,
-        runs: Object.fromEntries(lab.shown.runs.map((run) => [run.name, numbers(run.estimate)])),
-        divergedAt: Object.fromEntries(lab.shown.runs.map((run) => [run.name, run.divergedAt])),
-        drawn: Object.fromEntries(Object.entries(lab.drawn).map(([name, { lines }]) =>
-            [name, lines.map((line) => ({ name: line.name, values: numbers(line.values) }))])),
-        verdicts: [...lab.view.root.querySelectorAll(".verdicts li")].map((item) => item.textContent),
-        labels: [...lab.view.root.querySelectorAll("figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
-        problems: [...lab.view.root.querySelectorAll(".problem:not([hidden])")].map((p) => p.textContent),
-        notice: lab.view.root.querySelector(".notice").textContent,
-        silent: !lab.view.root.querySelector(".silence").hidden,
+        settings,
+        runs: by((run) => numbers(run.estimate)),
+        divergedAt: by((run) => run.divergedAt),
+        drawn: charts(({ lines }) => lines.map((line) => ({ name: line.name, values: numbers(line.values) }))),
+        bars: charts(({ bars = [] }) => bars.length),
+        verdicts: told(".verdicts li"),
+        words: told(".verdicts li, .why li, .analysis li").join(" "),
+        labels: [...root.querySelectorAll("figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
+        problems: told(".problem:not([hidden])"),
+        notice: root.querySelector(".notice").textContent,
+        silent: !root.querySelector(".silence").hidden,
     };
 }"""
 
 FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
-EVENTS = sampled(500, 10_000)
+EVENTS = sampled(200, 10_000)
 """Random events in each lab: several for each control."""
 
 UNFOLD = "document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))"
@@ -181,6 +192,45 @@ def assert_equals_python(shown, tolerance=1e-9):
         np.testing.assert_allclose(drawn[f"{run.observer.name} error"], error, rtol=1e-6, atol=20 * tolerance)
 
 
+def assert_structure_is_python(shown):
+    """What is drawn and said of structure and motion are the numbers and words of a Python run."""
+    told = {name: {"estimate": e, "divergedAt": shown["divergedAt"][name]} for name, e in shown["runs"].items()}
+    settings = structure_lab(**shown["settings"]).settings
+    assert_same_structure_runs(settings, told)
+    for run in structure_runs_of(settings).values():
+        assert run.verdict(settings["tolerance"]) in [text.partition(": ")[2] for text in shown["verdicts"]]
+
+
+def assert_points_are_python(shown, tolerance=1e-9):
+    """What is drawn of many points are the numbers of a Python run."""
+    run = run_of(shown["settings"])
+    assert shown["divergedAt"]["points"] == run.diverged_at
+    assert run.verdict() in shown["words"]
+    told, expected = _array(shown["runs"]["points"]), run.state.ravel()
+    size = np.fmax(1, np.abs(expected))
+    growing = 1 if run.diverged_at is None else 1e6
+    np.testing.assert_allclose(told / size, expected / size, rtol=0, atol=growing * tolerance)
+    if "error" in shown["drawn"] and run.diverged_at is None:
+        (error,) = [line for line in shown["drawn"]["error"] if line["name"] == "error"]
+        np.testing.assert_allclose(_array(error["values"]), run.deviation, rtol=1e-9, atol=tolerance)
+
+
+def assert_is_python(kind, shown, following=False):
+    """What a lab shows is what Python computes; settings of random events are followed, stiff ones less closely."""
+    if kind == "points":
+        assert_points_are_python(shown, 1e-6 if following else 1e-9)
+    elif kind == "structure":
+        assert_structure_is_python(shown)
+    elif not following:
+        assert_equals_python(shown)
+    elif shown["runs"]:
+        told = {n: {"estimate": e, "divergedAt": shown["divergedAt"][n]} for n, e in shown["runs"].items()}
+        assert_follows_python(shown["settings"], told)
+    else:
+        with pytest.raises(BehindCamera):
+            runs(shown["settings"])
+
+
 def centre(page, selector):
     """The middle of an element on the screen."""
     box = page.locator(selector).first.bounding_box()
@@ -254,24 +304,13 @@ FOCUSED = """async () => {
 }"""
 
 
-def moved_by_keyboard(page, first):
+def moved_by_keyboard(page, first, moves=MappingProxyType(MOVES)):
     """Names of the controls on which the Tab key comes by, beginning with the first; each was moved by its own keys.
 
     Raises
     ------
     AssertionError
         If one that can be seen and is enabled is left out, or one is not moved.
-    """
-    return reached_by_keyboard(page, first, MOVES)
-
-
-def reached_by_keyboard(page, first, moves=MappingProxyType({})):
-    """Names of the controls on which the Tab key comes by, beginning with the first.
-
-    Raises
-    ------
-    AssertionError
-        If one that can be seen and is enabled is left out.
     """
     page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = false))")
     open_topics_by_keyboard(page)

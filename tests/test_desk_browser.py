@@ -4,7 +4,7 @@ import json
 
 import pytest
 from lab_alone import opened
-from lab_browser import control, reached_by_keyboard, rested, serious_violations
+from lab_browser import control, moved_by_keyboard, rested, serious_violations
 from test_desk import MISTAKES, RIGHT
 
 from percept_obs.labs import derivation_desk
@@ -100,7 +100,7 @@ def test_a_late_answer_is_never_shown_for_newer_text(page):
 
 def test_by_keyboard_alone(page):
     page.focus(control("part"))
-    names = reached_by_keyboard(page, "part")
+    names = moved_by_keyboard(page, "part", {})
     assert (
         names.index("step 6") < names.index("line rate 6 y1'") < names.index("line rate 6 y2'") < names.index("point")
     )

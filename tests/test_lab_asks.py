@@ -1,7 +1,7 @@
 """A lab asks before it shows, takes a prediction, says what a press has changed, what a field takes, and undoes all."""
 
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import UNFOLD, control
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
@@ -9,16 +9,10 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": (observer_lab, "foe"), "structure": (structure_lab, "speedometer"), "points": (points_lab, "hide")}
+SIZE = {"width": 1000, "height": 700}
 SETTINGS = "() => [...window.perceptObsLabs][0].settings"
 SKETCH = "() => document.querySelector('.sketched path').getAttribute('d') ?? ''"
 RIGHT = "() => { const [lab] = window.perceptObsLabs; return lab.parts.presets[0].right; }"
-
-
-def page_of(browser, lab):
-    page = opened(browser, lab, viewport={"width": 1000, "height": 700})
-    page.wait_for_function(DRAWN)
-    page.set_default_timeout(8000)
-    return page
 
 
 def drawn(page):
@@ -26,9 +20,9 @@ def drawn(page):
 
 
 @pytest.mark.parametrize("name", LABS)
-def test_a_prediction_is_made_by_keys_judged_and_undone(browser, name):
+def test_a_prediction_is_made_by_keys_judged_and_undone(show, name):
     make, first = LABS[name]
-    page = page_of(browser, make())
+    page = show(make(), viewport=SIZE)
     right = page.evaluate(RIGHT)
     assert page.locator(".question").is_visible()
     assert page.inner_text(".answer") == ""
@@ -52,19 +46,17 @@ def test_a_prediction_is_made_by_keys_judged_and_undone(browser, name):
         page.keyboard.press("Control+z")
     page.keyboard.press("Control+Shift+z")
     assert page.locator(".predictions input:checked").count() == 1
-    page.close()
 
 
-def test_a_wrong_prediction_is_told_the_right_one(browser):
-    page = page_of(browser, observer_lab())
+def test_a_wrong_prediction_is_told_the_right_one(show):
+    page = show(observer_lab(), viewport=SIZE)
     page.check(control("predict foe 2"))
     page.click(control("act foe 0"))
     assert page.inner_text(".answer").startswith("Not what you predicted: For a moment only.")
-    page.close()
 
 
-def test_a_question_stands_over_its_own_settings_and_an_answer_says_when_it_is_of_others(browser):
-    page = page_of(browser, observer_lab())
+def test_a_question_stands_over_its_own_settings_and_an_answer_says_when_it_is_of_others(show):
+    page = show(observer_lab(), viewport=SIZE)
     opening = page.evaluate(SETTINGS)
     page.click(control("preset bias"))
     page.click(control("act bias 0"))
@@ -79,11 +71,10 @@ def test_a_question_stands_over_its_own_settings_and_an_answer_says_when_it_is_o
     assert page.evaluate(SETTINGS) == opening
     assert page.inner_text(".answer") == ""
     assert page.inner_text(".since") == ""
-    page.close()
 
 
-def test_an_error_is_sketched_by_pointer_and_by_keys_and_stays_to_be_compared(browser):
-    page = page_of(browser, observer_lab())
+def test_an_error_is_sketched_by_pointer_and_by_keys_and_stays_to_be_compared(show):
+    page = show(observer_lab(), viewport=SIZE)
     page.click(control("preset drop"))
     drawn(page)
     assert page.evaluate(SKETCH) == ""
@@ -109,11 +100,10 @@ def test_an_error_is_sketched_by_pointer_and_by_keys_and_stays_to_be_compared(br
         page.click(control("undo"))
         drawn(page)
     assert page.evaluate(SKETCH) == ""
-    page.close()
 
 
-def test_a_number_out_of_range_is_told_what_the_field_takes(browser):
-    page = page_of(browser, observer_lab())
+def test_a_number_out_of_range_is_told_what_the_field_takes(show):
+    page = show(observer_lab(), viewport=SIZE)
     page.evaluate(UNFOLD)
     for name, text, told in (
         ("noise size number", "7", "a number from 0 to 1"),
@@ -132,11 +122,10 @@ def test_a_number_out_of_range_is_told_what_the_field_takes(browser):
         assert page.locator(".range:not([hidden])").count() == 0
         page.click(control("reset"))
         drawn(page)
-    page.close()
 
 
-def test_a_press_that_changes_the_true_world_says_so(browser):
-    page = page_of(browser, structure_lab())
+def test_a_press_that_changes_the_true_world_says_so(show):
+    page = show(structure_lab(), viewport=SIZE)
     page.click(control("topic cases"))
     page.click(control("corollary 3"))
     drawn(page)
@@ -146,14 +135,12 @@ def test_a_press_that_changes_the_true_world_says_so(browser):
     assert "what is unknown" in told
     assert "the observers" not in told
     assert told.endswith("All else is as it was.")
-    page.close()
 
 
-def test_while_python_computes_nothing_is_red(browser):
-    page = page_of(browser, observer_lab())
+def test_while_python_computes_nothing_is_red(show):
+    page = show(observer_lab(), viewport=SIZE)
     page.fill(control("noise size number"), "0.001")
     page.wait_for_selector(".silence:not([hidden])")
     assert "has not answered yet" in page.inner_text(".silence")
     colour = "(s) => getComputedStyle(document.querySelector(s)).color"
     assert page.evaluate(colour, ".silence") == page.evaluate(colour, ".reading")
-    page.close()

@@ -4,7 +4,7 @@ import json
 import re
 
 import pytest
-from lab_alone import DRAWN, opened, stated_policy
+from lab_alone import DRAWN, stated_policy
 from lab_browser import UNFOLD, assert_equals_python, control, rested, state
 from sample_sizes import sampled
 
@@ -83,10 +83,9 @@ def answered(told):
     return {"analysis": {"serial": told["summary"]["serial"]}}
 
 
-def with_worker(browser, lab, **options):
-    """A page with a lab that computes beside it."""
-    page = opened(browser, lab, answers=answered, **options)
-    page.wait_for_function(DRAWN)
+def with_worker(show, lab, **options):
+    """A page with a lab that computes in a worker."""
+    page = show(lab, answers=answered, **options)
     rested(page)
     page.evaluate(TOUCH)
     page.wait_for_function(BESIDE)
@@ -125,8 +124,8 @@ def memory_of(page):
     return used
 
 
-def test_under_the_stated_policy_a_worker_computes_what_python_computes(browser):
-    page = with_worker(browser, observer_lab(observers=["identifier_based", "extended_kalman"], duration=10.0))
+def test_under_the_stated_policy_a_worker_computes_what_python_computes(show):
+    page = with_worker(show, observer_lab(observers=["identifier_based", "extended_kalman"], duration=10.0))
     page.evaluate(COUNT)
     page.evaluate(UNFOLD)
     page.fill(control("duration number"), "8")
@@ -138,11 +137,10 @@ def test_under_the_stated_policy_a_worker_computes_what_python_computes(browser)
     assert list(shown["runs"]) == ["identifier_based", "extended_kalman", "de_luca"]
     assert any(line["name"].startswith("kept") for line in shown["drawn"]["error"])
     assert_equals_python(shown)
-    page.close()
 
 
-def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported(browser):
-    page = opened(browser, observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'self'", answered)
+def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported(show):
+    page = show(observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'self'", answered)
     page.wait_for_function(DRAWN)
     page.evaluate("""() => {
         const [{ widget }] = window.perceptObsLabs;
@@ -154,11 +152,10 @@ def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported
     rested(page)
     assert [worker.url for worker in page.workers] == ["http://lab.test/lab.js"]
     assert_equals_python(state(page))
-    page.close()
 
 
-def test_where_a_policy_forbids_workers_the_page_computes(browser):
-    page = opened(browser, observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'none'", answered)
+def test_where_a_policy_forbids_workers_the_page_computes(show):
+    page = show(observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'none'", answered)
     page.wait_for_function(DRAWN)
     page.evaluate(COUNT)
     page.evaluate(TOUCH)
@@ -171,32 +168,29 @@ def test_where_a_policy_forbids_workers_the_page_computes(browser):
     assert page.evaluate("window.runs") > 0
     assert page.locator(".problem:not([hidden])").count() == 0
     assert_equals_python(state(page))
-    page.close()
 
 
-def test_while_a_heavy_picture_is_computed_the_page_goes_on(browser):
+def test_while_a_heavy_picture_is_computed_the_page_goes_on(show):
     """A long task of the page would block pointer and keys as long."""
-    page = with_worker(browser, points_lab(weight="riccati", size=0.01, duration=30.0))
+    page = with_worker(show, points_lab(weight="riccati", size=0.01, duration=30.0))
     found = page.evaluate(BLOCKED, {"period": 0.005, "step": 0.002, "duration": 60.0})
     assert found["took"] > 300, found
     assert found["longest"] < found["took"] / 2, found
     assert found["turns"] > 20, found
-    page.close()
 
 
 @pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
-def test_keys_lose_no_step_where_pictures_are_late(browser, make):
-    page = with_worker(browser, make())
+def test_keys_lose_no_step_where_pictures_are_late(show, make):
+    page = with_worker(show, make())
     before = page.evaluate(PLACE)
     page.evaluate(KEYS_FASTER_THAN_PICTURES)
     rested(page)
     assert [b - a for a, b in zip(before, page.evaluate(PLACE), strict=True)] == pytest.approx([0.02, 0.01])
-    page.close()
 
 
-def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(browser):
+def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
     """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
-    page = with_worker(browser, observer_lab(**FOUR))
+    page = with_worker(show, observer_lab(**FOUR))
     used = memory_of(page)
     page.evaluate(MOVE, 100)
     page.evaluate(PLAY, 1)
@@ -207,7 +201,6 @@ def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the
     rested(page)
     assert used() - before < 10, (before, used())
     assert found["pictures"] > 0.9 * found["frames"], found
-    page.close()
 
 
 def test_the_policy_that_readme_states_says_nothing_of_workers():

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import centre, control, painted
 
 from percept_obs.labs import observer_lab
@@ -39,29 +39,20 @@ TURNING = [[0.0, 0.0, 0.1], [0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]
 CROSSING = {"A": TURNING, "b": [0.0, 0.0, 0.8], "X0": [-2.0, 0.0, 2.0], "duration": 12.0}
 
 
-def page_of(browser, **settings):
-    page = opened(browser, observer_lab(**settings), viewport={"width": 1280, "height": 800})
-    page.wait_for_function(DRAWN)
-    return page
-
-
 @pytest.fixture
-def page(browser):
-    page = page_of(browser)
-    yield page
-    page.close()
+def page(show):
+    return show(observer_lab())
 
 
-def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(browser):
+def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(show):
     cases = {"2330 resets": {**BIAS, "start": ZERO}, "unobservable circle": CROSSING, "1.91 s": {}, "799": {}}
     for text, settings in cases.items():
-        page = page_of(browser, **settings)
+        page = show(observer_lab(**settings))
         assert text in page.evaluate(WRITTEN)
-        page.close()
 
 
-def test_the_lines_of_a_kept_run_come_go_and_change_with_it(browser):
-    page = page_of(browser, pictures=["error"], duration=8.0)
+def test_the_lines_of_a_kept_run_come_go_and_change_with_it(show):
+    page = show(observer_lab(pictures=["error"], duration=8.0))
     page.evaluate("() => { for (const fold of document.querySelectorAll('details')) fold.open = true; }")
     counted = [page.evaluate(KEPT)]
     for act in ("keep", "keep", "observer sliding_mode", "keep"):
@@ -71,15 +62,13 @@ def test_the_lines_of_a_kept_run_come_go_and_change_with_it(browser):
     none, one, forgotten, unchanged, two = counted
     assert none == forgotten == unchanged == 0
     assert two > one > 0
-    page.close()
 
 
-def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_that_so_far(browser):
+def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_that_so_far(show):
     still = [[0.0] * 3] * 3
-    page = page_of(browser, A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0)
+    page = show(observer_lab(A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0))
     assert "nothing above 0 in this time" in page.evaluate(WRITTEN)
-    page.close()
-    page = page_of(browser)
+    page = show(observer_lab())
     assert "since the first sample" in page.evaluate(WRITTEN)
     begun = page.evaluate("""() => {
         const [{ shown: { excitation: { begun, time, smallest } } }] = window.perceptObsLabs;
@@ -88,7 +77,6 @@ def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_t
     assert begun[:2] == [1001, 0]
     assert begun[2] == pytest.approx(begun[4], rel=1e-12)
     assert begun[3] == pytest.approx(10)
-    page.close()
 
 
 def test_time_opens_at_the_story_and_zooms_by_keys_wheel_and_drag(page):
@@ -136,19 +124,18 @@ def test_axes_hold_still_while_the_hand_is_down_and_the_foe_stays_where_it_is_le
     assert page.evaluate(SPAN) == [0, 8]
 
 
-def test_a_depth_that_grows_far_shows_its_beginning(browser):
+def test_a_depth_that_grows_far_shows_its_beginning(show):
     growing = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
-    page = page_of(browser, A=growing, b=[0.1, 0.0, 0.1], pictures=["distance"])
+    page = show(observer_lab(A=growing, b=[0.1, 0.0, 0.1], pictures=["distance"]))
     page.click(control("zoom whole"))
     ((low, high, log),) = page.evaluate(SCALES)
     assert log
     assert low <= 2.5
     assert high > 1e6
-    page.close()
 
 
-def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
-    page = page_of(browser, noise=BIAS["noise"], duration=20.0)
+def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(show):
+    page = show(observer_lab(noise=BIAS["noise"], duration=20.0))
     page.click("summary:has-text('Charts')")
     for name in ("bound error", "bound map"):
         page.focus(control(name))
@@ -172,11 +159,10 @@ def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(browser):
     page.wait_for_function(f"{resolution} === undefined")
     assert "There is no bound without noise" in page.inner_text(".why")
     assert "bound" not in page.inner_text(".legend")
-    page.close()
 
 
-def test_the_line_that_the_legend_points_at_stands_out(browser):
-    page = page_of(browser, observers=["identifier_based", "sliding_mode", "extended_kalman"])
+def test_the_line_that_the_legend_points_at_stands_out(show):
+    page = show(observer_lab(observers=["identifier_based", "sliding_mode", "extended_kalman"]))
     faint = """() => {
         const pen = CanvasRenderingContext2D.prototype;
         const own = pen.stroke;
@@ -195,4 +181,3 @@ def test_the_line_that_the_legend_points_at_stands_out(browser):
     assert page.evaluate(faint) == 0
     page.focus(".line-name:has-text('truth')")
     assert page.evaluate(faint) >= 6
-    page.close()

@@ -1,7 +1,7 @@
 """Hand and eye are together: whatever has the focus, the image or the scene and the chart of the error are in view."""
 
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import UNFOLD, control, painted
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
@@ -70,16 +70,10 @@ CUT = """() => {
 TABS = ("question", "controls", "words", "equations")
 
 
-def page_of(browser, name, size=None, **settings):
-    page = opened(browser, LABS[name](**settings), viewport=size or NOTEBOOK)
-    page.wait_for_function(DRAWN)
-    return page
-
-
 @pytest.mark.parametrize("name", LABS)
 @pytest.mark.parametrize("size", [NOTEBOOK, {"width": 1000, "height": 700}, {"width": 1280, "height": 800}])
-def test_pictures_are_in_view_whichever_control_has_the_focus(browser, name, size):
-    page = page_of(browser, name, size)
+def test_pictures_are_in_view_whichever_control_has_the_focus(show, name, size):
+    page = show(LABS[name](), viewport=size)
     page.evaluate(AMONG, 900)
     for everything in (False, True):
         if everything:
@@ -90,13 +84,12 @@ def test_pictures_are_in_view_whichever_control_has_the_focus(browser, name, siz
         found = page.evaluate(WALK)
         assert found["wrong"] == []
         assert found["walked"] > (60 if everything else 25)
-    page.close()
 
 
 @pytest.mark.parametrize("name", LABS)
 @pytest.mark.parametrize("width", [400, 285])
-def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(browser, name, width):
-    page = page_of(browser, name)
+def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(show, name, width):
+    page = show(LABS[name](), viewport=NOTEBOOK)
     page.evaluate(UNFOLD)
     wide = """() => [...document.querySelectorAll('.percept-lab [data-control]')]
         .filter((c) => c.checkVisibility()).map((c) => c.dataset.control)"""
@@ -114,4 +107,3 @@ def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(browser, name, 
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             seen |= set(page.evaluate(wide))
     assert wanted - seen == set()
-    page.close()

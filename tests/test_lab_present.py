@@ -1,7 +1,7 @@
 """What is shown is of the present settings: nothing old of an unseen point, and what is far away is at the rim."""
 
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import UNFOLD, centre, control
 
 from percept_obs.labs import observer_lab, structure_lab
@@ -18,10 +18,9 @@ SCALES = "() => Object.entries([...window.perceptObsLabs][0].time.scales)"
 
 
 @pytest.mark.parametrize("name", BEHIND)
-def test_of_a_point_behind_the_camera_nothing_old_is_left_and_the_remedy_names_a_control(browser, name):
+def test_of_a_point_behind_the_camera_nothing_old_is_left_and_the_remedy_names_a_control(show, name):
     make, change, named = BEHIND[name]
-    page = opened(browser, make())
-    page.wait_for_function(DRAWN)
+    page = show(make())
     page.evaluate(CHANGE.replace("{}", change))
     page.wait_for_function(DRAWN)
     page.wait_for_function("() => document.querySelector('.why').textContent.includes('behind the camera')")
@@ -38,12 +37,10 @@ def test_of_a_point_behind_the_camera_nothing_old_is_left_and_the_remedy_names_a
     if name == "structure":
         assert page.locator(".told .value").text_content() == ""
         assert "−0.05" in page.locator(".told .with-numbers").text_content()
-    page.close()
 
 
-def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(browser):
-    page = opened(browser, observer_lab(b=[0.5, 0.25, 0.0]))
-    page.wait_for_function(DRAWN)
+def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(show):
+    page = show(observer_lab(b=[0.5, 0.25, 0.0]))
     handle = page.locator(control("foe"))
     assert handle.is_visible()
     assert handle.get_attribute("data-tag") == "FOE at infinity"
@@ -62,12 +59,11 @@ def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(
     assert b3 > 0
     assert (b1**2 + b2**2 + b3**2) ** 0.5 == pytest.approx(0.3125**0.5)
     assert handle.get_attribute("data-tag") == "FOE"
-    page.close()
 
 
-def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(browser):
+def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(show):
     """What moved before may have sent it there, and its number is hidden only at the next picture."""
-    page = opened(browser, observer_lab())
+    page = show(observer_lab())
     wrong = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.wait_for_function(DRAWN)
@@ -82,13 +78,11 @@ def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(b
     assert wrong == []
     assert page.evaluate(B) == [0.5, 0.25, 0]
     assert page.locator(control("foe y1 number")).is_hidden()
-    page.close()
 
 
-def test_a_lab_has_not_settled_before_its_words_follow_a_step_back(browser):
+def test_a_lab_has_not_settled_before_its_words_follow_a_step_back(show):
     """Python knows these settings and their picture is there at once, but the words are those of the step before."""
-    page = opened(browser, observer_lab(duration=5.0))
-    page.wait_for_function(DRAWN)
+    page = show(observer_lab(duration=5.0))
     page.check(control("outputs y1"))
     page.wait_for_function(DRAWN)
     said, settled = page.evaluate("""() => {
@@ -99,23 +93,18 @@ def test_a_lab_has_not_settled_before_its_words_follow_a_step_back(browser):
     assert not settled
     page.wait_for_function(DRAWN)
     assert page.text_content(".verdicts") != said
-    page.close()
 
 
-def test_without_translation_there_is_no_focus_of_expansion_and_the_lab_says_so(browser):
-    page = opened(browser, observer_lab(b=[0.0, 0.0, 0.0]))
-    page.wait_for_function(DRAWN)
+def test_without_translation_there_is_no_focus_of_expansion_and_the_lab_says_so(show):
+    page = show(observer_lab(b=[0.0, 0.0, 0.0]))
     page.wait_for_function("() => document.querySelector('.why').textContent.includes('Nothing translates')")
     assert page.locator(control("foe")).is_hidden()
-    page.close()
 
 
 @pytest.mark.parametrize("make", [observer_lab, structure_lab])
-def test_the_chart_that_names_the_tolerance_shows_it(browser, make):
-    page = opened(browser, make())
-    page.wait_for_function(DRAWN)
+def test_the_chart_that_names_the_tolerance_shows_it(show, make):
+    page = show(make())
     page.click(control("zoom whole"))
     page.wait_for_function(DRAWN)
     (scale,) = [scale for title, scale in page.evaluate(SCALES) if "tolerance 10 %" in title]
     assert scale["low"] < 0.1 < scale["high"]
-    page.close()

@@ -1,7 +1,7 @@
 """Three questions are answered by moving things in the observer lab: four acts at most, the reason in a picture."""
 
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import centre, control
 
 from percept_obs.labs import observer_lab
@@ -28,12 +28,10 @@ SETTLING = "() => [...window.perceptObsLabs][0].shown.runs[0].settling"
 
 
 @pytest.fixture
-def page(browser):
-    page = opened(browser, observer_lab(), viewport={"width": 1280, "height": 800})
-    page.wait_for_function(DRAWN)
+def page(show):
+    page = show(observer_lab())
     page.click(control("way back"))  # the question is closed: here nobody is asked
-    yield page
-    page.close()
+    return page
 
 
 @pytest.fixture

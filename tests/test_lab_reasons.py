@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lab_alone import DRAWN, opened
+from lab_alone import DRAWN
 from lab_browser import control
 
 from percept_obs.labs import observer_lab
@@ -33,22 +33,17 @@ SHARES = """() => {
 
 
 @pytest.fixture
-def show(browser):
-    """Open labs alone in pages of 1280 x 800, at rest and without a question."""
-    pages = []
+def ask(show):
+    """Shows observer labs without a question."""
 
-    def make(**settings):
-        page = opened(browser, observer_lab(**settings), viewport={"width": 1280, "height": 800})
-        pages.append(page)
-        page.wait_for_function(DRAWN)
+    def without_question(**settings):
+        page = show(observer_lab(**settings))
         if page.locator(control("way back")).is_visible():
             page.click(control("way back"))
         page.wait_for_function(DRAWN)
         return page
 
-    yield make
-    for page in pages:
-        page.close()
+    return without_question
 
 
 def names_of(page, *parts):
@@ -62,8 +57,8 @@ def overlap(one, other):
     return abs(one[2] - other[2]) < 9 and left < right + other[4] and right < left + one[4]
 
 
-def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(show):
-    page = show(outputs=["y1"])
+def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(ask):
+    page = ask(outputs=["y1"])
     alike = page.evaluate("""() => { const [lab] = window.perceptObsLabs; const [plane] = lab.planes;
         return plane.parts.alikeOf(lab.shown, { sample: 300, part: 0 }, plane.square); }""")
     copies = alike["copies"]
@@ -77,25 +72,25 @@ def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(show):
     assert not names_of(page, "alike to y1 alone")
 
 
-def test_an_error_is_drawn_with_what_noise_adds_and_with_the_same_run_without_noise(show):
-    page = show(outputs=["y1"], noise=NOISE)
+def test_an_error_is_drawn_with_what_noise_adds_and_with_the_same_run_without_noise(ask):
+    page = ask(outputs=["y1"], noise=NOISE)
     assert {"what noise adds", "without noise"} <= {name[0] for name in names_of(page, "nois")}
     shares = page.evaluate(SHARES)
     assert shares["late"] > 10 * shares["lateQuiet"]
-    both = show(noise=NOISE).evaluate(SHARES)
+    both = ask(noise=NOISE).evaluate(SHARES)
     assert both["late"] < shares["late"] / 5
-    more = show(noise=NOISE, gains={"identifier_based": {"gain": 60.0}}).evaluate(SHARES)
+    more = ask(noise=NOISE, gains={"identifier_based": {"gain": 60.0}}).evaluate(SHARES)
     assert more["late"] > 3 * both["late"]
     quiet = [np.flatnonzero(np.array(found["quiet"]) < 0.5)[0] for found in (more, both)]
     assert quiet[0] < quiet[1] / 2  # more gain is faster
-    still = show()
+    still = ask()
     error = still.evaluate("() => Array.from([...window.perceptObsLabs][0].shown.runs[0].error)")
     assert both["quiet"] == error
     assert still.evaluate("() => [...window.perceptObsLabs][0].shown.shares") is None
 
 
-def test_the_innovation_is_drawn_against_the_noise(show):
-    page = show(outputs=["y1"], noise=NOISE, pictures=["innovation", "error"])
+def test_the_innovation_is_drawn_against_the_noise(ask):
+    page = ask(outputs=["y1"], noise=NOISE, pictures=["innovation", "error"])
     lines = page.evaluate("""() => { const [{ drawn, shown }] = window.perceptObsLabs;
         const k = 4000;
         return { drawn: drawn.innovation.lines.map(({ name, values }) => [name, values[values.length > 2 ? k : 0]]),
@@ -105,8 +100,8 @@ def test_the_innovation_is_drawn_against_the_noise(show):
     assert sorted(value for name, value in lines["drawn"] if name == "noise") == [-0.02, 0.02]
 
 
-def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(show):
-    page = show()
+def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(ask):
+    page = ask()
     page.click(control("preset gain"))
     page.click(control("act gain 0"))
     page.wait_for_function(DRAWN)
@@ -125,8 +120,8 @@ def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(sh
     assert len(names_of(page, "kept run")) == 3  # on top of both, and what noise adds to it
 
 
-def test_a_choice_opens_the_time_where_its_story_is(show):
-    page = show()
+def test_a_choice_opens_the_time_where_its_story_is(ask):
+    page = ask()
     assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") < 20
     page.check(control("outputs y1"))
     page.wait_for_function(DRAWN)
@@ -138,8 +133,8 @@ def test_a_choice_opens_the_time_where_its_story_is(show):
         assert page.evaluate("() => [...window.perceptObsLabs][0].span.high") == high, preset
 
 
-def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(show):
-    page = show()
+def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(ask):
+    page = ask()
     page.click(control("zoom in"))
     page.fill(control("noise size number"), "0.003")
     page.fill(control("identifier_based gain number"), "60")
@@ -149,8 +144,8 @@ def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(show):
     assert not names_of(page, "80 s")  # too late to be sure of, so it is no event
 
 
-def test_names_of_arrows_can_be_read_and_the_estimate_leaves_the_point_in_sight(show):
-    page = show()
+def test_names_of_arrows_can_be_read_and_the_estimate_leaves_the_point_in_sight(ask):
+    page = ask()
     page.evaluate("() => [...window.perceptObsLabs][0].moveFoe([0.4, 0.6])")
     page.wait_for_function(DRAWN)
     for time in (0, 0.6, 1.2, 3.0):
@@ -162,8 +157,8 @@ def test_names_of_arrows_can_be_read_and_the_estimate_leaves_the_point_in_sight(
     assert handle == "rgba(0, 0, 0, 0)"  # a point at the FOE is seen through its handle
 
 
-def test_the_key_of_the_map_covers_nothing_of_the_image(show):
-    page = show(noise=NOISE, bound=["map"])
+def test_the_key_of_the_map_covers_nothing_of_the_image(ask):
+    page = ask(noise=NOISE, bound=["map"])
     right = page.evaluate("""() => { const [{ planes: [plane] }] = window.perceptObsLabs;
         const { square, handles: [{ at, scale, node }] } = plane;
         const [x] = node.style.transform.match(/[-\\d.]+/g).map(Number);
@@ -173,8 +168,8 @@ def test_the_key_of_the_map_covers_nothing_of_the_image(show):
     assert all(x > right for _, x, *_ in numbers)
 
 
-def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_shown(show):
-    page = show(motion="b1 = cos(t); b2 = 0; b3 = 1", A=[[0.0] * 3] * 3, X0=[0, 0, 40], duration=6)
+def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_shown(ask):
+    page = ask(motion="b1 = cos(t); b2 = 0; b3 = 1", A=[[0.0] * 3] * 3, X0=[0, 0, 40], duration=6)
     for time in (0.0, 1.0, 3.0):
         page.evaluate(PUT, [time])
         (found,) = names_of(page, "FOE now")
@@ -190,8 +185,8 @@ def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_sho
 LOOK = """() => { const [{ span, theme }] = window.perceptObsLabs; return [span.low, span.high, theme.picked]; }"""
 
 
-def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(show):
-    page = show()
+def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(ask):
+    page = ask()
     undo, redo = control("undo"), control("redo")
     first = page.evaluate(LOOK)
     page.click(control("zoom in"))

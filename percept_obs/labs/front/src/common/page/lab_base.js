@@ -58,7 +58,6 @@ export class LabBase {
       onSilence: (silence) => this.view.silence(silence),
     });
     this.leave = this.watchPage(view.root);
-    view.root.classList.toggle("alone", !this.widget.save_changes);
     this.panel.show();
     this.schedule();
     this.rest();

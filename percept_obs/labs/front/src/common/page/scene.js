@@ -258,31 +258,22 @@ function line(pen, frame, from, to) {
   if (part) stroke(pen, part.slice(0, 2), part.slice(2));
 }
 
-/** The way of a point, with gaps where it is nowhere. */
+/** The path of a point, with gaps where it is nowhere. */
 function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
   pen.beginPath();
-  const [[left, top], [right, bottom]] = frame.corners;
-  let [x0, y0, inside, endX, endY] = [NaN, NaN, false, NaN, NaN];
-  const piece = (fromX, fromY, toX, toY) => {
-    if (fromX !== endX || fromY !== endY) pen.moveTo(fromX, fromY);
-    pen.lineTo(toX, toY);
-    endX = toX;
-    endY = toY;
-  };
+  let [before, end] = [[NaN, NaN], [NaN, NaN]];
   for (let k = 0; k < positions.length; k += 3) {
-    const x = frame.x(positions[k], positions[k + 1], positions[k + 2]);
-    const y = frame.y(positions[k], positions[k + 1], positions[k + 2]);
+    const [X, Y, Z] = positions.subarray(k, k + 3);
+    const at = on(frame, [X, Y, Z]);
     // Points closer than a pixel do not show.
-    if (Math.abs(x - x0) + Math.abs(y - y0) < NEAR && k + 3 < positions.length) continue;
-    const before = inside;
-    inside = x >= left && x <= right && y >= top && y <= bottom;
-    if (inside && before) piece(x0, y0, x, y);
-    else if (Number.isFinite(x0 + y0 + x + y)) {
-      const part = partIn([x0, y0], [x, y], frame.corners);
-      if (part) piece(...part);
+    if (Math.abs(at[0] - before[0]) + Math.abs(at[1] - before[1]) < NEAR && k + 3 < positions.length) continue;
+    const part = Number.isFinite(before[0] + before[1] + at[0] + at[1]) && partIn(before, at, frame.corners);
+    if (part) {
+      if (part[0] !== end[0] || part[1] !== end[1]) pen.moveTo(part[0], part[1]);
+      pen.lineTo(part[2], part[3]);
+      end = [part[2], part[3]];
     }
-    x0 = x;
-    y0 = y;
+    before = at;
   }
   const own = kept ? theme.kept : colour;
   pen.strokeStyle = own;
