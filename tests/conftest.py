@@ -1,4 +1,4 @@
-"""What tests share: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
+"""Fixtures of all tests: Node.js, a browser, matplotlib without windows, and the same examples in every CI run."""
 
 import os
 

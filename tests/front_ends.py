@@ -41,7 +41,7 @@ class Shown:
         self.page.wait_for_function(SETTLED, arg=self.labs, timeout=1000 * patience)
 
     def opening(self):
-        """What the first lab shows when it is put back, all its topics open."""
+        """State of the first lab when it is put back, all its topics open."""
         self.settle()
         self.page.evaluate(UNFOLDED)
         self.page.click(control("reset"))
@@ -50,12 +50,12 @@ class Shown:
         return self.first()
 
     def first(self):
-        """What the first lab shows when it has come to rest."""
+        """State of the first lab when it has come to rest."""
         self.settle()
         return self.state(0)
 
     def state(self, place):
-        """What the lab at a place shows, counted from above: which opens first is the front end's affair."""
+        """State of the lab at a place, counted from above: which opens first is the front end's affair."""
         return state(self.page, self.page.evaluate(ORDER)[place])
 
 
@@ -154,7 +154,7 @@ def in_jupyterlab(page, server):
 
 
 def in_notebook(page, server):
-    """The same in Notebook 7."""
+    """A notebook of Notebook 7, its cells run by the menu."""
     name = _notebook(page, server, "notebook.ipynb")
     page.goto(f"/notebooks/{name}")
     wait_until(lambda: kernel_is_ready(page, name), "the kernel to be ready")

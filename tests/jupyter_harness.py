@@ -36,7 +36,7 @@ ERROR_CLASS = "percept-obs-error"
 # In the kernel.  `execute` imports this file there and calls the next functions.
 
 SEEN: list[str] = []
-"""What went wrong in this kernel and would otherwise stay unseen."""
+"""Errors of this kernel that would otherwise stay unseen."""
 
 
 def watch() -> None:
@@ -332,7 +332,7 @@ def open_notebook(page, name: str) -> None:
 
 
 def kernel_is_ready(page, name: str) -> bool:
-    """Whether the kernel of a notebook of the server waits for code."""
+    """Return True if the kernel of a notebook of the server waits for code."""
     kernels = [s["kernel"] for s in page.request.get("/api/sessions").json() if s["path"] == name]
     return any(kernel["connections"] and kernel["execution_state"] == "idle" for kernel in kernels)
 
@@ -358,7 +358,7 @@ def complaints(page) -> list[str]:
 
 
 def log_entries(page) -> str:
-    """What JupyterLab says about its log console, which is where errors in callbacks go; empty without entries."""
+    """Text of JupyterLab's log console, where errors in callbacks go; empty without entries."""
     return page.evaluate(LOG) or ""
 
 
@@ -395,7 +395,7 @@ def wait_until(holds: Callable[[], object], what: str, patience: float = 60) -> 
 
 
 def is_up(address: str, process: subprocess.Popen, log: Path) -> bool:
-    """Whether a server answers at an address."""
+    """Return True if a server answers at an address."""
     if process.poll() is not None:
         raise RuntimeError(f"it did not start:\n{log.read_text()}")
     try:

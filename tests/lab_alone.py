@@ -77,7 +77,7 @@ def opened(browser, lab, policy=None, answers=None, **options):
 
 
 def following(lab):
-    """What Python would answer the page's messages."""
+    """Return the function that answers the page's messages as Python would."""
 
     def answers(message):
         lab.set_state(message)

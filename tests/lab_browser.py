@@ -44,7 +44,7 @@ OUTSIDE = """() => {
     return [...lab.querySelectorAll('canvas, fieldset, .actions, .control')].filter(
         (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((e) => e.className);
 }"""
-"""What is wider than its lab."""
+"""Elements that are wider than their lab."""
 
 RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
     (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
@@ -143,7 +143,7 @@ def painted(page):
 
 
 def state(page, which=0):
-    """What a lab of the page shows: settings, estimates, lines drawn, words."""
+    """Settings, estimates, lines and words of a lab of the page."""
     return page.evaluate(STATE, which)
 
 
@@ -180,7 +180,7 @@ def assert_python_has(folder, settings, patience=10):
 
 
 def assert_equals_python(shown, tolerance=1e-9):
-    """What is drawn are the numbers of a Python run of the same settings."""
+    """Compare what is drawn with a Python run of the same settings."""
     runs = observer_lab(**shown["settings"]).run()
     assert list(shown["runs"]) == list(runs)
     for name, run in runs.items():
@@ -193,7 +193,7 @@ def assert_equals_python(shown, tolerance=1e-9):
 
 
 def assert_structure_is_python(shown):
-    """What is drawn and said of structure and motion are the numbers and words of a Python run."""
+    """Compare what is drawn and said of structure and motion with a Python run."""
     told = {name: {"estimate": e, "divergedAt": shown["divergedAt"][name]} for name, e in shown["runs"].items()}
     settings = structure_lab(**shown["settings"]).settings
     assert_same_structure_runs(settings, told)
@@ -202,7 +202,7 @@ def assert_structure_is_python(shown):
 
 
 def assert_points_are_python(shown, tolerance=1e-9):
-    """What is drawn of many points are the numbers of a Python run."""
+    """Compare what is drawn of many points with a Python run."""
     run = run_of(shown["settings"])
     assert shown["divergedAt"]["points"] == run.diverged_at
     assert run.verdict() in shown["words"]
@@ -216,7 +216,7 @@ def assert_points_are_python(shown, tolerance=1e-9):
 
 
 def assert_is_python(kind, shown, following=False):
-    """What a lab shows is what Python computes; settings of random events are followed, stiff ones less closely."""
+    """Compare a lab with Python; after random events, which may be stiff, less closely."""
     if kind == "points":
         assert_points_are_python(shown, 1e-6 if following else 1e-9)
     elif kind == "structure":
@@ -350,7 +350,7 @@ def open_topics_by_keyboard(page):
 
 
 def serious_violations(page, widths=("", "400px")):
-    """What axe-core finds to be serious or critical inside the lab, everything open, at some widths."""
+    """Serious and critical findings of axe-core inside the lab, everything open, at some widths."""
     axe = FRONT / "node_modules/axe-core/axe.min.js"
     if not axe.exists():
         missing("node", f"axe-core is missing: run npm ci in {FRONT}.")

@@ -38,7 +38,7 @@ def at_desk(browser, desk, **options):
 
 
 def text_of(page, selector):
-    """What an element says, with formulas as letters side by side."""
+    """Text of an element, with formulas as letters side by side."""
     return page.locator(selector).first.text_content().replace("\u2062", " ")
 
 

@@ -26,7 +26,7 @@ OPEN = {
     "marimo": (in_marimo, "marimo", "marimo_apps"),
     "saved file": (in_a_saved_file, "percept_obs", "folder"),
 }
-"""How each is opened, the module that it needs, and the fixture that it is opened with."""
+"""For each: the function that opens it, the module that it needs, and the fixture to open it with."""
 EVERYWHERE = [f"{end} in {browser}" for browser in BROWSERS for end in OPEN]
 
 

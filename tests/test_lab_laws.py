@@ -29,7 +29,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 MAKE = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
 OPENING = {"observer": {"duration": 20.0}, "structure": {}, "points": {"duration": 8.0, "window": 4.0}}
 HANDLE = {"observer": "foe", "structure": "ybar", "points": "point 2"}
-"""What is dragged, and the numbers of the settings that it moves, and that it leaves as they are."""
+"""The handle that is dragged."""
 MOVED = {
     "observer": lambda settings: (settings["b"][:2], settings["b"][2:]),
     "structure": lambda settings: (settings["ybar"][:2], settings["ybar"][2:]),

@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
 NOTEBOOK = {"width": 848, "height": 679}
-"""What JupyterLab leaves for an output where its window has 1280 x 800 pixels, with its file browser open."""
+"""Size of an output in JupyterLab whose window has 1280 x 800 pixels, with its file browser open."""
 
 AMONG = """(height) => {
     for (const place of ["before", "after"]) {

@@ -1,4 +1,4 @@
-"""What is shown is of the present settings: nothing old of an unseen point, and what is far away is at the rim."""
+"""Labs show the present settings: nothing old of an unseen point, and what is far away is at the rim."""
 
 import pytest
 from lab_alone import DRAWN
@@ -62,7 +62,7 @@ def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(
 
 
 def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(show):
-    """What moved before may have sent it there, and its number is hidden only at the next picture."""
+    """An earlier move may have sent it there, and its number is hidden only at the next picture."""
     page = show(observer_lab())
     wrong = []
     page.on("pageerror", lambda error: wrong.append(str(error)))

@@ -52,7 +52,7 @@ def names_of(page, *parts):
 
 
 def overlap(one, other):
-    """Whether two words on the same picture cover each other."""
+    """Return True if two words on the same picture cover each other."""
     left, right = [x - w * {"left": 0, "center": 0.5, "right": 1}[a] for _, x, _, a, w, _ in (one, other)]
     return abs(one[2] - other[2]) < 9 and left < right + other[4] and right < left + one[4]
 

@@ -40,7 +40,8 @@ FOUND = """() => { const [lab] = window.perceptObsLabs; return {
 def page(browser):
     """A page with what a notebook's page keeps of a lab, as nbconvert writes it."""
     lab = observer_lab(duration=2.0)  # what there is does not depend on how long it runs
-    saved = embed_data(views=[lab], state=dependency_state([lab]))["manager_state"]["state"]
+    kept = dependency_state([lab], drop_defaults=False)
+    saved = embed_data(views=[lab], state=kept)["manager_state"]["state"]
     page = browser.new_page(offline=True)
     page.evaluate(SHOW, saved[lab.model_id])
     page.wait_for_function(DRAWN)

@@ -1,4 +1,4 @@
-"""How fast labs draw while the hand drags, and open, in JupyterLab.
+"""Speed of labs that draw while the hand drags, and that open, in JupyterLab.
 
     python tests/benchmarks/bench_lab.py [--alone | --saved | --opening] [part of a name]
 
@@ -68,14 +68,14 @@ OPENING = """() => {
 }"""
 
 HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
-"""What is dragged in each lab."""
+"""Handle that is dragged in each lab."""
 
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
     "structure_lab": {"unknown": ["v_p1", "v_p2"], "observers": ["extended_kalman", "layer"]},
     "points_lab": {"state": "origin", "weight": "riccati"},
 }
-"""What is switched to first in each lab."""
+"""First switch in each lab."""
 
 
 class Case(NamedTuple):
@@ -163,7 +163,7 @@ def drag_patiently(page: Any, handle: str, seconds: float) -> dict[str, Any]:
 
 
 def spent(session: Any) -> dict[str, float]:
-    """What a page has computed so far, in seconds."""
+    """Times that a page has computed so far, in seconds."""
     return {m["name"]: m["value"] for m in session.send("Performance.getMetrics")["metrics"]}
 
 

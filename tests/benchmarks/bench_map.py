@@ -1,4 +1,4 @@
-"""How soon the map over two settings is there, and how many are drawn a second while a hand drags beside it.
+"""Time to the first map over two settings, and maps a second while a hand drags beside it.
 
     python tests/benchmarks/bench_map.py [rounds]
 

@@ -9,7 +9,7 @@ import { Sheet } from "./page/sheet.js";
 import { Witness } from "./page/witness.js";
 
 const DEBOUNCE = 20;
-/** How long nobody types before something is said of a text that may not be complete. */
+/** Milliseconds without typing after which a text that may not be complete is judged. */
 const PAUSE = 1000;
 
 export class DeskLab extends LabBase {
@@ -94,7 +94,7 @@ export class DeskLab extends LabBase {
 
   // What is shown.
 
-  /** Whether Python's answer is about the text that stands in a line now. */
+  /** Return true if Python's answer is about the text that stands in a line now. */
   isOf(key) {
     return this.answer?.settings.typed[key] === this.settings.typed[key];
   }

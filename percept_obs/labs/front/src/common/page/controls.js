@@ -15,7 +15,7 @@ function unitOf(unit) {
   return unit && unit !== "1" ? ` (${unit.replaceAll("^2", "²")})` : "";
 }
 
-/** What a field takes, in words. */
+/** Values that a field takes, in words. */
 function expected({ least, most, above, whole, nonzero, condition, reason }) {
   const kind = whole ? "a whole number" : "a number";
   const low = above ?? least;

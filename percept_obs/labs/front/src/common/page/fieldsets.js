@@ -44,12 +44,12 @@ export class Fieldsets {
     return element("fieldset", {}, element("legend", {}, legend), ...rows);
   }
 
-  /** What is asked for first, all in sight. */
+  /** The first controls, all in sight. */
   first(...rows) {
     return element("div", { class: "first" }, ...rows);
   }
 
-  /** What schema and settings say of the value at a place: its name, and how to read and change it. */
+  /** Options of a control for the setting at a place: its schema, its name, and functions to read and change it. */
   bound(place, chosen, more = {}) {
     const { lab } = this;
     return {
@@ -91,7 +91,7 @@ export class Fieldsets {
     return this.add(radios(this.bound(place, true, more)));
   }
 
-  /** How to read and change whether a name is among those at a place, of which one stays if there is a refusal. */
+  /** Functions to read and change whether a name is in the list at a place; with a refusal one name stays. */
   among(place, all, name, refusal = "") {
     const { lab } = this;
     const set = (on) => {

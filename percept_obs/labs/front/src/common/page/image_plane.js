@@ -17,7 +17,7 @@ import { foeMark, ghostMark, pointMark, rimMark } from "./marks.js";
 import { drawSwung } from "./swing.js";
 import { drawAlike, drawVelocities } from "./velocities.js";
 
-/** How much is seen of the path at times that are not in sight. */
+/** Opacity of the path at times that are not in sight. */
 const OTHER_TIMES = 0.2;
 const NONE = /** @type {(...of: any[]) => any} */ (() => null);
 

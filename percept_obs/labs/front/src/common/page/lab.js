@@ -409,7 +409,7 @@ export class Lab extends LabBase {
     this.time.draw(this.chosen(), partsOf, { theme, held, narrow: width < 600 });
   }
 
-  /** What else the time charts show. */
+  /** More values for the time charts. */
   besides() {
     return {};
   }
@@ -437,7 +437,7 @@ export class Lab extends LabBase {
     });
   }
 
-  /** What happened, with the lines that it happened to. */
+  /** Verdicts, each with the line that it is about. */
   verdicts() {
     const { shown, model } = this;
     return shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) }));

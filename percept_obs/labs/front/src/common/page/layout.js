@@ -14,7 +14,7 @@ const WAITING = "Python has not answered yet: it is computing, or its kernel has
 const GONE = "There is no Python here. The lab works without it; run its cell to have Python's sentences as well.";
 const NO_CLIPBOARD = "The browser does not let the lab copy; select the lines below.";
 
-/** What makes something else of the space bar. */
+/** Elements that use the space bar themselves. */
 const OWN_SPACE = "input, select, button, summary, a, .player";
 
 /** Build the page of a lab, and return its view: the functions that bring the page to what is shown. */
@@ -168,7 +168,7 @@ function tabs(label, parts) {
   return element("div", { class: "tabs", role: "group", "aria-label": label }, ...presses);
 }
 
-/** What the letters and words of a lab stand for. */
+/** Table of symbols and their meaning. */
 function symbolTable(entries) {
   const rows = entries.map(([symbol, meaning]) => {
     const term = element("th", { scope: "row" });

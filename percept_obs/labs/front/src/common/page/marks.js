@@ -44,7 +44,7 @@ export function foeMark(pen, x, y, text, theme) {
   label(pen, text, x + 13, y, theme.warning, theme, "left", "middle");
 }
 
-/** What lies outside: an arrow at the rim, with its value inside of it. */
+/** Something outside of the picture: an arrow at the rim, with its value. */
 export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   pen.fillStyle = colour;

@@ -169,7 +169,7 @@ export function drawMap(pen, box, { found, plan, what, title }, theme) {
   drawAxes(pen, frame, each, { ...theme, grid: "transparent" }, [plan.across.label, plan.up.label]);
 }
 
-/** What shades and hatches mean, beside the map. */
+/** The key of shades and hatches, beside the map. */
 function drawKey(pen, { left, top, width, height }, what, { duration, tolerance }, theme) {
   const x = left + width + 10;
   const edges = edgesOf(what, duration);

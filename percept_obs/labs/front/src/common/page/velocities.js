@@ -109,7 +109,7 @@ function tipOf(frame, place, velocity, seconds) {
   return [frame.x(place[0] + seconds * velocity[0]), frame.y(place[1] + seconds * velocity[1])];
 }
 
-/** What is drawn, in words: away from the points, and a line below what is said of a copy that swings. */
+/** Caption, away from the points, and a line below the words on a copy that swings. */
 function caption(pen, { box: { left, top, side }, y }, points, lines, theme) {
   const above = points.some(({ place }) => y(place[1]) > top + 0.7 * side);
   const first = above ? top + 28 : top + side - 6 - 13 * (lines.length - 1);

@@ -1,6 +1,6 @@
 // A worker, made of the bundle that the page was made of, which computes while the page draws.
 
-/** What a script may not have: browsers let a page from a disk make a worker of a script, and of no module. */
+/** Syntax of modules, removed: from a page on a disk browsers make a worker of a script only. */
 const OF_MODULES = /export\s*\{[^{}]*\};?\s*$|\bimport\.meta\.url\b/g;
 
 /**

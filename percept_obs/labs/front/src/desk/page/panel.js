@@ -31,7 +31,7 @@ export class Panel extends Fieldsets {
     this.inverse = this.number("point.2");
   }
 
-  /** What can be measured on a surface. */
+  /** Outputs that can be measured on a surface. */
   choicesOf(surface) {
     return this.model.given?.outputs ?? this.model.surfaces[surface];
   }

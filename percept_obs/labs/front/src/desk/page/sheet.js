@@ -45,7 +45,7 @@ export class Sheet {
     if (focused && !answer.hint) this.lines.at(-1)?.field.focus({ preventScroll: true });
   }
 
-  /** What is found, for those who hear it. */
+  /** The findings in words, for a screen reader. */
   told(answer) {
     const lines = this.lines.map((line, k) => line.told(answer.lines[k])).filter(Boolean);
     return [answer.words, ...lines].filter(Boolean).join(" ");
@@ -105,7 +105,7 @@ class Line {
     this.tell(mine ? found.told : []);
   }
 
-  /** What is wider than its place scrolls, which a keyboard must reach. */
+  /** Let a keyboard reach a formula that scrolls, being wider than its place. */
   letScroll(markup) {
     const seen = `${this.lab.width} ${markup}`;
     if (seen === this.measured) return;

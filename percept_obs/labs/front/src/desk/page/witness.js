@@ -9,7 +9,7 @@ import { DASHES, SOLID } from "../../common/page/looks.js";
 import { arrowMark, pointMark } from "../../common/page/marks.js";
 
 const SQUARE = squareAround([[-0.8, 0.8], [-0.8, 0.8]]);
-/** How long the longer arrow is drawn, in units of the image. */
+/** Length of the longer arrow, in units of the image. */
 const LENGTH = 0.55;
 const HEAD = 9;
 const MINE = 1;

@@ -75,7 +75,7 @@ export class MapPicture {
     return this.wanted(shown) ? KEY.room : 0;
   }
 
-  /** What the shades mean, beside the picture, where it covers nothing. */
+  /** The key of the shades, beside the picture, where it covers nothing. */
   drawKey(pen, { box: { left, top, side } }, theme) {
     if (!this.found) return;
     const x = left + side + 6;

@@ -8,7 +8,7 @@ import { ObserverList } from "../../common/page/observer_list.js";
 import { mapTopic } from "../../common/page/settings_map.js";
 import { axesOf } from "../model/axes.js";
 
-/** What the page calls the settings. */
+/** Labels of the settings in the page. */
 export const WORDS = {
   outputs: { kind: "choice", choices: { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only" } },
   X0: { name: "X0 {}", label: "start {}" },
@@ -29,7 +29,7 @@ export const WORDS = {
   bound: { choices: { error: "bound under the error", map: "map of the bound in the image" } },
 };
 
-/** What the lab calls a setting when it says which have changed. */
+/** Names of settings in a sentence that says which have changed. */
 export const NAMES = {
   motion: "the motion that is typed", xi: "the ξ of the mirror", scenario: "the scenario", A: "the motion A",
   b: "the translation b", X0: "where the point starts", surface: "the imaging surface",

@@ -15,7 +15,7 @@ import { keyOf } from "../model/kernels.js";
 
 /** Parts of the line that is not seen at which its points are drawn; the true one is at 0. */
 const PARTS = [-1.5, 0, 1.5];
-/** How far apart they are at most in the image, as a part of half the picture. */
+/** Largest distance between them in the image, as a part of half the picture. */
 const REACH = 0.5;
 
 /** The motion's A and b at a time that is shown. */
@@ -65,7 +65,7 @@ function unseenLine(lab, shown, at, reach = Infinity) {
   return { stateAt };
 }
 
-/** Of a motion that varies, the focus of expansion at a time, with the circle about it; null where there is none. */
+/** The focus of expansion of a motion that varies, at a time, with the circle about it; null where there is none. */
 function focusAt(lab, shown, at) {
   const { settings } = shown;
   if (!shown.time.length || !varies(settings, lab.model)) return null;
@@ -96,7 +96,7 @@ export function sceneOf(lab) {
     });
     return { copies, measured: shown.measured[0], name: shown.names[shown.measured[0]] };
   };
-  /** How fast the image of the point and of its copies moves, where the motion is known. */
+  /** Image velocities of the point and of its copies, where the motion is known. */
   const arrowsOf = (shown, at, theme) => {
     const { settings, truth, width } = shown;
     if (!truth?.length || settings.scenario in lab.model.recordings) return [];
@@ -131,7 +131,7 @@ export function sceneOf(lab) {
       const placeOf = (k) => arrow.there.map((value) => COPIES[k] * value);
       return [0, 2].map((k) => ({ place: placeOf(k), text: NAMES[k], alike: false }));
     },
-    /** Of one output an instant does not tell a direction of both hidden coordinates: w^T times it is 0. */
+    /** Direction of both hidden coordinates that one output does not tell at an instant: w^T times it is 0. */
     unseenOf(shown, at, theme) {
       const line = unseenLine(lab, shown, at);
       if (!line) return null;

@@ -23,7 +23,7 @@ const HIDDEN = [1, 4];
 export class ImagePlane extends FramedImage {
   constructor(lab, most, arrowsOf) {
     super(lab, Array.from({ length: most }, (_, k) => handleOf(lab, k)));
-    this.arrowsOf = arrowsOf;
+    this.parts = { arrowsOf };
   }
 
   draw(shown, ghost, cursor, theme) {
@@ -50,7 +50,7 @@ export class ImagePlane extends FramedImage {
     if (cursor !== null) {
       const { time, images, points } = shown;
       const speed = meanSpeed(time, images, 2 * points, 0, [0, time.length - 1]);
-      drawVelocities(pen, frame, this.arrowsOf(shown, between(time, cursor), theme), speed, theme);
+      drawVelocities(pen, frame, this.parts.arrowsOf(shown, between(time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, between(shown.time, cursor ?? shown.time[last]), frame, theme);
     this.swing(pen, frame, shown, cursor, theme);

@@ -8,10 +8,10 @@ import { OWN } from "../model/kernels.js";
 import { isComputed, textOfP } from "../model/weight.js";
 import { PointList } from "./point_list.js";
 
-/** What P begins with when a kind is chosen. */
+/** Size of P when a kind is chosen. */
 const OWN_SIZE = { constant: 1, scheduled: 0.3, typed: 1, lyapunov: 1, riccati: 0.01 };
 
-/** What the page calls the settings. */
+/** Labels of the settings in the page. */
 export const WORDS = {
   state: {
     choices: {
@@ -34,7 +34,7 @@ export const WORDS = {
   pictures: { choices: { error: "error", depth: "depths", points: "error of each point", gramian: "Gramian" } },
 };
 
-/** What the lab calls a setting when it says which have changed. */
+/** Names of settings in a sentence that says which have changed. */
 export const NAMES = {
   state: "what the state holds", points: "the points", hidden: "when points are hidden",
   turning: "how the camera turns", spin: "how the body turns", input: "the input",

@@ -37,7 +37,7 @@ export function sceneOf(lab) {
         },
       };
     },
-    /** How fast the images of the points move, and how fast they would if all of the state were nearer or farther. */
+    /** Image velocities of the points, and of the same points if all of the state were nearer or farther. */
     arrowsOf(shown, at, theme) {
       const velocitiesOf = motionAt(lab, shown, at);
       return Array.from({ length: shown.points }, (_, k) => {

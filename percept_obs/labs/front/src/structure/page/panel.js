@@ -11,7 +11,7 @@ import { mapTopic } from "../../common/page/settings_map.js";
 import { axesOf } from "../model/axes.js";
 import { isSampled } from "../model/camera.js";
 
-/** What the page calls the settings. */
+/** Labels of the settings in the page. */
 export const WORDS = {
   v_c: { label: "camera {}" },
   v_p: { label: "object {}" },
@@ -31,7 +31,7 @@ export const WORDS = {
   },
 };
 
-/** What the lab calls a setting when it says which have changed. */
+/** Names of settings in a sentence that says which have changed. */
 export const NAMES = {
   velocities: "where the velocities come from", motion: "the motion that is typed", unknown: "what is unknown",
   earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
@@ -74,7 +74,7 @@ export class StructurePanel extends Fieldsets {
     this.body = element("div", { class: "panel" }, ...body);
   }
 
-  /** Whether the velocities are set or sampled, where there are samples. */
+  /** Choice of set or sampled velocities, where there are samples. */
   source() {
     const { lab, model: { samples } } = this;
     const last = () => Math.min(lab.settings.duration, samples.times.at(-1));

@@ -48,7 +48,7 @@ function united(spans) {
   return found;
 }
 
-/** How far around a quantity its chart reaches at least, in m/s or 1/m. */
+/** Least reach of a chart around its quantity, in m/s or 1/m. */
 const ROOM = 0.05;
 
 function UNKNOWN(shown, ghost, theme, which) {

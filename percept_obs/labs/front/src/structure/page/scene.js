@@ -10,7 +10,7 @@ import { keyOf } from "../model/kernels.js";
 import { inverseRange, rangeOf } from "../model/quantities.js";
 
 export const sceneOf = (lab) => ({
-  /** How fast the image of the point and of its copies moves. */
+  /** Image velocities of the point and of its copies. */
   arrowsOf(shown, at, theme) {
     const { settings, image, scale, time } = shown;
     const [y1, y2, ybar3] = [0, 1, 2].map((c) => valueBetween(image, 3, c, at));
