@@ -209,8 +209,12 @@ class ObserverLab(Lab):
         settings = self.settings
         seen = (settings["surface"], tuple(settings["outputs"]))
         observers = {name: self._chosen(settings, name) for name in settings["observers"]}
-        if refusal := self.too_much(settings):
-            return {"sentences": [refusal]}
+        work = 0.0
+        if settings["scenario"] not in self._recordings:
+            duration, period = settings["duration"], settings["period"]
+            work = motion_work(self._motion_of(settings), duration, period)
+            if refusal := too_much(work, duration, period):
+                return {"sentences": [refusal]}
         try:
             recording = self.recorded(settings)
         except (BehindCamera, TooMuchWork) as error:
@@ -221,7 +225,7 @@ class ObserverLab(Lab):
             if recording.truth is None or has_words(chosen)
         }
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
-        followed, beyond = within_reach(steps, states, self._work(settings))
+        followed, beyond = within_reach(steps, states, work)
         window = min(settings["window"], float(np.ptp(recording.time)))
         sentences = [excitation_in_words(self._registry.form(*seen), recording, window)]
         with warnings.catch_warnings(record=True) as caught:
@@ -230,17 +234,6 @@ class ObserverLab(Lab):
         for name, run in found.items():
             sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
-
-    def too_much(self, settings: Settings) -> str:
-        """Reason why Python does not follow runs of these settings; empty if it does."""
-        if settings["scenario"] in self._recordings:
-            return ""
-        return too_much(self._work(settings), settings["duration"], settings["period"])
-
-    def _work(self, settings: Settings) -> float:
-        if settings["scenario"] in self._recordings:
-            return 0.0
-        return motion_work(self._motion_of(settings), settings["duration"], settings["period"])
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""

@@ -23,10 +23,9 @@ from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.labs.structure.analysis import late_errors
-from percept_obs.labs.structure.samples import refuse_samples, zero_in
 from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
-from percept_obs.labs.structure.user_defined import Given, opening_of
+from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
 from percept_obs.recording import Recording
 from percept_obs.structure import (
@@ -159,11 +158,13 @@ class StructureLab(Lab):
     def analyse(self) -> Settings:
         """Sentences on the bias and the spread of the unknown quantities over the last tenth of the run."""
         settings = self.settings
-        if refusal := self.too_much(settings):
+        motion = motion_of(settings, _used(settings, self._samples))
+        work = motion_work(motion, settings["duration"], settings["period"])
+        if refusal := too_much(work, settings["duration"], settings["period"]):
             return {"sentences": [refusal]}
         printed = self._part(f"forms/{LARGEST}")["observers"]
         states = {name: printed.get(name, {"states": 6})["states"] for name in settings["observers"]}
-        followed, beyond = within_reach(_steps(settings), states, self._work(settings))
+        followed, beyond = within_reach(_steps(settings), states, work)
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", StepTooLong)
@@ -172,14 +173,6 @@ class StructureLab(Lab):
             return {"sentences": [str(error)]}
         lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
         return {"sentences": [*lines, *beyond]}
-
-    def too_much(self, settings: Settings) -> str:
-        """Reason why Python does not follow runs of these settings; empty if it does."""
-        return too_much(self._work(settings), settings["duration"], settings["period"])
-
-    def _work(self, settings: Settings) -> float:
-        motion = motion_of(settings, _used(settings, self._samples))
-        return motion_work(motion, settings["duration"], settings["period"])
 
 
 structure_lab = StructureLab
