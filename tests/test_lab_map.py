@@ -88,7 +88,7 @@ def test_an_ensemble_computes_the_same_map(of_pairs):
     np.testing.assert_allclose([float(c["error"]) for c in cells], found.judged.values.ravel(), rtol=1e-9)
 
 
-FILLED = "() => [...window.perceptObsLabs][0].planes[2].sweep.finest >= 64"
+FILLED = "() => [...window.perceptObsLabs][0].planes[2].sweep.whole"
 MAP = ".settings-map canvas"
 TOLD = "(part) => document.querySelector('.settings-map canvas').ariaLabel.includes(part)"
 PLACE = control("map place")
@@ -115,7 +115,7 @@ def test_a_map_is_shown_pointed_at_gone_to_and_undone_by_keys_and_by_hand(browse
     page.focus(control("map shows"))
     page.keyboard.press("ArrowDown")
     page.wait_for_function(FILLED)
-    page.wait_for_function(TOLD, arg="64 by 64")
+    page.wait_for_function(TOLD, arg="128 by 128")
     label = page.get_attribute(MAP, "aria-label")
     assert "Settling time, identifier-based over gain in 1/s from 1 to 30 and noise, bound or σ from 0 to 0.05" in label
     assert "the same seed everywhere" in page.inner_text(".run-there")
