@@ -195,8 +195,8 @@ def steered(
     rate = vectorised(state, [*(motion.A * sp.ImmutableMatrix(POINT) + motion.b), *turning], fixed)
     times = step * np.arange(int(np.ceil(scenario.duration / step - 1e-9)) + 2, dtype=float)  # beyond the end
     refused = ValueError(
-        f"steered with gain = {gain} the motion leaves every bound or turns too fast within {scenario.duration:.4g} s; "
-        "take a smaller gain, or a shorter duration of the scenario"
+        f"steered with gain = {gain} and step = {step} the motion leaves every bound or turns too fast within "
+        f"{scenario.duration:.4g} s; take a smaller gain or step, or a shorter duration of the scenario"
     )
     evaluations = count(1)
 
