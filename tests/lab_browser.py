@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
-from lab_settings import FRONT, assert_follows_python
+from lab_settings import FRONT, as_array, assert_follows_python
 from sample_sizes import sampled
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
@@ -184,10 +184,10 @@ def assert_equals_python(shown, tolerance=1e-9):
     runs = observer_lab(**shown["settings"]).run()
     assert list(shown["runs"]) == list(runs)
     for name, run in runs.items():
-        estimate = _array(shown["runs"][name]).reshape(-1, 3)
+        estimate = as_array(shown["runs"][name]).reshape(-1, 3)
         np.testing.assert_allclose(estimate, run.estimate, rtol=0, atol=tolerance)
         assert f"{run.observer.name}: {run.verdict()}" in shown["verdicts"]
-        drawn = {line["name"]: _array(line["values"]) for line in shown["drawn"]["error"]}
+        drawn = {line["name"]: as_array(line["values"]) for line in shown["drawn"]["error"]}
         error = np.where(np.isfinite(run.relative_error), run.relative_error, np.nan)
         np.testing.assert_allclose(drawn[f"{run.observer.name} error"], error, rtol=1e-6, atol=20 * tolerance)
 
@@ -206,13 +206,13 @@ def assert_points_are_python(shown, tolerance=1e-9):
     run = run_of(shown["settings"])
     assert shown["divergedAt"]["points"] == run.diverged_at
     assert run.verdict() in shown["words"]
-    told, expected = _array(shown["runs"]["points"]), run.state.ravel()
+    told, expected = as_array(shown["runs"]["points"]), run.state.ravel()
     size = np.fmax(1, np.abs(expected))
     growing = 1 if run.diverged_at is None else 1e6
     np.testing.assert_allclose(told / size, expected / size, rtol=0, atol=growing * tolerance)
     if "error" in shown["drawn"] and run.diverged_at is None:
         (error,) = [line for line in shown["drawn"]["error"] if line["name"] == "error"]
-        np.testing.assert_allclose(_array(error["values"]), run.deviation, rtol=1e-9, atol=tolerance)
+        np.testing.assert_allclose(as_array(error["values"]), run.deviation, rtol=1e-9, atol=tolerance)
 
 
 def assert_is_python(kind, shown, following=False):
@@ -367,7 +367,3 @@ def serious_violations(page, widths=("", "400px")):
             serious += [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
     page.evaluate(WIDTH, "")
     return [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious]
-
-
-def _array(values):
-    return np.array([np.nan if v is None else v for v in values])

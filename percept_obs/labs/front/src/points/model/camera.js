@@ -93,7 +93,9 @@ export class Camera {
       const known = this.known({ ...scene, settings: read }, purpose, grid);
       return { of: kinds.kinds.map((kind) => flowOf(kind, steps, known, width, wanted)) };
     };
-    const flows = this.memory.once(`flows ${purpose}`, settings, make, kinds.kinds.length, grid);
+    // A typed motion is in the coefficients themselves.
+    const inputs = [kinds.kinds.length, grid, scene.functions.coefficients];
+    const flows = this.memory.once(`flows ${purpose}`, settings, make, ...inputs);
     return { ...kinds, flows: flows.of, made: flows };
   }
 
