@@ -30,6 +30,7 @@ from typing import Any, NamedTuple
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import lab_alone
+from conftest import found_chromium
 from jupyter_harness import CHROMIUM_OPTIONS, IDLE, jupyterlab, lab_page, open_notebook
 from lab_browser import OPEN, rested, write_notebook
 
@@ -250,7 +251,7 @@ def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
     """Measure configurations with an idle kernel, and some with a busy one."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
-        with jupyterlab(*places[:2]) as server, lab_page(shutil.which("chromium"), server, places[2]) as page:
+        with jupyterlab(*places[:2]) as server, lab_page(found_chromium(), server, places[2]) as page:
             if opening:
                 measure_opening(page, places[0])
             with reference_page(page.context) as reference:
@@ -285,7 +286,7 @@ def launched() -> Any:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(CHROMIUM_OPTIONS))
+        browser = playwright.chromium.launch(executable_path=found_chromium(), args=list(CHROMIUM_OPTIONS))
         yield browser.new_context(viewport={"width": 1280, "height": 900})
         browser.close()
 
