@@ -1,10 +1,12 @@
 """README.md's parts that come from the package, its pictures and the repository's name: `python tests/readme.py`.
 
+It draws the pictures anew if the word `pictures` follows, for they differ a little from machine to machine.
 The name of the repository stands in ``pyproject.toml``, under ``[project.urls]``, and nowhere else by hand.
 """
 
 import io
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -158,8 +160,8 @@ def few_colours(png):
     )
 
 
-def main():
-    """Write all of it."""
+def write_pictures():
+    """Draw all pictures anew, and describe them."""
     from conftest import found_chromium
 
     PICTURES.mkdir(exist_ok=True)
@@ -172,11 +174,17 @@ def main():
     for name, image in images.items():
         image.save(PICTURES / f"{name}.png", optimize=True)
     texts = {name: text for name, (_, text) in LABS.items()} | {name: figure.text for name, figure in drawn.items()}
-    text = with_part(README.read_text("utf-8"), "observers", observer_table())
-    README.write_text(with_part(text, "gallery", gallery(texts)), "utf-8")
+    README.write_text(with_part(README.read_text("utf-8"), "gallery", gallery(texts)), "utf-8")
+
+
+def main(pictures):
+    """Write the table and the links, and the pictures if asked for."""
+    README.write_text(with_part(README.read_text("utf-8"), "observers", observer_table()), "utf-8")
+    if pictures:
+        write_pictures()
     for path in NAMES_THE_REPOSITORY:
         path.write_text(with_repository(path.read_text("utf-8")), "utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main("pictures" in sys.argv[1:])

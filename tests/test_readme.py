@@ -22,7 +22,7 @@ from readme import (
 
 from percept_obs import cli
 
-REMEDY = "python tests/readme.py writes it again"
+REMEDY = "python tests/readme.py pictures writes it again"
 TEXT = README.read_text("utf-8")
 
 
