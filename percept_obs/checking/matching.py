@@ -13,7 +13,12 @@ from percept_obs.checking.target import EQUATION, INEQUALITY, VALUE, ZEROS, Targ
 
 
 class Verdict(StrEnum):
-    """The verdict on a line."""
+    """The verdict on a line.
+
+    See Also
+    --------
+    percept_obs.Review : The verdicts on all lines.
+    """
 
     RIGHT = "right"
     WRONG = "wrong"

@@ -60,6 +60,10 @@ class CannotRead(ValueError):
     ----------
     position : int
         Where, counted in characters from 0.
+
+    See Also
+    --------
+    percept_obs.check : Raises it.
     """
 
     def __init__(self, text: str, position: int, message: str) -> None:

@@ -36,6 +36,10 @@ class Review:
     hints : int
         How many hints are open; see `hint`.
 
+    See Also
+    --------
+    check : Makes it.
+
     Examples
     --------
     >>> from percept_obs import check

@@ -99,6 +99,19 @@ class Target:
         Lines that can be typed together: those of step 5 as "step5".
     matrices : mapping of letters to matrices
         Entries of the letters of matrices that may be typed.
+
+    See Also
+    --------
+    target_of : Makes it.
+    percept_obs.check : Compares with it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.checking import target_of
+    >>> target = target_of(PerspectiveSystem(affine(), pinhole()))
+    >>> target.read("y3' = -b3 y3^2")[0].formula
+    -b3*y3**2
     """
 
     lines: tuple[Line, ...]

@@ -112,6 +112,10 @@ def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
     ValueError
         If the choice is none of the options, or not exactly one option is found.
 
+    See Also
+    --------
+    derive, reach : Answers of other kinds.
+
     Examples
     --------
     >>> seconds = 2.5
@@ -150,6 +154,10 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     ------
     ValueError
         If `judge` does not give a number that is asked for, or refuses the answer.
+
+    See Also
+    --------
+    choose, derive : Answers of other kinds.
 
     Examples
     --------

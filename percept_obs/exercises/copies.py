@@ -31,6 +31,10 @@ def stub(solution: str) -> str:
     ValueError
         If the code does not end so.
 
+    See Also
+    --------
+    students_copy : Puts stubs in place of solutions.
+
     Examples
     --------
     >>> stub('prediction = "b"')

@@ -41,6 +41,10 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
     threshold : float
         Positive; in 1/s or m/s, as w is.  For one point.
 
+    See Also
+    --------
+    scene : The path in space.
+
     Examples
     --------
     >>> from percept_obs import figures, record, scenarios

@@ -28,6 +28,10 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     ----------
     found : Observability
 
+    See Also
+    --------
+    percept_obs.how_observable : Computes them.
+
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, how_observable, pinhole, record, scenarios
@@ -104,6 +108,10 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     threshold : float
         Positive; in m/s, as w is.
 
+    See Also
+    --------
+    percept_obs.bound_map : Computes it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, bound_map, figures, pinhole
@@ -177,6 +185,10 @@ def excitation(
     ----------
     excitations : Excitation or sequence of Excitation
 
+    See Also
+    --------
+    percept_obs.windowed : Computes it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, windowed
@@ -213,6 +225,10 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     ----------
     found : Gramian or sequence of Gramian
 
+    See Also
+    --------
+    percept_obs.points.gramian.gramian : Computes it.
+
     Examples
     --------
     >>> from percept_obs import Camera, figures, record
@@ -243,6 +259,10 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Consistency
+
+    See Also
+    --------
+    percept_obs.check_consistency : Computes it.
 
     Examples
     --------
@@ -316,6 +336,10 @@ def fields(
     Parameters
     ----------
     found : FieldBound or sequence of FieldBound
+
+    See Also
+    --------
+    percept_obs.studies.fields.field_bound : Computes them.
 
     Examples
     --------

@@ -46,6 +46,11 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     tolerance : float
         Bound on the relative error, see `Run.outcome`.
 
+    See Also
+    --------
+    distance : In metres.
+    runs_over_time : Several observers.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
@@ -154,6 +159,11 @@ def runs_over_time(
     bound : Bound, optional
         From `cramer_rao` on the same truth: the least standard deviation, drawn under the errors.
 
+    See Also
+    --------
+    distance : Of one run, in metres.
+    comparison : Numbers over many runs.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
@@ -221,6 +231,10 @@ def distance(
     reference : str, optional
         What the errors are relative to: "truth", or the name of one of the recording's `distances`.  The truth when
         left out or, if the recording has none, the first of the distances.
+
+    See Also
+    --------
+    signals : Outputs and coordinates.
 
     Examples
     --------
@@ -332,6 +346,10 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
         Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
         Without the truth, the median of the estimated distances stands for it.
 
+    See Also
+    --------
+    image_plane : The path in the image.
+
     Examples
     --------
     >>> from percept_obs import figures, record, scenarios
@@ -415,6 +433,10 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
         From `Poses.path`; one that is labelled "truth" is drawn solid, and the others are compared with it.
     axis : int
         0, 1 and 2 are x to the right, y down and z forward.
+
+    See Also
+    --------
+    percept_obs.rigid_from_poses : The motion from poses.
 
     Examples
     --------

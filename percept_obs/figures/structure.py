@@ -37,6 +37,10 @@ def quantities(
     image : bool
         Whether the image coordinates y1, y2 and the inverse depth y3 = 1/Z have a row each as well, above the others.
 
+    See Also
+    --------
+    cases : Several of them.
+
     Examples
     --------
     >>> from percept_obs import figures, ismo, record, track
@@ -86,6 +90,10 @@ def cases(
         The runs of each case, as `quantities` takes them; equally many runs and rows in each.
     image : bool
         As in `quantities`.
+
+    See Also
+    --------
+    quantities : One case.
 
     Examples
     --------
@@ -172,6 +180,10 @@ def error_norm(
     fitted : two times
         Between which the exponential is fitted, in seconds.
 
+    See Also
+    --------
+    percept_obs.points.gramian.decay_bound : What the proof guarantees.
+
     Examples
     --------
     >>> from percept_obs import Camera, figures, luenberger, record, track
@@ -219,6 +231,10 @@ def depth_errors(errors: Mapping[str, ArrayLike], after: float, ax: Axes | None 
         From `percept_obs.studies.comparison.relative_distance_errors`; infinite where an estimate is behind the camera.
     after : float
         Seconds since first sight, for the describe.
+
+    See Also
+    --------
+    percept_obs.structure.PatchDepth : One way of estimating.
 
     Examples
     --------

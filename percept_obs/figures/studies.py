@@ -49,6 +49,10 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     table : pandas.DataFrame
         From `percept_obs.studies.comparison.compare`.
 
+    See Also
+    --------
+    percept_obs.studies.comparison.compare : Computes it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
@@ -128,6 +132,10 @@ def chatter(
     efforts : mapping of labels to Effort
         From `percept_obs.studies.chatter.effort`.  Curves with the same label look the same on both sides.
 
+    See Also
+    --------
+    percept_obs.studies.chatter.chatter, percept_obs.studies.chatter.effort : Compute it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, smo
@@ -172,6 +180,10 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     ----------
     values : xarray.DataArray
         With two dimensions, such as ``ensemble(...).settling_time.isel(seed=0)``; the first one goes up.
+
+    See Also
+    --------
+    percept_obs.ensemble : Computes it.
 
     Examples
     --------
@@ -224,6 +236,10 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     share : float
         By which share of the motion's size an entry is off: of all of A, or of all of b.
 
+    See Also
+    --------
+    percept_obs.studies.sensitivity.sensitivity : Computes it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
@@ -261,6 +277,10 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : TrustOverTime
+
+    See Also
+    --------
+    percept_obs.studies.trust.trust_over_time : Computes it.
 
     Examples
     --------
@@ -314,6 +334,10 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Diagnosis
+
+    See Also
+    --------
+    percept_obs.diagnose : Computes it.
 
     Examples
     --------

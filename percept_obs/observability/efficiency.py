@@ -29,6 +29,11 @@ class Efficiency:
     bound : array of shape (K,)
         Least standard deviation.
 
+    See Also
+    --------
+    efficiency : Computes it.
+    Bound : What the errors are compared with.
+
     Examples
     --------
     >>> import numpy as np
@@ -92,6 +97,11 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
         From `cramer_rao`, on a recording of the same truth and samples.
     coordinate : str, optional
         Such as "y1"; the last one, the inverse distance, when left out.
+
+    Returns
+    -------
+    Efficiency
+        Its `mean` is the ratio over a span of time.
 
     Raises
     ------

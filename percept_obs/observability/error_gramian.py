@@ -34,7 +34,22 @@ MOST_WINDOWS = 24
 class ErrorGramian(Windows):
     """Change of the outputs of a window with the coordinates at its beginning, squared and integrated.
 
-    `time` holds the windows' beginnings; states are the form's coordinates, in its order.
+    Parameters
+    ----------
+    names, time, matrices, window, scale
+        See `Windows`; `time` holds the windows' beginnings, and the states are the form's coordinates, in its order.
+
+    See Also
+    --------
+    error_gramian, empirical_gramian : Compute it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import error_gramian
+    >>> one = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> error_gramian(record(scenarios.planar(), 3, Camera(0.1)), one, 1).holds
+    True
     """
 
 

@@ -34,6 +34,19 @@ class Codistribution:
         Order by order, from 0 on; columns in the order of the form's coordinates.
     derivatives : tuple of tuples of symbols
         The first, second, ... time derivatives of the form's parameters, if the motion varies; none if not.
+
+    See Also
+    --------
+    lie_derivatives : Derives it.
+    LieRanks : Its ranks along a trajectory.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, lie_derivatives, pinhole
+    >>> system = PerspectiveSystem(affine(), pinhole())
+    >>> at_rest = dict.fromkeys(system.coordinates, 0.5) | dict.fromkeys(system.parameters, 0.0)
+    >>> lie_derivatives(system).rank, lie_derivatives(system).ranks_at(at_rest)
+    (3, (2, 2, 2))
     """
 
     form: PartitionedSystem
@@ -120,6 +133,19 @@ class LieRanks:
         Seconds.
     rows : array of shape (K, q, n)
         The differentials, each scaled to the length 1.
+
+    See Also
+    --------
+    lie_ranks : Computes it.
+    Codistribution : The differentials in symbols.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
+    >>> from percept_obs.observability import lie_ranks
+    >>> one = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> lie_ranks(record(scenarios.ma2005_eq35(), 2, Camera(0.5)), one).holds
+    True
     """
 
     form: PartitionedSystem
@@ -230,10 +256,20 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
     system, orders
         See `lie_derivatives`.
 
+    Returns
+    -------
+    LieRanks
+        At every sample.
+
     Raises
     ------
     ValueError
         If system and recording do not fit, or there is no truth.
+
+    See Also
+    --------
+    lie_derivatives : In symbols.
+    how_observable : Next to other measures.
 
     Examples
     --------

@@ -49,6 +49,18 @@ class MapKernel:
         The relative standard deviation of the distance.
     shape : tuple of symbols
         Parameters of the surface, such as a plane's normal vector.
+
+    See Also
+    --------
+    map_kernel : Derives it.
+    bound_map : Evaluates it over the image.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> from percept_obs.observability import map_kernel
+    >>> map_kernel(pinhole(), ("y1", "y2")).gather[-1]
+    Phi31*X0 + Phi32*Y0 + Phi33*Z0 + d3
     """
 
     begin: Expressions
@@ -69,6 +81,21 @@ class MapKernel:
 @lru_cache(maxsize=64)
 def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     """Derive a map's formulas for a surface and measured outputs, from the image and the distance of a point.
+
+    Parameters
+    ----------
+    surface : ImagingSurface
+    measured : tuple of str
+        Names of the outputs that are measured.
+
+    Returns
+    -------
+    MapKernel
+        The same object each time, for it is cached.
+
+    See Also
+    --------
+    bound_map : Evaluates it over the image.
 
     Examples
     --------
@@ -119,6 +146,19 @@ class BoundMap:
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
         Time after which the bound holds, and distance of the points at the beginning.
+
+    See Also
+    --------
+    bound_map : Computes it.
+    percept_obs.figures.bound_map : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, bound_map, pinhole
+    >>> forwards = PerspectiveSystem(affine([[0.0] * 3] * 3, [0, 0, -0.5]), pinhole())
+    >>> found = bound_map(forwards, resolution=21)
+    >>> [round(found.at(y1, 0), 3) for y1 in (0.0, 0.5, 1.0)]
+    [6.25, 0.027, 0.014]
     """
 
     system: PerspectiveSystem
@@ -179,6 +219,11 @@ def bound_map(
         Of each measured output.
     hidden_variance : float
         Of each hidden coordinate before the first sample, as the inverse distance in 1/m^2.
+
+    Returns
+    -------
+    BoundMap
+        A place for each of `resolution` columns and rows.
 
     Raises
     ------

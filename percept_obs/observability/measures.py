@@ -69,6 +69,18 @@ class Measure:
         Directions that are not seen there, in words.
     said : str
         The value in words.
+
+    See Also
+    --------
+    Observability : All measures of a trajectory.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> seen = record(scenarios.ma2005_eq36(), 20, Camera(0.1))
+    >>> found = how_observable(seen, PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> found["instant"].lost, found["Lie rank"].said
+    (('y2 - 0.632 y3',), 'rank 3 of 3')
     """
 
     name: str
@@ -101,6 +113,19 @@ class Observability:
     error, empirical : ErrorGramian
         Of the linearised error system, and by perturbed runs.
     bound : Bound
+
+    See Also
+    --------
+    how_observable : Computes it.
+    percept_obs.figures.observability : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
+    >>> seen = record(scenarios.ma2005_eq36(), 20, Camera(0.1))
+    >>> found = how_observable(seen, PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> [measure.name for measure in found.measures if not measure.holds]
+    ['instant']
     """
 
     form: PartitionedSystem

@@ -129,6 +129,16 @@ def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     Ma's test requires the smallest eigenvalue of w w^T to be positive.  With one output and two hidden coordinates its
     rank is 1, so that the smallest eigenvalue is 0 everywhere.
 
+    Parameters
+    ----------
+    form : PartitionedSystem
+        With symbols or numbers for its motion.
+
+    Returns
+    -------
+    InstantaneousObservability
+        With w w^T, its rank, and where it vanishes.
+
     Raises
     ------
     NotAffine

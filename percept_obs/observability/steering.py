@@ -43,6 +43,11 @@ class Steering:
     ValueError
         If there is no canonical form with all image coordinates measured.
 
+    See Also
+    --------
+    steering : Derives it.
+    steered : Steers a scenario by it.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, pinhole, rigid, steering

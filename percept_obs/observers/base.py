@@ -35,6 +35,10 @@ class About:
     claim : str
         Claim about its convergence, and the condition for it.
 
+    See Also
+    --------
+    Family : Holds it.
+
     Examples
     --------
     >>> from percept_obs import ibo
@@ -93,6 +97,11 @@ class Observer:
         Where the hidden coordinates have no estimate; of several that hold, the first gives the reason.
     fastest : FastestRate, optional
         Limit of the integration step, if it is known.
+
+    See Also
+    --------
+    track : Lets it follow a recording.
+    percept_obs.observers.Family : Makes observers of one kind.
 
     Examples
     --------
@@ -297,6 +306,19 @@ def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> 
 @checked
 def with_point(observer: Observer) -> Observer:
     """Join observer and observed point to a system without inputs, with the state (x1, x2, observer's state).
+
+    Parameters
+    ----------
+    observer : Observer
+
+    Returns
+    -------
+    Observer
+        Its equations need no samples, for the point's own rates take their place.
+
+    See Also
+    --------
+    percept_obs.studies.chatter.effort : Integrates both together.
 
     Examples
     --------

@@ -22,7 +22,31 @@ from percept_obs.validation import WrongKind, refuse_kind, set_fields
 
 @dataclass(frozen=True)
 class Option:
-    """Keyword that shapes an observer's equations, besides the form and the gains, and its default."""
+    """Keyword that shapes an observer's equations, besides the form and the gains, and its default.
+
+    Parameters
+    ----------
+    name : str
+        The keyword.
+    value : object
+        Its default.
+    meaning : str
+        Its effect, in a few words.
+    choices : tuple of str
+        Names that it may be; empty if it is anything of the default's kind.
+
+    See Also
+    --------
+    Family : Holds options.
+    percept_obs.observers.Gain : A number in the equations.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.family import Option
+    >>> print(Option("switch", "sign", "What stands for the sign", ("sign", "fraction")))
+    switch : "sign" or "fraction"
+        What stands for the sign.  Default 'sign'.
+    """
 
     name: str
     value: Any
@@ -41,6 +65,36 @@ class Derived:
 
     By default `start` is the state, `estimate` the `hats` and `gains` those of the family; `estimate` and `covariance`
     are in the order (x1, x2).
+
+    Parameters
+    ----------
+    state, flow : symbols, expressions
+        The observer's state and its time derivative between samples.
+    start : expressions, optional
+        The state at the first sample, in terms of the `hats` of all coordinates.
+    estimate : expressions, optional
+        Estimates of all coordinates.
+    update, reset
+        See `Equations`; `reset` is the condition and the state after a reset.
+    covariance : matrix of shape (n, n), optional
+        That the observer claims.
+    unobservable : tuple of Unobservable
+        Where the estimate stands for nothing.
+    fastest : FastestRate, optional
+        Fastest rate of the equations in 1/s, which limits the step.
+    gains : tuple of Gain
+
+    See Also
+    --------
+    family : Makes a family of a function that returns it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers import de_luca
+    >>> derived = de_luca.derive(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+    >>> derived.state, derived.reset
+    ((yhat1, yhat2, yhat3), (False, ()))
     """
 
     state: Symbols
@@ -83,6 +137,11 @@ class Family:
         True if it copies the system: started at the truth, without noise, it stays there.
     for_structure : bool
         True if the lab of structure and motion lists it; it lists integral sliding modes in three ways.
+
+    See Also
+    --------
+    family : The decorator that makes it.
+    Observer : What it makes.
 
     Examples
     --------
@@ -196,5 +255,31 @@ class Family:
 
 
 def family(*, title: str, source: str, needs: str, claim: str, **others: Any) -> Callable[..., Family]:
-    """Decorator that makes a `Family` of the function that derives the equations; see there for the others."""
+    """Decorator that makes a `Family` of the function that derives the equations.
+
+    Parameters
+    ----------
+    title, source, needs, claim : str
+        See `About`.
+    **others
+        See `Family`; `name` and `gains` are needed.
+
+    Returns
+    -------
+    function of a function
+        Takes the one that derives the equations from a form and returns the `Family`.
+
+    See Also
+    --------
+    Derived : Returned by the decorated function.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.parts import innovation, output_injection
+    >>> @family(name="plain", title="Plain", source="none", needs="nothing", claim="none", gains=())
+    ... def plain(form):
+    ...     return Derived(hats((*form.x1, *form.x2)), output_injection(form, innovation(form), 1, 1))
+    >>> plain
+    plain(form, **gains)
+    """
     return partial(Family, about=About(title, source, needs, claim), **others)

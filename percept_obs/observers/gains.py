@@ -38,6 +38,11 @@ class Gain:
     ValueError
         If the value is not a finite number, or does not fulfil the condition.
 
+    See Also
+    --------
+    percept_obs.observers.gains.grid : Combinations of values.
+    percept_obs.observers.family.Option : A choice that is no number.
+
     Examples
     --------
     >>> from percept_obs import ibo
@@ -83,5 +88,26 @@ class Gain:
 
 
 def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
-    """Every combination of the gains' values."""
+    """Every combination of the gains' values.
+
+    Parameters
+    ----------
+    **values : sequence of float
+        Values to try, by the names of gains.
+
+    Returns
+    -------
+    tuple of mappings of names to values
+        The last gain changes fastest.
+
+    See Also
+    --------
+    percept_obs.studies.tuning.choose_and_report : Tries them.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.gains import grid
+    >>> grid(gain=(2, 10), bound=(5,))
+    ({'gain': 2, 'bound': 5}, {'gain': 10, 'bound': 5})
+    """
     return tuple(dict(zip(values, each, strict=True)) for each in product(*values.values()))

@@ -13,7 +13,12 @@ lam = sp.Symbol("lambda", real=True)
 
 
 class NotIntegrable(ValueError):
-    """The form's w is not a gradient, so that no function of the outputs has it as its derivative."""
+    """The form's w is not a gradient, so that no function of the outputs has it as its derivative.
+
+    See Also
+    --------
+    immersion_and_invariance : Raises it.
+    """
 
 
 def not_integrable(form: CanonicalForm) -> NotIntegrable | None:

@@ -129,7 +129,12 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
 
 
 class GainTooSmall(ValueError):
-    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing."""
+    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing.
+
+    See Also
+    --------
+    ultimate_bound : Raises it.
+    """
 
 
 @checked
@@ -147,10 +152,17 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     time : float
         Seconds since the first sample.
 
+    Returns
+    -------
+    float
+        In the unit of the outputs.
+
     Raises
     ------
     GainTooSmall
         If alpha is 1 or more.
+    ValueError
+        If the time is negative or not finite.
 
     See Also
     --------
@@ -159,6 +171,14 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     Notes
     -----
     Chwa 2019, (16)-(21), p. 5.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, integral_sliding_mode, pinhole
+    >>> from percept_obs.observers.integral_sliding_mode import ultimate_bound
+    >>> observer = integral_sliding_mode(PerspectiveSystem(affine(), pinhole()))
+    >>> [round(ultimate_bound(observer, 5.0, time), 3) for time in (0, 10, 100)]
+    [0.347, 0.173, 0.032]
     """
     if not 0 <= time < math.inf:
         raise ValueError(f"the time is {time} s; it must be finite, from 0 on")
@@ -194,10 +214,27 @@ def tolerable_amplification(
     margin : float
         How many standard deviations must fit into `hidden`.
 
+    Returns
+    -------
+    float
+        hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
+
     Raises
     ------
     ValueError
         If a number is not positive.
+
+    See Also
+    --------
+    integral_sliding_mode, ultimate_bound
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, integral_sliding_mode, pinhole
+    >>> from percept_obs.observers.integral_sliding_mode import tolerable_amplification
+    >>> observer = integral_sliding_mode(PerspectiveSystem(affine(), pinhole()))
+    >>> [round(tolerable_amplification(observer, noise, 0.2), 3) for noise in (1e-4, 1e-3)]
+    [4.444, 0.444]
     """
     if not (noise > 0 and hidden > 0 and margin > 0 and margin * noise > 0 and 0 <= time < math.inf):
         raise ValueError(

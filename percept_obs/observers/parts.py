@@ -28,12 +28,53 @@ NOISE_GAIN = Gain(
 
 
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols of the estimates: yhat1 for y1."""
+    """Symbols of the estimates: yhat1 for y1.
+
+    Parameters
+    ----------
+    symbols : sequence of symbols
+        Such as y1; the hat goes before the number at the end.
+
+    Returns
+    -------
+    tuple of symbols
+
+    See Also
+    --------
+    innovation : Outputs minus their estimates.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.parts import hats
+    >>> hats(sp.symbols("y1 q12 c"))
+    (yhat1, qhat12, chat)
+    """
     return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
 
 
 def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols that are 1 where a measured output starts from its first sample, and 0 where the user sets its start."""
+    """Symbols that are 1 where a measured output starts from its first sample, and 0 where the user sets its start.
+
+    Parameters
+    ----------
+    x1 : sequence of symbols
+        Measured outputs.
+
+    Returns
+    -------
+    tuple of symbols
+        Named s_y1 for y1, for use in an observer's start.
+
+    See Also
+    --------
+    percept_obs.observers.family.Derived : Has the start.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.parts import first_seen
+    >>> first_seen(sp.symbols("y1:3"))
+    (s_y1, s_y2)
+    """
     return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in x1)
 
 
@@ -63,6 +104,18 @@ def output_injection(
     Returns
     -------
     tuple of n1 + n2 expressions
+
+    See Also
+    --------
+    innovation, noise_bias
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers.parts import innovation, output_injection
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> output_injection(form, innovation(form), 2, 3)[0]
+    a11*y1 + a12*y2 + a13 - a31*y1**2 - a32*y1*y2 - a33*y1 + 2*y1 - 2*yhat1 + yhat3*(b1 - b3*y1)
     """
     x2_hat = hats(form.x2)
     injected = form.w * correction - (sp.zeros(len(x2_hat), 1) if bias is None else bias)
@@ -72,7 +125,27 @@ def output_injection(
 
 
 def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
-    """Measured outputs minus their estimates, x1 - x1hat."""
+    """Measured outputs minus their estimates, x1 - x1hat.
+
+    Parameters
+    ----------
+    form : CanonicalForm
+
+    Returns
+    -------
+    matrix of shape (n1, 1)
+
+    See Also
+    --------
+    output_injection : Feeds it back.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> from percept_obs.observers.parts import innovation
+    >>> innovation(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")).T
+    Matrix([[y1 - yhat1, y2 - yhat2]])
+    """
     return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
 
 
@@ -80,6 +153,27 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
 
     Ma 2005, (12), p. 65.  Other states stay.
+
+    Parameters
+    ----------
+    state : symbols
+    estimate : symbols
+        Those of the state whose norm is bounded.
+
+    Returns
+    -------
+    condition : sympy condition
+    reset : expressions, one a state
+
+    See Also
+    --------
+    identifier_based : Uses it.
+
+    Examples
+    --------
+    >>> from percept_obs.observers.parts import kept_within
+    >>> kept_within(hats(sp.symbols("y1 y3")), hats(sp.symbols("y3,")))
+    (yhat3**2 >= M**2*gamma**2, (yhat1, M*yhat3/Abs(yhat3)))
     """
     squared = sum(hat**2 for hat in estimate)
     shrink = M / sp.sqrt(squared)
@@ -104,6 +198,10 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     Returns
     -------
     matrix of shape (n2, 1)
+
+    See Also
+    --------
+    output_injection : Takes it out.
 
     Examples
     --------

@@ -55,10 +55,20 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
     paper : str
         A part of the authors' names or of the year; all papers, when left out.
 
+    Returns
+    -------
+    tuple of Ledger
+        The oldest paper first; those without such an entry are left out.
+
     Raises
     ------
     ValueError
         If there is no such paper or no such entry; it says which there are.
+
+    See Also
+    --------
+    judge : Computes their verdicts.
+    report, page : Show them.
 
     Examples
     --------
@@ -96,6 +106,16 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     processes : int, optional
         As many as there are cores, when left out; `FEW` entries are judged in this one.
 
+    Returns
+    -------
+    bool
+        True if every verdict is the recorded one.
+
+    See Also
+    --------
+    find : Chooses ledgers.
+    report : Tells what was found.
+
     Examples
     --------
     >>> from percept_obs.papers import find, judge
@@ -122,6 +142,20 @@ def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:
 
 def report(ledgers: Sequence[Ledger] = LEDGERS) -> str:
     """All entries as tables, with the numbers that verdicts rest on, and how many verdicts are known in which way.
+
+    Parameters
+    ----------
+    ledgers : sequence of Ledger
+        All of them, when left out.
+
+    Returns
+    -------
+    str
+        The ledgers one below the other.
+
+    See Also
+    --------
+    page : As HTML.
 
     Examples
     --------

@@ -20,6 +20,10 @@ Values = dict[sp.Basic, sp.Basic]
 class Verdict(StrEnum):
     """Result of a computation about a printed statement.
 
+    See Also
+    --------
+    Known : Way in which it is known.
+
     Examples
     --------
     >>> from percept_obs.papers import Verdict
@@ -42,6 +46,10 @@ class Known(StrEnum):
     ones.  Runs are simulations, of which there are as many as the note says.  Not reproduced: it is cited, lost by the
     scan, or our runs do not show what the paper's do.
 
+    See Also
+    --------
+    Verdict : What is known.
+
     Examples
     --------
     >>> from percept_obs.papers import Known
@@ -61,6 +69,18 @@ class Finding:
     """The result of a check: a verdict, the numbers that it rests on, and what was derived in place of the print.
 
     The derived is in pairs of sides, for an equation that is sent to another process is evaluated there.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    numbers : mapping of names to floats
+        Such as the largest difference of two sides.
+    derived : tuple of pairs of expressions
+        Left and right sides of what stands in place of the print.
+
+    See Also
+    --------
+    Entry : What is checked.
 
     Examples
     --------
@@ -111,6 +131,11 @@ class Entry:
         What is to be put in the place of what, in a misprint.
     known : Known
         How the verdict is known.
+
+    See Also
+    --------
+    Ledger : The entries of a paper.
+    Finding : What its check finds.
 
     Examples
     --------

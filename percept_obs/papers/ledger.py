@@ -31,6 +31,16 @@ class Ledger:
         Authors and year.
     entries : tuple of Entry
 
+    Raises
+    ------
+    ValueError
+        If two entries have the same place.
+
+    See Also
+    --------
+    find : Ledgers by paper and place.
+    Entry : One of its entries.
+
     Examples
     --------
     >>> from percept_obs.papers import MA2005
@@ -107,6 +117,19 @@ def summary(verdicts: Iterable[Verdict]) -> str:
 
 def page(ledgers: Iterable[Ledger]) -> str:
     """All entries as a page of HTML that needs no network, with a box that leaves those in which a word stands.
+
+    Parameters
+    ----------
+    ledgers : sequence of Ledger
+
+    Returns
+    -------
+    str
+        The whole page.
+
+    See Also
+    --------
+    report : As text.
 
     Examples
     --------

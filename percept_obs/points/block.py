@@ -12,7 +12,12 @@ from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
 class NotLinear(ValueError):
-    """The surface's images do not become linear in the point when they are multiplied by its distance."""
+    """The surface's images do not become linear in the point when they are multiplied by its distance.
+
+    See Also
+    --------
+    point_block : Raises it.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +81,16 @@ class PointBlock:
 @lru_cache(maxsize=64)
 def point_block(surface: ImagingSurface) -> PointBlock:
     """Derive one point's block from the surface.
+
+    Parameters
+    ----------
+    surface : ImagingSurface
+        The pinhole or a plane.
+
+    Returns
+    -------
+    PointBlock
+        Kept for each surface.
 
     Raises
     ------

@@ -29,7 +29,12 @@ JUDGED = "the points' positions"
 
 
 class UnseenDirection(UserWarning):
-    """A direction of the state that no image of any point depends on, whatever the camera sees."""
+    """A direction of the state that no image of any point depends on, whatever the camera sees.
+
+    See Also
+    --------
+    PointsForm : Warns with it.
+    """
 
 
 class Layout(NamedTuple):

@@ -50,6 +50,19 @@ class Gramian(Windows):
         See `Windows`; `time` holds the windows' beginnings.
     states : array of shape (T, n), optional
         True states at the beginnings.
+
+    See Also
+    --------
+    gramian, linear_gramian : Compute it.
+    percept_obs.figures.gramian : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record
+    >>> from percept_obs.points.gramian import gramian
+    >>> from percept_obs.points.scenarios import along_the_line_of_sight
+    >>> gramian(record(along_the_line_of_sight(), 5, Camera(0.1)), 2).lost()
+    ('0.2 X + 0.1 Y + Z',)
     """
 
     states: Array | None = None
@@ -129,6 +142,28 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     ----------
     recording, window, form
         See `gramian`.  Points count while they are seen.
+
+    Returns
+    -------
+    Gramian
+
+    Raises
+    ------
+    ValueError
+        If the window is not positive or longer than the recording.
+
+    See Also
+    --------
+    gramian : Of the images alone.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record
+    >>> from percept_obs.points.gramian import gramian, linear_gramian
+    >>> from percept_obs.points.scenarios import along_the_line_of_sight
+    >>> seen = record(along_the_line_of_sight(), 5, Camera(0.1))
+    >>> gramian(seen, 2).holds, linear_gramian(seen, 2).holds
+    (False, True)
     """
     form = form or points_form(recording)
 
@@ -154,6 +189,21 @@ class DecayBound:
         Norm of the operator by which the observer's corrections hide the error from the images.
     window : float
         Seconds.
+
+    See Also
+    --------
+    decay_bound : Computes it.
+    percept_obs.figures.error_norm : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, luenberger, record
+    >>> from percept_obs.points.gramian import decay_bound
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> scene = moving_body(1)
+    >>> found = decay_bound(record(scene, 20, Camera(0.1)), luenberger(scene.form), 5)
+    >>> found.contraction.round(3).tolist()
+    [0.874, 0.823, 0.967, 0.902]
     """
 
     time: Array
@@ -200,6 +250,20 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     ------
     ValueError
         If there is no truth, P is computed or misses (15), or the window does not fit.
+
+    See Also
+    --------
+    gramian : Information in the images of a window.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, luenberger, record
+    >>> from percept_obs.points.gramian import decay_bound
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> scene = moving_body(1)
+    >>> seen = record(scene, 20, Camera(0.1))
+    >>> [round(decay_bound(seen, luenberger(scene.form, P), 5).rate, 3) for P in (0.1, 1.0, 10.0)]
+    [0.002, 0.012, 0.013]
     """
     form, P = observer.form, observer.P
     if not form.fits(recording.view):
@@ -245,7 +309,30 @@ def _over(P: LyapunovMatrix, times: Array) -> Array:
 
 
 def true_images(recording: Recording) -> Array:
-    """Images without noise where the truth is known, else the outputs, shape (K, p, m); NaN where not seen."""
+    """Images without noise where the truth is known, else the outputs.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of K samples of p points, with m image coordinates each.
+
+    Returns
+    -------
+    array of shape (K, p, m)
+        NaN where a point is not seen.
+
+    See Also
+    --------
+    gramian : Uses them.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, record
+    >>> from percept_obs.points.gramian import true_images
+    >>> from percept_obs.points.scenarios import along_the_line_of_sight
+    >>> true_images(record(along_the_line_of_sight(), 1, Camera(0.5, Gaussian(0.01)))).round(3).tolist()
+    [[[0.2, 0.1]], [[0.2, 0.1]], [[0.2, 0.1]]]
+    """
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)

@@ -35,6 +35,10 @@ class LuenbergerObserver:
         System that it believes in.
     P : LyapunovMatrix
 
+    See Also
+    --------
+    luenberger : Makes it.
+
     Examples
     --------
     >>> from percept_obs import luenberger

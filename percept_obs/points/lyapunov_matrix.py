@@ -34,6 +34,16 @@ class LyapunovMatrix:
     schedule : Signal, optional
         P over time, row by row (or one number), where it is given.
 
+    Raises
+    ------
+    ValueError
+        If the start or the decrease is not finite.
+
+    See Also
+    --------
+    constant, scheduled, lyapunov, riccati : Make it.
+    luenberger : The observer that uses it.
+
     Examples
     --------
     >>> from percept_obs.points import riccati
@@ -113,7 +123,16 @@ class LyapunovMatrix:
 
 @checked
 def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
-    """Constant P: a symmetric positive definite array of shape (n, n), or a number times the identity.
+    """P that stays as it is.
+
+    Parameters
+    ----------
+    P : array of shape (n, n) or float
+        Symmetric positive definite; a number stands for its multiple of the identity.
+
+    Returns
+    -------
+    LyapunovMatrix
 
     See Also
     --------
@@ -139,10 +158,18 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
     times : array of shape (K,), optional
         Times in seconds of the samples, linear between them.
 
+    Returns
+    -------
+    LyapunovMatrix
+
     Raises
     ------
     ValueError
         If samples and times do not fit.
+
+    See Also
+    --------
+    constant, lyapunov, riccati
 
     Examples
     --------
@@ -171,6 +198,14 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatri
     decrease : array of shape (n, n) or float
         Symmetric positive semidefinite.  P stays positive only while the start outweighs what it takes away.
 
+    Returns
+    -------
+    LyapunovMatrix
+
+    See Also
+    --------
+    constant, scheduled, riccati
+
     Examples
     --------
     >>> from percept_obs.points import lyapunov
@@ -194,10 +229,18 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
     forgetting : float
         In 1/s, not negative.
 
+    Returns
+    -------
+    LyapunovMatrix
+
     Raises
     ------
     ValueError
         If the forgetting is negative or not finite.
+
+    See Also
+    --------
+    constant, scheduled, lyapunov
 
     Notes
     -----

@@ -28,6 +28,17 @@ class RayError:
         omega, the rate in rad/s at which the ray turns against the known rotation.
     matrix : matrix of shape (2, 2)
         M.
+
+    See Also
+    --------
+    ray_error : Derives it.
+
+    Examples
+    --------
+    >>> from percept_obs.points.ray import ray_error
+    >>> error = ray_error()
+    >>> error.best_gain, error.best_decay, error.over_gain
+    (2*omega, omega, omega**2/k)
     """
 
     gain: sp.Symbol
@@ -82,6 +93,27 @@ def ray_error() -> RayError:
 
     The point is seen at y(t) = (y1(t), 0) by a pinhole, the camera turns in the same plane at a known rate, and P is a
     multiple of the identity.
+
+    Returns
+    -------
+    RayError
+
+    Raises
+    ------
+    ArithmeticError
+        If the error has another form, which would be a mistake in the package.
+
+    See Also
+    --------
+    ray_turning : Numbers for omega along a run.
+
+    Examples
+    --------
+    >>> from percept_obs.points.ray import ray_error
+    >>> ray_error().matrix
+    Matrix([
+    [   -k, -omega],
+    [omega,      0]])
     """
     block, t = point_block(pinhole()), sp.Symbol("t", real=True)
     y1 = sp.Function(block.y[0].name, real=True)(t)
@@ -113,6 +145,18 @@ def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
     Returns
     -------
     array of shape (K, p)
+
+    See Also
+    --------
+    ray_error : Decay of errors at this rate.
+
+    Examples
+    --------
+    >>> from percept_obs.points.ray import ray_turning
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> scene, times = moving_body(1), np.array([0.0, 10.0])
+    >>> ray_turning(scene.form, times, scene.coordinates(times)).round(3).tolist()
+    [[0.488], [0.157]]
     """
     times, states = numbers(times, "the times", "K"), numbers(states, "the states", "K", form.states)
     points, velocities = form.locate(states), form.locate(form.coefficients(times)[1])

@@ -36,6 +36,11 @@ class PointsRun(Run):
     P : array of shape (T, n, n)
         P at these samples.
 
+    See Also
+    --------
+    percept_obs.Run : Of a single point.
+    track : Makes it.
+
     Examples
     --------
     >>> from percept_obs import Camera, luenberger, record, track

@@ -19,7 +19,12 @@ from percept_obs.validation import checked
 
 
 class LeavesEveryBound(ValueError):
-    """The state grows without end, so that nothing can be recorded of it."""
+    """The state grows without end, so that nothing can be recorded of it.
+
+    See Also
+    --------
+    PointsScenario : Raises it.
+    """
 
 
 @checked
@@ -43,6 +48,11 @@ class PointsScenario(Scene):
     ------
     ValueError
         If the state has another size or is not finite, or the duration is not positive.
+
+    See Also
+    --------
+    record : Records it.
+    percept_obs.Scenario : Of a single point.
 
     Examples
     --------
@@ -115,6 +125,25 @@ def moving_body(points: int = 1) -> PointsScenario:
 
     The camera moves as in `Manoeuvre`, whose path the first point follows.  The second one is at `OFFSET` from it;
     further ones are drawn at random, always the same, from a cube of 1 m around it.
+
+    Parameters
+    ----------
+    points : int
+        Points of the body, from 1 on.
+
+    Returns
+    -------
+    PointsScenario
+
+    See Also
+    --------
+    lost_offset, along_the_line_of_sight : Where something is not seen.
+
+    Examples
+    --------
+    >>> from percept_obs.points.scenarios import moving_body
+    >>> moving_body(2).coordinates([0, 30]).round(2).tolist()
+    [[0.0, 1.2, 2.5, 0.5, -0.3, 0.4], [-1.48, -0.66, 2.83, 0.11, -0.44, 0.54]]
     """
     camera_turns, camera_moves, body_turns = Manoeuvre().velocities
     form = rigid_body(points, camera_turns, camera_moves, body_turns)
@@ -126,7 +155,27 @@ def moving_body(points: int = 1) -> PointsScenario:
 
 @checked
 def lost_offset() -> PointsScenario:
-    """Scenario of two points of which the camera sees the first one only: the second one's offset is lost."""
+    """Scenario of two points of which the camera sees the first one only: the second one's offset is lost.
+
+    It warns of an `UnseenDirection`.
+
+    Returns
+    -------
+    PointsScenario
+
+    See Also
+    --------
+    moving_body : Where both points are seen.
+
+    Examples
+    --------
+    >>> from percept_obs.points.scenarios import lost_offset
+    >>> import warnings
+    >>> with warnings.catch_warnings(action="ignore"):  # of what is not seen
+    ...     form = lost_offset().form
+    >>> form.points, form.states
+    (1, 6)
+    """
     two = moving_body(2)
     form = PointsForm(two.form.motion, two.form.blocks[:1], names=two.form.names)
     return PointsScenario("the second point is not seen", form, two.state, 60.0)
@@ -134,6 +183,22 @@ def lost_offset() -> PointsScenario:
 
 @checked
 def along_the_line_of_sight() -> PointsScenario:
-    """Scenario of a point that recedes along its ray: the images stand still, and its depth is lost."""
+    """Scenario of a point that recedes along its ray: the images stand still, and its depth is lost.
+
+    Returns
+    -------
+    PointsScenario
+        In the coordinates X, Y, Z in metres, for 60 s.
+
+    See Also
+    --------
+    moving_body : Where everything is seen.
+
+    Examples
+    --------
+    >>> from percept_obs.points.scenarios import along_the_line_of_sight
+    >>> along_the_line_of_sight().coordinates([0, 10]).tolist()
+    [[0.4, 0.2, 2.0], [0.8, 0.4, 4.0]]
+    """
     form = PointsForm(linear(np.zeros((3, 3)), [0.04, 0.02, 0.2]), np.eye(3), names=("X", "Y", "Z"))
     return PointsScenario("along the line of sight", form, (0.4, 0.2, 2.0), 60.0)

@@ -44,6 +44,10 @@ class FirstSight:
     ValueError
         If one of them is not positive, or the depth is not finite.
 
+    See Also
+    --------
+    track : Takes it as a start.
+
     Examples
     --------
     >>> from percept_obs import Camera, FirstSight, luenberger, record, track

@@ -36,6 +36,16 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     ------
     ValueError
         If a landmark has no track.
+
+    See Also
+    --------
+    percept_obs.recording.utias.load_utias : Each track as a recording of one point.
+
+    Examples
+    --------
+    >>> from percept_obs.points.utias import load_utias_points
+    >>> load_utias_points().outputs.shape  # doctest: +SKIP
+    (1366, 12, 2)
     """
     tables = utias_tracks(path)
     followed = sorted({track.point for track in tables.tracks})

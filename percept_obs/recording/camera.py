@@ -249,6 +249,10 @@ class Camera:
 class Scene(ABC):
     """Scene in front of a camera: a point, the points of a state, or an object whose structure is sought.
 
+    See Also
+    --------
+    percept_obs.Scenario, percept_obs.PointsScenario : Two of them.
+
     Examples
     --------
     >>> from percept_obs import scenarios
@@ -304,6 +308,10 @@ def seeded(seed: Seed) -> np.random.Generator:
     ------
     ValueError
         If the seed is neither a Generator nor a whole number from 0 to 2^32 - 1.
+
+    See Also
+    --------
+    record : Draws its noise from it.
 
     Examples
     --------

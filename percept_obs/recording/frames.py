@@ -122,6 +122,10 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
     ValueError
         If the recording has no truth.
 
+    See Also
+    --------
+    Frames : The film.
+
     Examples
     --------
     >>> from percept_obs import record, scenarios

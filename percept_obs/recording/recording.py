@@ -32,6 +32,10 @@ class Sighting:
     point, first, last : int
         Its number, and its first and its last sample.
 
+    See Also
+    --------
+    percept_obs.recording.stereo_mat.StereoTracks : Has them.
+
     Examples
     --------
     >>> from percept_obs import Camera, record, scenarios

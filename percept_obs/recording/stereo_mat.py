@@ -186,6 +186,11 @@ def read_stereo_mat(
         If it is no such file, a variable is missing or has another shape, values are not finite, or times do not
         increase.
 
+    See Also
+    --------
+    StereoTracks : What is read.
+    percept_obs.recording.utias.load_utias : A file of this kind.
+
     Examples
     --------
     >>> tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)  # doctest: +SKIP

@@ -33,7 +33,12 @@ PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 
 class DatasetUnavailable(ConnectionError):
-    """Raised when the recording is not on this machine and could not be fetched."""
+    """Raised when the recording is not on this machine and could not be fetched.
+
+    See Also
+    --------
+    find_utias : Raises it.
+    """
 
 
 @checked
@@ -125,16 +130,20 @@ def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
     StereoTracks
         1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
 
-    Examples
+    See Also
     --------
-    >>> len(utias_tracks().tracks)  # doctest: +SKIP
-    44
+    load_utias : Each track as a recording.
 
     Notes
     -----
     The recorded poses miss the measured pixels by slowly varying offsets: in the median 4 to 13 px, about one
     degree of attitude, in 42 tracks, but 22 and 19 px in tracks 14 and 15.  Treat a pixel as known to about
     4 px.
+
+    Examples
+    --------
+    >>> len(utias_tracks().tracks)  # doctest: +SKIP
+    44
     """
     return read_stereo_mat(find_utias(path))
 

@@ -25,7 +25,12 @@ QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
 
 
 class ImpossibleChoice(ValueError):
-    """The unknowns cannot be told apart, or the statements about them contradict each other."""
+    """The unknowns cannot be told apart, or the statements about them contradict each other.
+
+    See Also
+    --------
+    percept_obs.StructureAndMotion : Raises it.
+    """
 
 
 @checked

@@ -48,6 +48,18 @@ def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
     ------
     ValueError
         If the recording is of something else, or has no noise.
+
+    See Also
+    --------
+    scale_spread : Runs them all.
+
+    Examples
+    --------
+    >>> from percept_obs import Gaussian, record
+    >>> from percept_obs.structure.competitors import competitors
+    >>> seen = record(chwa2019_experiment("IV.A"), 0.01, ScaledDepthCamera(1e-3, Gaussian(1e-3)))
+    >>> list(competitors(seen))[:3]
+    ['ISMO, ideal switch', 'ISMO, boundary layer', 'ISMO, ideal switch, b = 0']
     """
     straight = linear_view(recording)
     choice, view = recording.view, straight.view
@@ -100,6 +112,17 @@ def scale_spread(
     pandas.DataFrame
         One row for an observer, a ratio and a window: observer, decibels, begin, end, mean and std of the estimates of
         d_s in 1/m where there are any, missing (share of samples in a gap), true.
+
+    See Also
+    --------
+    competitors : The observers.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.competitors import scale_spread
+    >>> found = scale_spread(decibels=[60], windows=[(0.1, 0.2)]).set_index("observer")
+    >>> found.loc["Kalman filter, linear view", ["mean", "true"]].astype(float).round(1).tolist()
+    [10.5, 10.4]
     """
     import pandas as pd
 

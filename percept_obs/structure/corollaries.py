@@ -22,6 +22,10 @@ class Corollary:
     unknown, zero, earlier : tuples of str
         As in `StructureAndMotion`, with the axes i, j, k for 1, 2, 3.
 
+    See Also
+    --------
+    percept_obs.StructureAndMotion : The choice of unknowns that it makes.
+
     Examples
     --------
     >>> from percept_obs.structure import COROLLARIES

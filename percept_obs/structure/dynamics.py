@@ -48,6 +48,14 @@ class ScaledDynamics:
 def scaled_dynamics() -> ScaledDynamics:
     """Derive the dynamics of the scaled inverse depth from a rigid motion seen by a pinhole.
 
+    Returns
+    -------
+    ScaledDynamics
+
+    See Also
+    --------
+    percept_obs.StructureAndMotion : Divides it by what is known.
+
     Examples
     --------
     >>> from percept_obs.structure import scaled_dynamics

@@ -37,6 +37,11 @@ class LinearView(OnePoint):
     ----------
     choice : StructureAndMotion
 
+    See Also
+    --------
+    linear_view : Recordings in it.
+    percept_obs.StructureAndMotion : What it is made of.
+
     Examples
     --------
     >>> from percept_obs import StructureAndMotion

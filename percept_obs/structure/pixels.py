@@ -29,6 +29,22 @@ class SignalToNoise:
     Parameters
     ----------
     decibels : float
+
+    Raises
+    ------
+    ValueError
+        If the ratio is not finite.
+
+    See Also
+    --------
+    ScaledDepthCamera : Takes it instead of a noise.
+    percept_obs.Gaussian : Noise of given size.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.pixels import SignalToNoise
+    >>> round(SignalToNoise(20.0).sigma([[300.0, 400.0]]), 2)
+    35.36
     """
 
     decibels: float
@@ -77,6 +93,13 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     -----
     R. Hartley, A. Zisserman, Multiple View Geometry in Computer Vision (2004), section 4.1; Y. Ma, S. Soatto,
     J. Kosecka, S. Sastry, An Invitation to 3-D Vision (2004), section 5.3, for the factor.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.pixels import homography
+    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    >>> round(float(homography(square, square / 2)[2, 2]), 3)  # twice as far away
+    2.0
     """
     reference, images = np.asarray(reference, dtype=float), np.asarray(images, dtype=float)
     if reference.ndim != 2 or reference.shape[1] != 2 or images.shape[-2:] != reference.shape or len(reference) < 4:
@@ -104,10 +127,26 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
 
 @checked
 def apparent_size(images: ArrayLike) -> Array:
-    """Root mean square distance of image points to their centre, shape (...), for images of shape (..., n, 2).
+    """Root mean square distance of image points to their centre.
 
-    For an object of constant size that neither turns nor is turned to by the camera it is proportional to the
-    inverse depth if its points share one depth.
+    Parameters
+    ----------
+    images : array of shape (..., n, 2)
+
+    Returns
+    -------
+    array of shape (...)
+
+    See Also
+    --------
+    homography : All of the patch's motion.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.pixels import apparent_size
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    >>> apparent_size([square, square / 2]).round(3).tolist()
+    [1.414, 0.707]
     """
     images = numbers(images, "the images", "n", 2)
     return np.sqrt(np.sum((images - images.mean(axis=-2, keepdims=True)) ** 2, axis=-1).mean(axis=-1))

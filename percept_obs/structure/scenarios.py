@@ -37,10 +37,26 @@ def chwa2019_experiment(section: str) -> StructureScenario:
         "IV.A", "IV.B", "V.B", "VI.B" or "VI.C".  In IV.B the camera and the object have other velocities than in IV.A,
         although they are two stages of one motion; the paper says nothing of it.
 
+    Returns
+    -------
+    StructureScenario
+        For 10 s, with d_s = 10.4 per metre.
+
     Raises
     ------
     ValueError
         If there is no such case.
+
+    See Also
+    --------
+    chwa2019_simulation, chwa2019_semigeneral
+
+    Examples
+    --------
+    >>> from percept_obs.structure.scenarios import chwa2019_experiment
+    >>> scene = chwa2019_experiment("IV.A")
+    >>> scene.choice.theta, scene.coordinates([0, 5]).round(3).tolist()
+    ((d_s, d_s*v_c2, d_s*v_c3), [[0.32, 0.3, 0.05, 10.4, -2.392, 0.0], [0.892, 0.898, 0.05, 10.4, -2.392, 0.0]])
     """
     number, camera, object_ = _stated(section, _CHWA_EXPERIMENT)
     name = f"Chwa 2019, experiment {section}"
@@ -88,10 +104,25 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
         w in rad/s, minus the camera's own; zero in the paper.  If it is not zero, the point starts on its axis, at
         w / w3 in the image, so that it stays in view; w3 must be positive then.
 
+    Returns
+    -------
+    StructureScenario
+        For 10 s.
+
     Raises
     ------
     ValueError
         If there is no such case, or w3 is not positive.
+
+    See Also
+    --------
+    chwa2019_experiment, chwa2019_crossing
+
+    Examples
+    --------
+    >>> from percept_obs.structure.scenarios import chwa2019_simulation
+    >>> chwa2019_simulation("IV.A").coordinates([0, 5])[:, :3].round(3).tolist()
+    [[0.4, 0.4, 0.05], [0.091, 0.182, 0.045]]
     """
     number, camera, object_ = _stated(section, _CHWA_SIMULATION)
     w = np.asarray(angular_velocity, dtype=float)
@@ -125,7 +156,18 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     Raises
     ------
     ValueError
-        If there is no such set-up.
+        If there is no such set-up, or the time is not positive and finite.
+
+    See Also
+    --------
+    percept_obs.semigeneral : Follows both stages.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.scenarios import chwa2019_semigeneral
+    >>> motion = chwa2019_semigeneral("experiment").motion
+    >>> motion.known([4.0, 6.0])[:, 6:].tolist()  # the object's velocity
+    [[0.0, 0.0, 0.0], [-0.22, -0.23, 0.0]]
     """
     if not 0 < 2 * moves_at < math.inf:
         raise ValueError(f"moves_at is {moves_at} s; the object must begin to move at a finite time after 0")
@@ -144,7 +186,23 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
 
 @checked
 def chwa2019_crossing() -> StructureScenario:
-    """Scenario of corollary 3 with a camera that turns back along its axis: v_c3 crosses 0 at 2.1 s and every 3.1 s."""
+    """Scenario of corollary 3 with a camera that turns back along its axis: v_c3 crosses 0 at 2.1 s and every 3.1 s.
+
+    Returns
+    -------
+    StructureScenario
+        For 10 s.
+
+    See Also
+    --------
+    chwa2019_simulation : Velocities that keep the condition.
+
+    Examples
+    --------
+    >>> from percept_obs.structure.scenarios import chwa2019_crossing
+    >>> chwa2019_crossing().motion.known([2.0, 2.3])[:, 5].round(2).tolist()  # v_c3
+    [-0.04, 0.05]
+    """
 
     def camera(time: float) -> list[float]:
         return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 * math.sin(time + 1.0)]

@@ -26,7 +26,21 @@ NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
 
 class DepthSource(Protocol):
-    """Source of the scaled inverse depth, such as `GivenDepth` or `PatchDepth`."""
+    """Source of the scaled inverse depth, such as `GivenDepth` or `PatchDepth`.
+
+    See Also
+    --------
+    GivenDepth, PatchDepth : Two of them.
+    ScaledDepthCamera : Takes one.
+
+    Examples
+    --------
+    >>> class Rounded(GivenDepth):
+    ...     def depths(self, images, exact, time, generator):
+    ...         return exact.round(2)
+    >>> Rounded().depths(np.zeros((1, 1, 2)), np.array([0.123]), np.zeros(1), np.random.default_rng()).tolist()
+    [0.12]
+    """
 
     @property
     def offsets(self) -> Array:
@@ -48,6 +62,15 @@ class GivenDepth:
         In the unit of ybar3.  A constant factor would be no error: it only changes d_s.
     drift : float
         Per second.
+
+    Raises
+    ------
+    ValueError
+        If the bias or the drift is not finite.
+
+    See Also
+    --------
+    PatchDepth : Measured from pictures.
 
     Examples
     --------
@@ -89,6 +112,16 @@ class PatchDepth:
     ----------
     offsets : array of shape (n, 3)
         As from `grid_patch`.
+
+    Raises
+    ------
+    ValueError
+        If the offsets are not finite.
+
+    See Also
+    --------
+    grid_patch : Makes offsets.
+    GivenDepth : With errors of one's choice.
 
     Examples
     --------
@@ -136,6 +169,10 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
     ValueError
         If the side is not positive, the count is not odd and at least 3, or the normal vector is zero.
 
+    See Also
+    --------
+    PatchDepth : Measures the depth of the patch.
+
     Examples
     --------
     >>> from percept_obs.structure import grid_patch
@@ -177,6 +214,11 @@ class StructureScenario(Scenario):
         If d_s is not positive, or a scenario makes no sense.
     ImpossibleChoice
         If a velocity that is said to be zero is not.
+
+    See Also
+    --------
+    ScaledDepthCamera : Records it.
+    percept_obs.Scenario : Of a point with known motion.
 
     Examples
     --------
@@ -242,6 +284,16 @@ class ScaledDepthCamera(Camera):
         Instead of the noise; the signal is the pixel coordinates of all points of the object.
     depth : DepthSource
         `GivenDepth` without errors when left out.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, as of `Camera`.
+
+    See Also
+    --------
+    percept_obs.Camera : Sees image coordinates only.
+    record : Records a scenario with it.
 
     Examples
     --------
@@ -309,6 +361,11 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
 
+    Returns
+    -------
+    Recording
+        With the same samples, times and noise.
+
     Raises
     ------
     ValueError
@@ -348,6 +405,11 @@ def linear_view(recording: Recording) -> Recording:
     ----------
     recording : Recording
         Of (y1, y2, ybar3).
+
+    Returns
+    -------
+    Recording
+        Of (y1, y2, 1) / ybar3; it names no variance, for the noise is no longer the same in all outputs.
 
     Raises
     ------

@@ -86,6 +86,11 @@ def semigeneral(
     **settings
         Passed to `track`, such as ``hold`` and ``step``.
 
+    Returns
+    -------
+    SemigeneralRun
+        With a run of each stage.
+
     Raises
     ------
     ValueError

@@ -46,6 +46,18 @@ class AllObservers:
         Recordings and times that could not be used; the table says why an observer could not be run.
     start : mapping of coordinate names to values
         Estimates at the first sample, for every observer.
+
+    See Also
+    --------
+    all_observers : Makes it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Uniform, record, scenarios
+    >>> from percept_obs.observers import de_luca
+    >>> seen = [record(scenarios.ma2005_eq35(), seconds, Camera(0.05, Uniform(0.01))) for seconds in (3, 3, 0.5)]
+    >>> print(*all_observers(seen, candidates={de_luca: [{}]}).left_out.values())
+    it lasts 0.5 s, and the first error is asked for after 1 s
     """
 
     table: pd.DataFrame

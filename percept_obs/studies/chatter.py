@@ -105,6 +105,19 @@ class Effort:
         Evaluations of the right-hand side by then.
     finished : bool
         True if it reached the end within the allowed evaluations.
+
+    See Also
+    --------
+    effort : Computes it.
+    percept_obs.figures.chatter : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole, scenarios, smo
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> observers = [smo(form, switch=switch) for switch in ("fraction", "sign")]
+    >>> [effort(scenarios.ma2005_eq35(), each, 0.5, most=2000).finished for each in observers]
+    [True, False]
     """
 
     method: str

@@ -145,6 +145,14 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     See Also
     --------
     described : the summary as text
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> table = compare([record(make(), 5) for make in (scenarios.ma2005_eq35, scenarios.planar)], [ibo(form)])
+    >>> summary(table)[["runs", "failed", "diverged"]].values.tolist()
+    [[2, 0, 0]]
     """
     import pandas as pd
 

@@ -47,6 +47,11 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
     ValueError
         If the observer claims no covariance.
 
+    See Also
+    --------
+    claimed_distance : Of the distance.
+    check_consistency : Tests the claim.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
@@ -81,6 +86,10 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     ------
     ValueError
         If the observer claims no covariance.
+
+    See Also
+    --------
+    claimed_interval : Of the coordinates.
 
     Examples
     --------
@@ -117,6 +126,18 @@ class Consistency:
         Probability of the two-sided intervals.
     whitened : array of shape (K, outputs)
         See `Run.whitened`.
+
+    See Also
+    --------
+    check_consistency : Computes it.
+    percept_obs.figures.consistency : Draws it.
+
+    Examples
+    --------
+    >>> white = np.random.default_rng(0).normal(size=(500, 2))
+    >>> found = Consistency(np.arange(500.0), (white**2).sum(axis=1), 2, 50, 0.95, white)
+    >>> found.judgement, found.white
+    ('consistent', True)
     """
 
     time: Array

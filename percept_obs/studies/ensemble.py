@@ -129,6 +129,11 @@ def ensemble(
     Unfinished
         If it was interrupted; what is done is returned.
 
+    See Also
+    --------
+    percept_obs.studies.sweep.sweep : From a file.
+    percept_obs.studies.comparison.compare : Several observers.
+
     Notes
     -----
     Products and sums are rounded once in machine code, so that a run differs from `track`'s by about 1e-14 relative,

@@ -33,6 +33,16 @@ class LeastSquares:
     recording : Recording
     window : float
         Seconds.
+
+    See Also
+    --------
+    moving_window_least_squares : The run that has it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, record, scenarios
+    >>> moving_window_least_squares(record(scenarios.ma2005_eq35(), 3, Camera(0.05)), 1.0).observer.name
+    'least squares on 1 s'
     """
 
     recording: Recording
@@ -76,6 +86,10 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     ------
     ValueError
         If an image coordinate was not recorded or the window is not positive.
+
+    See Also
+    --------
+    track : Runs an observer.
 
     Notes
     -----

@@ -46,6 +46,18 @@ class Tuned:
         Of all innovations of the recordings.
     tried : int
         Number of settings that were tried.
+
+    See Also
+    --------
+    tune_by_likelihood : Makes it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = record(scenarios.ma2005_eq35(), 4, Camera(0.05, Gaussian(0.01)), seed=1)
+    >>> tune_by_likelihood([seen], ekf(form), {"noise_variance": (1e-6, 1e-5)}, lambda r, o: track(r, o)).at_edge
+    ('noise_variance',)
     """
 
     observer: Observer
@@ -80,6 +92,18 @@ def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
     ------
     ValueError
         If there is no run, or an observer claims no covariance or has no measurement update.
+
+    See Also
+    --------
+    tune_by_likelihood : Maximises it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = record(scenarios.ma2005_eq35(), 4, Camera(0.05, Gaussian(0.01)), seed=1)
+    >>> [round(log_likelihood([track(seen, ekf(form, noise_variance=v))])) for v in (1e-5, 1e-4, 1e-3)]
+    [45, 488, 391]
     """
     if not len(runs):
         raise ValueError("there is no run; give one at least, such as [track(recording, ekf(form))]")

@@ -38,6 +38,19 @@ class Sensitivity:
         Of the estimates at the samples; NaN where there is no estimate.
     sizes : array of shape (q,)
         Root mean square over the run of the motion's size: of A in 1/s for its entries, of b in m/s for those of b.
+
+    See Also
+    --------
+    sensitivity : Computes it.
+    percept_obs.figures.entries : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = sensitivity(record(scenarios.ma2005_eq35(), 5), ibo(form), entries=("a13", "b3"))
+    >>> {name: round(share, 4) for name, share in found.ranking().items()}
+    {'a13': 0.0815, 'b3': 0.0033}
     """
 
     run: Run
@@ -173,6 +186,10 @@ def misbelieved(motion: Motion, **errors: float) -> Motion:
     ------
     ValueError
         If the motion has no such entry.
+
+    See Also
+    --------
+    sensitivity : To first order, without a second run.
 
     Examples
     --------

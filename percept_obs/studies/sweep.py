@@ -49,6 +49,14 @@ def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
     See Also
     --------
     percept_obs.ensemble : runs an ensemble from Python
+
+    Examples
+    --------
+    >>> from tempfile import mkdtemp
+    >>> file = Path(mkdtemp(), "mine.toml")
+    >>> lines = ['scenario = "planar"', 'observer = "identifier_based"', 'store = "mine.zarr"', "seeds = 2"]
+    >>> file.write_text(os.linesep.join(lines)) and dict(sweep(file).sizes)
+    {'seed': 2}
     """
     file = Path(path)
     try:

@@ -28,6 +28,19 @@ class TrustOverTime:
         Indices of the samples at which it was judged.
     trusts : tuple of T Trust
         Each by the samples up to then.
+
+    See Also
+    --------
+    trust_over_time : Computes it.
+    percept_obs.figures.trust : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> run = track(record(scenarios.ma2005_eq35(), 6, Camera(0.02, Gaussian(0.003)), seed=1), ibo(form))
+    >>> trust_over_time(run, count=4).distance.round(1).tolist()
+    [3.1, 4.2, 4.7, 3.9]
     """
 
     run: Run

@@ -205,6 +205,19 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
         A column for each reference and time, with the median error and in brackets the 90 % quantile; behind
         (recordings, at the time with the most), reset, diverged, cost (us for a second of data), and a remark: the
         gains, those at an edge of their candidates, steps that are too long, or why the observer cannot follow.
+
+    See Also
+    --------
+    choose_and_report : Makes the table.
+    percept_obs.studies.all_observers.all_observers : Shows it in this way.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ibo, pinhole, record, scenarios, track
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> seen = [record(scenarios.ma2005_eq35(), 3, Camera(0.05, Uniform(0.01)), seed) for seed in range(2)]
+    >>> side_by_side(choose_and_report(seen[:1], seen[1:], form, track, {ibo: [{}]}, after=[1.0])).columns.tolist()
+    ['truth 1 s', 'behind', 'reset', 'diverged', 'cost', 'remark']
     """
     import pandas as pd
 

@@ -25,6 +25,17 @@ class Step:
         Results of the step, to be compared with somebody else's.
     follows : function of a list of values, optional
         Result of the whole derivation from this step's values, linear in each of them.
+
+    See Also
+    --------
+    Derivation : All steps.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> derivation = PerspectiveSystem(affine(), pinhole()).derivation()
+    >>> derivation[-2].reason, derivation[-2].values["y3'"]
+    ('Multiplied out:', -a31*y1*y3 - a32*y2*y3 - a33*y3 - b3*y3**2)
     """
 
     reason: str
@@ -55,7 +66,23 @@ class Step:
 
 @dataclass(frozen=True)
 class Derivation(Sequence[Step]):
-    """Sequence of steps, shown as text and formulas in a notebook; a slice is a derivation, too."""
+    """Sequence of steps, shown as text and formulas in a notebook; a slice is a derivation, too.
+
+    Parameters
+    ----------
+    steps : tuple of Step
+
+    See Also
+    --------
+    percept_obs.check : Compares one's own lines with it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, pinhole
+    >>> derivation = PerspectiveSystem(affine(), pinhole()).derivation()
+    >>> [sorted(step.values) for step in derivation[-2:]]
+    [["y1'", "y2'", "y3'"], ['y1', 'y2']]
+    """
 
     steps: tuple[Step, ...]
 

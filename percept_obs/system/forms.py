@@ -26,6 +26,10 @@ class NotAffine(ValueError):
         Names of the measured outputs.
     culprits : tuple of str
         Names of the hidden coordinates that do not enter linearly.
+
+    See Also
+    --------
+    CanonicalForm : What is missing then.
     """
 
     def __init__(self, measured: Sequence[str], culprits: Sequence[str]) -> None:
@@ -63,6 +67,10 @@ class PartitionedSystem:
         All coordinates in the order of the view.
     view : View or None
         View that the outputs belong to.
+
+    See Also
+    --------
+    CanonicalForm : Where the rate is affine in what is hidden.
 
     Examples
     --------
@@ -144,6 +152,11 @@ class CanonicalForm(PartitionedSystem):
     w : matrix of shape (n2, n1)
     phi : matrix of shape (n1, 1)
     g : matrix of shape (n2, 1)
+
+    See Also
+    --------
+    PartitionedSystem : Needs no such structure.
+    NotAffine : Raised where there is none.
 
     Examples
     --------

@@ -37,6 +37,10 @@ class Motion:
     signal : Signal, optional
         Values of `parameters` over time.
 
+    See Also
+    --------
+    affine, rigid, linear : Make it.
+
     Examples
     --------
     >>> from percept_obs import rigid
@@ -103,6 +107,11 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
 
+    Returns
+    -------
+    Motion
+        X' = A X + b; given numbers are the values of its symbols.
+
     Raises
     ------
     ValueError
@@ -145,6 +154,11 @@ def rigid(
         w in rad/s, v_c and v_p in m/s; symbols when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
+
+    Returns
+    -------
+    Motion
+        With the parameters w1, w2, w3, v_c1, ... v_p3.
 
     Raises
     ------

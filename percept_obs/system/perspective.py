@@ -34,6 +34,16 @@ class PerspectiveSystem:
     motion : Motion
     surface : ImagingSurface
 
+    Raises
+    ------
+    ValueError
+        If the motion is not that of one point in space.
+
+    See Also
+    --------
+    CanonicalForm : With some coordinates measured.
+    percept_obs.PointsForm : Many points.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, pinhole

@@ -27,11 +27,21 @@ Start = Mapping[str, float] | Sequence[float] | None
 
 
 class DoesNotFit(ValueError):
-    """An observer cannot follow this recording."""
+    """An observer cannot follow this recording.
+
+    See Also
+    --------
+    track : Raises it.
+    """
 
 
 class StepTooLong(UserWarning):
-    """The steps become too long for the fastest part of an observer, which will then chatter."""
+    """The steps become too long for the fastest part of an observer, which will then chatter.
+
+    See Also
+    --------
+    track : Warns with it.
+    """
 
 
 TOO_LONG = (

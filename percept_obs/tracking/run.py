@@ -49,6 +49,11 @@ class Run:
     unobservable : array of shape (K,) of int
         Number of the `Observer.unobservable` that hides the hidden coordinates, from 1; 0 where they are estimated.
 
+    See Also
+    --------
+    track : Makes it.
+    percept_obs.points.PointsRun : Of many points.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track

@@ -28,6 +28,10 @@ class DerivationDesk(Lab):
 
     {settings}
 
+    See Also
+    --------
+    percept_obs.check : Checks a line without the desk.
+
     Examples
     --------
     >>> desk = derivation_desk(student="Ada")

@@ -76,6 +76,10 @@ class ObserverLab(Lab):
 
     {settings}
 
+    See Also
+    --------
+    points_lab, structure_lab : Other labs.
+
     Examples
     --------
     >>> from percept_obs.labs import observer_lab

@@ -70,6 +70,10 @@ class PointsLab(Lab):
 
     {settings}
 
+    See Also
+    --------
+    observer_lab : One point.
+
     Examples
     --------
     >>> from percept_obs.labs import points_lab

@@ -68,6 +68,10 @@ class StructureLab(Lab):
 
     {settings}
 
+    See Also
+    --------
+    observer_lab : A point with a known motion.
+
     Examples
     --------
     >>> from percept_obs.labs import structure_lab

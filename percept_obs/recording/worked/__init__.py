@@ -11,6 +11,11 @@ WORKED_CAMERA = PixelCamera((484.5, 484.5), (321.7, 247.5), (640, 480), (-0.28, 
 def worked_folder() -> Path:
     """Return the folder with poses.txt and tracks.csv: a camera slides to and fro past two points for four seconds.
 
+    See Also
+    --------
+    percept_obs.read_tum : Reads the poses.
+    percept_obs.Recording : Reads the tracks by ``from_csv``.
+
     Examples
     --------
     >>> lines = (worked_folder() / "tracks.csv").read_text().splitlines()

@@ -49,6 +49,18 @@ class Finding:
         Such as the offset in seconds; NaN where there is none.
     tried, left : tuples of float
         The values that were tried and the root mean square of the residuals for each, in focal lengths.
+
+    See Also
+    --------
+    Diagnosis : All findings.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from percept_obs import Camera, diagnose, record, scenarios
+    >>> seen = record(scenarios.ma2005_eq35(), 5, Camera(0.05))
+    >>> diagnose(replace(seen, outputs=0.8 * seen.outputs)).findings[0].sentence
+    'the focal length is 0.800 times the one by which the images were divided'
     """
 
     key: str
@@ -74,6 +86,18 @@ class Diagnosis:
     noise : float or None
         The standard deviation that the noise is said to have.
     not_tried : mapping of keys to reasons
+
+    See Also
+    --------
+    diagnose : Makes it.
+    percept_obs.figures.scan : Draws what was tried.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, diagnose, record, scenarios
+    >>> found = diagnose(record(scenarios.ma2005_eq35(), 3, Camera(0.05)))
+    >>> found.named, list(found.not_tried)[:2]
+    ('nothing', ['time offset', 'mismatch'])
     """
 
     findings: tuple[Finding, ...]

@@ -71,6 +71,10 @@ def explain(recording: Recording) -> Explained:
     -------
     Explained
 
+    See Also
+    --------
+    diagnose : Compares what is left.
+
     Examples
     --------
     >>> from percept_obs import record, scenarios

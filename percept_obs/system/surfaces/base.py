@@ -22,7 +22,12 @@ X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
 
 class BehindCamera(ValueError):
-    """A point is not in front of the imaging surface, so it has no image there."""
+    """A point is not in front of the imaging surface, so it has no image there.
+
+    See Also
+    --------
+    ImagingSurface : Refuses such points.
+    """
 
 
 @checked
@@ -55,6 +60,10 @@ class ImagingSurface(OnePoint):
     ------
     ValueError
         If the point is not found again from its image coordinates and its distance.
+
+    See Also
+    --------
+    pinhole, plane, sphere, unified, ellipsoid, chained : Make it.
 
     Examples
     --------

@@ -44,6 +44,11 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
     outputs : 2 or 3
         Image coordinates X/l, Y/l, and also Z/l, which follows from y^T Q y = 1 but for its sign.
 
+    Returns
+    -------
+    ImagingSurface
+        With the inverse distance last, as on every surface.
+
     Raises
     ------
     ValueError

@@ -21,6 +21,11 @@ def sphere(outputs: int = 2) -> ImagingSurface:
     outputs : 2 or 3
         3 for the unit direction, whose coordinates depend on each other: y . y = 1.
 
+    Returns
+    -------
+    ImagingSurface
+        Without parameters.
+
     Raises
     ------
     ValueError

@@ -27,6 +27,11 @@ def unified(xi: float | None = None) -> ImagingSurface:
     xi : float, optional
         Parameter of the mirror or lens, 0 or more; the symbol xi when left out.
 
+    Returns
+    -------
+    ImagingSurface
+        With xi as its parameter.
+
     Raises
     ------
     ValueError
