@@ -54,11 +54,12 @@ class Search:
         return list(islice(points(self.mine, self.line.formula, opaque=True), 3))
 
     def values(self, e: sp.Expr) -> Values | None:
-        """Return the values of an expression at all points; None where one is missing."""
+        """Return the values of an expression at all points; None where one is missing or not finite."""
         try:
-            return np.array([point(e) for point in self.places])
+            found = np.array([point(e) for point in self.places])
         except NoValue:
             return None
+        return found if np.isfinite(found).all() else None
 
     @cached_property
     def terms(self) -> tuple[sp.Expr, ...]:
@@ -68,7 +69,8 @@ class Search:
     @cached_property
     def lacking(self) -> Values:
         """Values of the true formula less mine."""
-        return np.array([point(self.line.formula) - point(self.mine) for point in self.places])
+        true, mine = self.values(self.line.formula), self.values(self.mine)
+        return np.full(len(self.places), np.nan) if true is None or mine is None else true - mine
 
     @cached_property
     def changes(self) -> list[tuple[Values, Slip]]:

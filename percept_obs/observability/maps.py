@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Printed, function_source, vectorised
+from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
-from percept_obs.recording.path import varying_path
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, ImagingSurface
@@ -305,10 +305,16 @@ def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:
 
     def rate(time: float, state: Array) -> Array:
         A, b = np.split(np.ravel(evaluate(*motion.known(time)[0])), [9])
-        moved = A.reshape(3, 3) @ state.reshape(3, 4)
+        moved = A.reshape(3, 3) @ state
         moved[:, 3] += b
-        return moved.ravel()
+        return moved
 
-    breaks = () if motion.signal is None or motion.signal.times is None else motion.signal.times
-    whole = varying_path(rate, np.eye(3, 4).ravel(), times, breaks).reshape(-1, 3, 4)
+    # the steps of the page, which then draws the same numbers where the distance is hardly observable
+    grid, index = step_grid(times, LONGEST_STEP)
+    state = np.eye(3, 4)
+    found = [state]
+    for begin, h in zip(grid, np.diff(grid), strict=False):
+        state = step(state, h, lambda k, x, t=begin, h=h: rate(t + float(INSTANTS[k]) * h, x))
+        found.append(state)
+    whole = np.array(found)[index]
     return whole[:, :, :3], whole[:, :, 3]
