@@ -41,15 +41,15 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
     threshold : float
         Positive; in 1/s or m/s, as w is.  For one point.
 
-    See Also
-    --------
-    scene : The path in space.
-
     Examples
     --------
     >>> from percept_obs import figures, record, scenarios
     >>> print(figures.image_plane(record(scenarios.ma2005_eq35(), 20)).text.split(". ")[-1])
     The disk |w| < 0.1 around it has the radius 0.333; the path does not enter it.
+
+    See Also
+    --------
+    scene : The path in space.
     """
     recording, run = base.recording_and_run(data)
     view = recording.view

@@ -28,16 +28,16 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     ----------
     found : Observability
 
-    See Also
-    --------
-    percept_obs.how_observable : Computes them.
-
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, how_observable, pinhole, record, scenarios
     >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
     >>> len(figures.observability(found).axes)
     4
+
+    See Also
+    --------
+    percept_obs.how_observable : Computes them.
     """
     base.require(found, Observability, "how_observable(recording, system)")
     begun, hidden = found.recording.time[0], found.form.hidden[-1]
@@ -108,16 +108,16 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     threshold : float
         Positive; in m/s, as w is.
 
-    See Also
-    --------
-    percept_obs.bound_map : Computes it.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, bound_map, figures, pinhole
     >>> forwards = PerspectiveSystem(affine([[0.0] * 3] * 3, [0, 0, -0.5]), pinhole())
     >>> print(figures.bound_map(bound_map(forwards, resolution=11)).text.split(". ")[-1])
     The circle |w| = 0.1 around it has the radius 0.2.
+
+    See Also
+    --------
+    percept_obs.bound_map : Computes it.
     """
     base.require(found, BoundMap, "bound_map(system)")
     if not threshold > 0:
@@ -185,10 +185,6 @@ def excitation(
     ----------
     excitations : Excitation or sequence of Excitation
 
-    See Also
-    --------
-    percept_obs.windowed : Computes it.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, windowed
@@ -196,6 +192,10 @@ def excitation(
     >>> found = windowed(form, record(scenarios.ma2005_eq35(), 20), 5)
     >>> print(figures.excitation(found).text.split(". ")[-1])
     5 s window: the least is 0.485, at 20 s, the largest 7.2.
+
+    See Also
+    --------
+    percept_obs.windowed : Computes it.
     """
     found = base.require_several(excitations, Excitation, "windowed(form, recording)")
     if not all(np.isfinite(one.smallest).any() for one in found):
@@ -225,10 +225,6 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     ----------
     found : Gramian or sequence of Gramian
 
-    See Also
-    --------
-    percept_obs.points.gramian.gramian : Computes it.
-
     Examples
     --------
     >>> from percept_obs import Camera, figures, record
@@ -237,6 +233,10 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     >>> found = gramian(record(moving_body(1), 5, Camera(0.1)), 2)
     >>> print(figures.gramian(found).text.split("; ")[1])
     least is seen in the 2 s from 0 s on, mainly of r_z, r_y, r_x.
+
+    See Also
+    --------
+    percept_obs.points.gramian.gramian : Computes it.
     """
     found = base.require_several(found, Gramian, "points.gramian.gramian()")
     names = base.labels_for(labels, [f"{one.window:g} s window" for one in found])
@@ -260,10 +260,6 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     ----------
     found : Consistency
 
-    See Also
-    --------
-    percept_obs.check_consistency : Computes it.
-
     Examples
     --------
     >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, check_consistency, ekf, figures, pinhole
@@ -272,6 +268,10 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     >>> run = track(recording, ekf(PerspectiveSystem(affine(), pinhole()), noise_variance=1e-4))
     >>> print(figures.consistency(check_consistency(run, after=5)).text.split(". ")[1])
     Consistent: the innovations are as large as the filter claims
+
+    See Also
+    --------
+    percept_obs.check_consistency : Computes it.
     """
     base.require(found, Consistency, "check_consistency(run)")
     ax = canvas(ax, 3.2)
@@ -337,10 +337,6 @@ def fields(
     ----------
     found : FieldBound or sequence of FieldBound
 
-    See Also
-    --------
-    percept_obs.studies.fields.field_bound : Computes them.
-
     Examples
     --------
     >>> from percept_obs import affine, figures, sphere
@@ -349,6 +345,10 @@ def fields(
     >>> found = field_bound(sphere(), sideways, AngleNoise(), 2.0, size=5)
     >>> print(figures.fields(found).text.split(". ")[1])
     sphere, y1, y2 measured: 0.53 % in the middle of the picture, 0.75 % near its edge, 0.53 to 96 % in all.
+
+    See Also
+    --------
+    percept_obs.studies.fields.field_bound : Computes them.
     """
     found = base.require_several(found, FieldBound, "field_bound()")
     names = base.labels_for(labels, [each.surface.name for each in found])

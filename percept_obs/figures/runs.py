@@ -46,17 +46,17 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     tolerance : float
         Bound on the relative error, see `Run.outcome`.
 
-    See Also
-    --------
-    distance : In metres.
-    runs_over_time : Several observers.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
     >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
     >>> print(figures.signals(run).text.split(". ")[1])
     Converged: the relative error of the distance stays within 10 % after 1.91 s
+
+    See Also
+    --------
+    distance : In metres.
+    runs_over_time : Several observers.
     """
     base.require(run, Run, "track()")
     names = [symbol.name for symbol in run.view.coordinates]
@@ -159,17 +159,17 @@ def runs_over_time(
     bound : Bound, optional
         From `cramer_rao` on the same truth: the least standard deviation, drawn under the errors.
 
-    See Also
-    --------
-    distance : Of one run, in metres.
-    comparison : Numbers over many runs.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
     >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
     >>> print(figures.runs_over_time(run).text.split(": ", 2)[2])
     Converged: the relative error of the distance stays within 10 % after 1.91 s.
+
+    See Also
+    --------
+    distance : Of one run, in metres.
+    comparison : Numbers over many runs.
     """
     runs = base.runs_of_one_point(runs)
     labels = base.labels_for(labels, _descriptions(runs))
@@ -232,16 +232,16 @@ def distance(
         What the errors are relative to: "truth", or the name of one of the recording's `distances`.  The truth when
         left out or, if the recording has none, the first of the distances.
 
-    See Also
-    --------
-    signals : Outputs and coordinates.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
     >>> run = track(record(scenarios.ma2005_eq35(), 20), ibo(PerspectiveSystem(affine(), pinhole())))
     >>> print(figures.distance(run).text.split(". ")[1])
     By the truth it is from 1.04 to 7.04 m
+
+    See Also
+    --------
+    signals : Outputs and coordinates.
     """
     runs = base.runs_of_one_point(runs)
     labels = base.labels_for(labels, _descriptions(runs))
@@ -346,15 +346,15 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
         Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
         Without the truth, the median of the estimated distances stands for it.
 
-    See Also
-    --------
-    image_plane : The path in the image.
-
     Examples
     --------
     >>> from percept_obs import figures, record, scenarios
     >>> print(figures.scene(record(scenarios.ma2005_eq35(), 20)).text.split(". ")[-1])
     The point ends at X, Y, Z = (3.78, 10.1, 7.04) m.
+
+    See Also
+    --------
+    image_plane : The path in the image.
     """
     recording, run = base.recording_and_run(data)
     if recording.points is None and run is None:
@@ -434,10 +434,6 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
     axis : int
         0, 1 and 2 are x to the right, y down and z forward.
 
-    See Also
-    --------
-    percept_obs.rigid_from_poses : The motion from poses.
-
     Examples
     --------
     >>> from percept_obs import Neighbours, Quadratic, figures, read_tum
@@ -446,6 +442,10 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
     >>> paths = {"narrow": poses.path(Quadratic(0.1)), "neighbours": poses.path(Neighbours())}
     >>> print(figures.velocities(paths).text.split(". ")[1])
     narrow: from -0.226 to 0.226
+
+    See Also
+    --------
+    percept_obs.rigid_from_poses : The motion from poses.
     """
     if not paths or not all(isinstance(path, CameraPath) for path in paths.values()):
         raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path(derivative) makes one")

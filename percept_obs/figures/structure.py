@@ -37,10 +37,6 @@ def quantities(
     image : bool
         Whether the image coordinates y1, y2 and the inverse depth y3 = 1/Z have a row each as well, above the others.
 
-    See Also
-    --------
-    cases : Several of them.
-
     Examples
     --------
     >>> from percept_obs import figures, ismo, record, track
@@ -50,6 +46,10 @@ def quantities(
     >>> run = track(recording, ismo(recording.view.form), step=0.01)
     >>> [ax.get_ylabel() for ax in figures.quantities(run).axes]
     ['$d_{s}$ (1/m)', '$v_{c2}$ (m/s)', '$v_{c3}$ (m/s)']
+
+    See Also
+    --------
+    cases : Several of them.
     """
     runs = base.require_several(runs, Run, "track()")
     labels = base.labels_for(labels, [run.observer.name for run in runs])
@@ -91,10 +91,6 @@ def cases(
     image : bool
         As in `quantities`.
 
-    See Also
-    --------
-    quantities : One case.
-
     Examples
     --------
     >>> from percept_obs import figures, ismo, record, track
@@ -104,6 +100,10 @@ def cases(
     >>> run = track(recording, ismo(recording.view.form), step=0.01)
     >>> len(figures.cases({"IV.A": run}).axes)
     3
+
+    See Also
+    --------
+    quantities : One case.
     """
     runs_of = {name: [runs] if isinstance(runs, Run) else list(runs) for name, runs in columns.items()}
     unknown = {name: len(_choice(runs[0]).unknown) for name, runs in runs_of.items() if runs}
@@ -180,10 +180,6 @@ def error_norm(
     fitted : two times
         Between which the exponential is fitted, in seconds.
 
-    See Also
-    --------
-    percept_obs.points.gramian.decay_bound : What the proof guarantees.
-
     Examples
     --------
     >>> from percept_obs import Camera, figures, luenberger, record, track
@@ -192,6 +188,10 @@ def error_norm(
     >>> run = track(recording, luenberger(recording.view), recording.truth[0] + 0.1)
     >>> print(figures.error_norm(run).text.split(". ")[-1])
     Luenberger, constant P: from 0.17 to 0.095 in 4 s, decaying at 0.111 per second.
+
+    See Also
+    --------
+    percept_obs.points.gramian.decay_bound : What the proof guarantees.
     """
     runs = base.require_several(runs, PointsRun, "track()")
     names = base.labels_for(labels, [run.observer.name for run in runs])
@@ -232,15 +232,15 @@ def depth_errors(errors: Mapping[str, ArrayLike], after: float, ax: Axes | None 
     after : float
         Seconds since first sight, for the describe.
 
-    See Also
-    --------
-    percept_obs.structure.PatchDepth : One way of estimating.
-
     Examples
     --------
     >>> from percept_obs import figures
     >>> print(figures.depth_errors({"mine": [0.01, 0.03, 0.02]}, after=2).text.split(". ")[-1])
     mine: 3 sightings, median 2.0%, at most 3.0%.
+
+    See Also
+    --------
+    percept_obs.structure.PatchDepth : One way of estimating.
     """
     known = {name: np.asarray(values, dtype=float).ravel() for name, values in errors.items()}
     if not known or not all(len(values) and not np.isnan(values).any() for values in known.values()):

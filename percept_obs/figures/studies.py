@@ -49,10 +49,6 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     table : pandas.DataFrame
         From `percept_obs.studies.comparison.compare`.
 
-    See Also
-    --------
-    percept_obs.studies.comparison.compare : Computes it.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
@@ -61,6 +57,10 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [observer])
     >>> print(figures.comparison(table).text.split(". ")[0])
     Settling time and rms error of every observer, on logarithmic axes
+
+    See Also
+    --------
+    percept_obs.studies.comparison.compare : Computes it.
     """
     if not len(table) or not {"observer", *PANELS} <= set(table.columns):
         raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")
@@ -132,10 +132,6 @@ def chatter(
     efforts : mapping of labels to Effort
         From `percept_obs.studies.chatter.effort`.  Curves with the same label look the same on both sides.
 
-    See Also
-    --------
-    percept_obs.studies.chatter.chatter, percept_obs.studies.chatter.effort : Compute it.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, pinhole, record, scenarios, smo
@@ -144,6 +140,10 @@ def chatter(
     >>> errors = chatter(record(scene, 1), observer, [0.01, 0.005])
     >>> len(figures.chatter({"smo": errors}, {"smo": effort(scene, observer, 0.2)}).axes)
     2
+
+    See Also
+    --------
+    percept_obs.studies.chatter.chatter, percept_obs.studies.chatter.effort : Compute it.
     """
     if not errors or not efforts:
         raise ValueError(f"there are {len(errors)} tables and {len(efforts)} efforts; at least one of each is needed")
@@ -181,10 +181,6 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     values : xarray.DataArray
         With two dimensions, such as ``ensemble(...).settling_time.isel(seed=0)``; the first one goes up.
 
-    See Also
-    --------
-    percept_obs.ensemble : Computes it.
-
     Examples
     --------
     >>> import xarray as xr
@@ -192,6 +188,10 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     >>> errors = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], {"gain": [5, 10], "noise": [0.0, 0.1]}, name="error")
     >>> print(figures.settings_map(errors).text.split(". ")[-1])
     Largest: 4 at noise 0.1 and gain 10.
+
+    See Also
+    --------
+    percept_obs.ensemble : Computes it.
     """
     values = values.squeeze()
     if values.ndim != 2:
@@ -236,10 +236,6 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     share : float
         By which share of the motion's size an entry is off: of all of A, or of all of b.
 
-    See Also
-    --------
-    percept_obs.studies.sensitivity.sensitivity : Computes it.
-
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
@@ -248,6 +244,10 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     >>> found = sensitivity(record(scenarios.ma2005_eq35(), 10), observer)
     >>> print(figures.entries(found, most=1).text.split(". ")[1])
     a32: 9.4 % in the median of the last half
+
+    See Also
+    --------
+    percept_obs.studies.sensitivity.sensitivity : Computes it.
     """
     base.require(found, Sensitivity, "studies.sensitivity.sensitivity()")
     if most < 1:
@@ -278,10 +278,6 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     ----------
     found : TrustOverTime
 
-    See Also
-    --------
-    percept_obs.studies.trust.trust_over_time : Computes it.
-
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
@@ -290,6 +286,10 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     >>> run = track(recording, ibo(PerspectiveSystem(affine(), pinhole())))
     >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
     Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
+
+    See Also
+    --------
+    percept_obs.studies.trust.trust_over_time : Computes it.
     """
     base.require(found, TrustOverTime, "studies.trust.trust_over_time(run)")
     ax, run = canvas(ax, 3.2), found.run
@@ -335,10 +335,6 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     ----------
     found : Diagnosis
 
-    See Also
-    --------
-    percept_obs.diagnose : Computes it.
-
     Examples
     --------
     >>> from dataclasses import replace
@@ -350,6 +346,10 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
     >>> print(figures.scan(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[1])
     time offset. It looks as if the images are 0.099 s early against the motion
+
+    See Also
+    --------
+    percept_obs.diagnose : Computes it.
     """
     base.require(found, Diagnosis, "diagnose(recordings)")
     if not found.findings or len(found.findings[0].tried) < 2:
