@@ -313,8 +313,12 @@ def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:
     grid, index = step_grid(times, LONGEST_STEP)
     state = np.eye(3, 4)
     found = [state]
-    for begin, h in zip(grid, np.diff(grid), strict=False):
-        state = step(state, h, lambda k, x, t=begin, h=h: rate(t + float(INSTANTS[k]) * h, x))
+    for begin, h in zip(grid[:-1], np.diff(grid), strict=True):
+
+        def moving(instant: int, x: Array, begin: float = begin, h: float = h) -> Array:
+            return rate(begin + float(INSTANTS[instant]) * h, x)
+
+        state = step(state, h, moving)
         found.append(state)
     whole = np.array(found)[index]
     return whole[:, :, :3], whole[:, :, 3]
