@@ -1,4 +1,4 @@
-"""What one run costs: derivation and loops, the loop beside C, `track` around it, and every observer's operations.
+"""Cost of one run: derivation and loops, the loop beside C, `track` around it, and every observer's operations.
 
     python tests/benchmarks/bench_run.py [--rounds 101] [--part core c track operations]
 
