@@ -1,17 +1,37 @@
-"""Scenarios of Ma's paper: a point in motion, seen on an imaging surface."""
+"""Scenarios: a point in motion, seen on an imaging surface."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from percept_obs.recording import Scenario
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import ImagingSurface, pinhole
 from percept_obs.validation import checked
 
-__all__ = ["ma2005_eq35", "ma2005_eq36", "planar"]
+__all__ = ["drive", "ma2005_eq35", "ma2005_eq36", "planar"]
 
 _FIRST_ROWS = [[-0.2, 0.4, -0.6], [0.1, -0.2, 0.3]]
 _TRANSLATION = [0.5, 0.25, 0.3]
 _START = (1.0, 1.5, 2.5)
+
+
+def drive() -> Scenario:
+    """Return a standing point that a camera drives past, straight on, at 1.3 m/s, and passes 11 m ahead at first.
+
+    See Also
+    --------
+    ma2005_eq35, ma2005_eq36, planar : The other scenarios.
+
+    Examples
+    --------
+    >>> from percept_obs import scenarios
+    >>> scenarios.drive().points([0, 4])[:, 2].round(1).tolist()
+    [11.0, 5.9]
+    """
+    ahead = np.array([0.16, -0.04, 1.0])
+    motion = affine(np.zeros((3, 3)), -1.3 * ahead / np.linalg.norm(ahead))
+    return Scenario("drive past a point", motion, (-1.4, 0.8, 11.0), 4.0, pinhole(), "")
 
 
 @checked

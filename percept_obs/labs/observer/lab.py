@@ -15,6 +15,7 @@ from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
 from percept_obs.labs.observer.settings import (
+    DRIVE,
     HOLDS,
     PICTURES,
     SCENARIOS,
@@ -60,7 +61,7 @@ class ObserverLab(Lab):
     Parameters
     ----------
     scenario : str, Scenario or Recording
-        Opens the lab: the name of a scenario, or one of your own.  A motion in expressions of time is typed into
+        Opens the lab: the name of a scenario, or one of your own; without any argument it is a drive past a point.  A motion in expressions of time is typed into
         the lab; one that is sampled, or a function, is taken as samples that stay as they are after the last one.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
@@ -95,7 +96,7 @@ class ObserverLab(Lab):
 
     def __init__(
         self,
-        scenario: str | Scenario | Recording = STANDARD["scenario"],
+        scenario: str | Scenario | Recording | None = None,
         recordings: Mapping[str, Recording] | None = None,
         *,
         observers: Sequence[Any] | None = None,
@@ -105,6 +106,9 @@ class ObserverLab(Lab):
     ) -> None:
         scenes = {name: make() for name, make in SCENARIOS.items()}
         tracks = dict(recordings or {})
+        if scenario is None:
+            plain = not (set(settings) - {"face"} or tracks or observers or surface)
+            settings, scenario = (DRIVE | settings, "drive") if plain else (settings, STANDARD["scenario"])
         if isinstance(scenario, Scenario):
             scenes[scenario.name] = scenario
             scenario = scenario.name
@@ -143,6 +147,7 @@ class ObserverLab(Lab):
             },
             own=self._registry.for_the_page(),
             varies={n: VARIES.format("motion") for n, make in self._registry.observers.items() if make.constant_motion},
+            drive=DRIVE,
             pictures=PICTURES,
             bound={"noise": {kind: make(1.0).variance for kind, make in NOISES.items()}, "hidden": HIDDEN_VARIANCE},
             **for_the_page(),

@@ -13,7 +13,9 @@ from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.recording import Scenario, scenarios
 
-SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
+SCENARIOS = {make.__name__: make for make in (scenarios.drive, scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
+FIRST_GUESS = 6.0
+"""Metres from the camera at which the estimate of a drive starts: not where the point is, and in the picture."""
 HOLDS = ("zero", "first", "exact")
 PICTURES = ("outputs", "innovation", "step", "inverse", "distance", "error", "excitation")
 BOUND = ("error", "map")
@@ -128,5 +130,15 @@ def _gains_of(registry: Registry) -> dict[str, dict[str, float]]:
     return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
 
 
+def _drive() -> Settings:
+    scenario = scenarios.drive()
+    X, Y, Z = scenario.position
+    start = {"mode": "chosen", "values": [X / Z, Y / Z, float(np.linalg.norm([X, Y, Z])) / Z / FIRST_GUESS]}
+    return {"scenario": "drive", **as_settings(scenario), "start": start, "threshold": 0.2, "window": 2.0}
+
+
 STANDARD: dict[str, Any] = SCHEMA.opening | as_settings(scenarios.ma2005_eq35())
-"""Settings that every preset begins with."""
+"""Settings of a lab that is given some."""
+
+DRIVE = _drive()
+"""Settings of a lab that is given none, where they differ: a drive past a standing point."""

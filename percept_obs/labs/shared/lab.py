@@ -104,7 +104,8 @@ class Lab(anywidget.AnyWidget):
     Parameters
     ----------
     settings : dict
-        Settings to open with, where they differ from `opening`.
+        Settings to open with, where they differ from `opening`; and the `face` that the page opens with, "first" for
+        the first screen or "workbench".
     opening : dict
         Complete settings to open with.
     standard : dict
@@ -124,6 +125,7 @@ class Lab(anywidget.AnyWidget):
     """True if the page works without Python."""
     from_the_page: tuple[str, ...] = ("asked", "settings", "summary")
     """Traits that the page may set."""
+    face = traitlets.Enum(("first", "workbench"), "first", help="What the page opens with.").tag(sync=True)
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="Printed texts of the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="Data of the page besides its texts.").tag(sync=True)
@@ -140,10 +142,12 @@ class Lab(anywidget.AnyWidget):
         self, kind: str, settings: Settings, opening: Settings, standard: Settings, texts: bytes = b"", **model: Any
     ) -> None:
         self._shown_in: frozenset[str] = frozenset()
+        face = settings.get("face", "first")
+        settings = {name: value for name, value in settings.items() if name != "face"}
         self._opening = opening
         self._opening = self.check(settings)
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
-        super().__init__(kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening)
+        super().__init__(kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening, face=face)
         _close_those_of_an_earlier_run(self)
 
     def __init_subclass__(cls) -> None:

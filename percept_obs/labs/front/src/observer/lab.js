@@ -19,6 +19,7 @@ import { PRESETS, settingsOf } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
+import { ObserverFirst } from "./page/first.js";
 import { MapPicture } from "./page/map.js";
 import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
@@ -56,6 +57,7 @@ export class ObserverLab extends Lab {
       numbersOf: ({ A, b, normal, xi }) => ({ ...lettered({ a1: A[0], a2: A[1], a3: A[2], b, n: normal }), xi }),
     });
     this.panel = new Panel(this);
+    this.first = new ObserverFirst(this);
     this.open(place);
   }
 

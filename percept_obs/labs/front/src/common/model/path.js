@@ -42,7 +42,7 @@ export function constantPath(start, rates, grid, index, points) {
  * to the
  * unit vectors.  The position itself is left out, since its rounding would add up over the steps.
  */
-function stepOf(time, size, rates, term) {
+export function stepOf(time, size, rates, term) {
   const pieces = Math.max(1, Math.ceil((size * time) / REACH));
   const still = Float64Array.from(rates, (value, at) => (at % 4 === 3 ? 0 : value));
   const rows = new Float64Array(12);

@@ -3,7 +3,7 @@
 import { element, setAttribute } from "./dom.js";
 import { DASHES } from "./looks.js";
 
-const COLOURS = ["ink", "muted", "line", "grid", "sample", "warning", "kept", "noise", "paper"];
+const COLOURS = ["raised", "ink", "muted", "line", "grid", "sample", "warning", "kept", "noise", "paper"];
 
 /** A canvas with role, label and a text that tells what it shows. */
 export class Picture {

@@ -32,7 +32,7 @@ export class Card {
       body.hidden = !open;
       body.replaceChildren(...(open ? this.question(open) : []));
       // The button that had the focus is gone; without this the keyboard would start from the top of the page.
-      if (inside && !open) chips[0].focus();
+      if (inside && !open) chips[0]?.focus();
     }
     if (open) this.tell(open, lab.state.preset);
     this.sketch.show();

@@ -12,7 +12,8 @@ export const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], 
 
 /** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
 export class Handle {
-  constructor({ name, label, className, text = "", onMove, onRest, onKey = (_event) => false }) {
+  constructor({ name, label, className, text = "", nudge = NUDGE, onMove, onRest, onKey = (_event) => false }) {
+    this.nudge = nudge;
     this.onMove = onMove;
     this.onKey = onKey;
     /** @type {number[] | null} */
@@ -65,7 +66,7 @@ export class Handle {
   key(event) {
     if (!this.at) return;
     const step = STEPS[event.key];
-    const size = NUDGE * (event.shiftKey ? LEAP : 1);
+    const size = this.nudge * (event.shiftKey ? LEAP : 1);
     if (step) this.move(this.at.map((value, c) => value + step[c] * size));
     else if (!this.onKey(event)) return;
     this.keyed = true;
@@ -90,9 +91,10 @@ export class Handle {
     const { box, scale, x, y } = frame;
     this.scale = scale;
     const wanted = [x(at[0]), y(at[1])];
-    const [left, top] = [box.left, box.top].map((low, c) => within(wanted[c], low, low + box.side));
+    const sides = [box.width ?? box.side, box.height ?? box.side];
+    const [left, top] = [box.left, box.top].map((low, c) => within(wanted[c], low, low + sides[c]));
     node.classList.toggle("outside", Math.abs(left - wanted[0]) + Math.abs(top - wanted[1]) > 1);
-    node.classList.toggle("right", left > box.left + 0.7 * box.side);
+    node.classList.toggle("right", left > box.left + 0.7 * sides[0]);
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 

@@ -37,6 +37,10 @@ export class Lab extends LabBase {
   static computing;
   /** @type {import("../../types.js").Plane[]} */
   planes = [];
+  /** @type {import("../first/screen.js").FirstScreen} the screen that the lab opens with */
+  first = NULL;
+  /** @type {"first" | "workbench"} */
+  face = "first";
   formulas = NULL;
   /** Result of the kept run. */
   ghost = NULL;
@@ -72,16 +76,29 @@ export class Lab extends LabBase {
 
   open(place) {
     const { presets } = this.parts;
+    this.face = this.first ? (this.widget.get("face") ?? "first") : "workbench";
     // A lab with settings of its own is about these, and not about the first question.
-    if (same(this.settings, this.model.standard)) this.state.open(presets[0].name);
+    if (!this.first && same(this.settings, this.model.standard)) this.state.open(presets[0].name);
     this.follow(build(this, place, presets));
     this.view.preset();
+    this.first?.follow();
     this.address?.follow();
+  }
+
+  /** Show the first screen, or the workbench, of the same settings at the same time. */
+  turn(face) {
+    this.face = face;
+    this.first.pause();
+    this.view.turn(face);
+    this.spoken = 0;
+    this.schedule();
+    this.settle();
   }
 
   close() {
     super.close();
     this.address?.close();
+    this.first?.close();
     this.view.close();
     this.worker?.terminate();
     for (const plane of this.planes) plane.close?.();
@@ -105,7 +122,13 @@ export class Lab extends LabBase {
   }
 
   get figures() {
-    return [...this.planes, ...Object.values(this.charts)];
+    return [...(this.first?.views ?? []), ...this.planes, ...Object.values(this.charts)];
+  }
+
+  /** Times that are drawn: all of them on the first screen. */
+  get sight() {
+    const { face, shown, span } = this;
+    return face === "first" && shown?.time?.length ? { low: shown.time[0], high: shown.time.at(-1) } : span;
   }
 
   /** True while a hand holds something, so that what is around it stands still. */
@@ -308,7 +331,7 @@ export class Lab extends LabBase {
       this.wait(settings);
       return false;
     }
-    return this.latest.want(settings, this.speaking, { ...this.span, cursor: this.state.cursor });
+    return this.latest.want(settings, this.speaking, { ...this.sight, cursor: this.state.cursor });
   }
 
   /** Draw once the functions of settings are there. */
@@ -356,6 +379,11 @@ export class Lab extends LabBase {
 
   draw() {
     const { shown, ghost, theme } = this;
+    if (this.face === "first" && !shown.problem && shown.time.length) {
+      this.first.draw(shown, ghost, theme);
+      this.stale = false;
+      return;
+    }
     theme.width = this.held ? MOVING_LINE : LINE;
     const cursor = this.present();
     for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
@@ -421,6 +449,10 @@ export class Lab extends LabBase {
     this.spoken = performance.now();
     // What is drawn may be of settings before those that cannot be shown.
     if (!this.late) this.view.problem("");
+    if (this.face === "first") {
+      this.view.problem(this.shown.problem ?? "");
+      return;
+    }
     this.panel.show();
     this.view.steps(this.state);
     this.view.preset();
@@ -454,6 +486,10 @@ export class Lab extends LabBase {
   }
 
   describe() {
+    if (this.face === "first") {
+      this.first.describe();
+      return;
+    }
     for (const plane of this.planes) plane.describe(this.shown);
     this.time.describe();
     this.formulas.show(this.shown.settings);

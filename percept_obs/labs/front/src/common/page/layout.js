@@ -61,6 +61,7 @@ export function build(lab, place, presets) {
     button("Copy as code", copyCode, { "data-control": "copy" }),
     ...(lab.address ? [button("Copy link", copyLink, { "data-control": "copy link", title: linkTitle })] : []),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
+    ...(lab.first ? [button("First screen", () => lab.turn("first"), { "data-control": "first screen" })] : []),
   );
   const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
   for (const [name, chart] of Object.entries(charts)) {
@@ -85,8 +86,9 @@ export function build(lab, place, presets) {
   const scroll = element("div", { class: "scroll" }, questions, panel.body, more);
   const root = element(
     "div",
-    { class: "percept-lab" },
+    { class: "percept-lab", "data-face": lab.face },
     ...[messages.problem, messages.pythonError, messages.notice],
+    ...(lab.first ? [lab.first.body] : []),
     element(
       "div",
       { class: "stage" },
@@ -104,10 +106,10 @@ export function build(lab, place, presets) {
     keydown: (event) => {
       if (event.key !== " " || event.defaultPrevented || event.target.closest(OWN_SPACE)) return;
       event.preventDefault();
-      player.toggle();
+      (lab.face === "first" ? lab.first : player).toggle();
     },
     // Under a pointer nothing moves by itself; who comes by keys sees what the keys will change.
-    focusin: () => lab.down || eyes.scrollIntoView({ block: "nearest" }),
+    focusin: () => lab.down || lab.face === "first" || eyes.scrollIntoView({ block: "nearest" }),
   });
   for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
     root.addEventListener(type, () => lab.hold(type === "pointerdown"), true);
@@ -117,6 +119,7 @@ export function build(lab, place, presets) {
   return {
     root,
     ...messages.functions,
+    turn: (face) => root.setAttribute("data-face", face),
     preset: () => card.show(),
     steps: history.show,
     words(found) {

@@ -103,7 +103,7 @@ export function disc(pen, x, y, radius, colour) {
   pen.fill();
 }
 
-function ring(pen, x, y, radius, colour, width) {
+export function ring(pen, x, y, radius, colour, width) {
   if (Number.isNaN(x + y)) return;
   pen.setLineDash([]);
   pen.strokeStyle = colour;

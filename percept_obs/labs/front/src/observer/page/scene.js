@@ -19,14 +19,14 @@ const PARTS = [-1.5, 0, 1.5];
 const REACH = 0.5;
 
 /** The motion's A and b at a time that is shown. */
-function coefficientsAt(lab, { settings, time }, functions, at) {
+export function coefficientsAt(lab, { settings, time }, functions, at) {
   const { motion } = lab.results.engines[0].camera.motion(settings, functions);
   const { rows } = knownAt(motion, [], [valueBetween(time, 1, 0, at)]);
   return { A: [0, 3, 6].map((row) => Array.from(rows.subarray(row, row + 3))), b: Array.from(rows.subarray(9, 12)) };
 }
 
 /** Where a point of image coordinates and inverse distance is, in metres. */
-function placesOf(lab, { settings }) {
+export function placesOf(lab, { settings }) {
   const { ray } = lab.kernels.of(settings);
   const shape = shapeOf(settings);
   const placeOf = (/** @type {number[]} */ [y1, y2, inverse]) =>
