@@ -12,7 +12,7 @@ from lab_browser import assert_equals_python, control, drag_by_keys, drag_by_mou
 
 from percept_obs.labs import observer_lab
 
-LABS = ("from percept_obs.labs import observer_lab\nobserver_lab()", "observer_lab(outputs=['y1'])")
+LABS = ("from percept_obs.labs import observer_lab\nobserver_lab('ma2005_eq35', face='workbench')", "observer_lab(outputs=['y1'], face='workbench')")
 FOE = control("foe")
 
 SETTLED = """(count) => {
@@ -209,6 +209,6 @@ def in_marimo(page, start):
 
 def in_a_saved_file(page, folder):
     """A lab's own page, opened from the disk."""
-    observer_lab().save(folder / "lab.html")
+    observer_lab("ma2005_eq35", face="workbench").save(folder / "lab.html")
     page.goto((folder / "lab.html").as_uri())
     return Shown(page, 1)

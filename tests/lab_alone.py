@@ -46,12 +46,13 @@ def stated_policy():
     return re.search(r"`(default-src[^`]*)`", (NOTEBOOKS.parent / "README.md").read_text())[1]
 
 
-def opened(browser, lab, policy=None, answers=None, **options):
+def opened(browser, lab, policy=None, answers=None, face="workbench", **options):
     """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
     told = {
         name: getattr(lab, name)
         for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")
     }
+    told["face"] = face
     told["texts"] = base64.b64encode(lab.texts).decode()
     films = getattr(lab, "frames", {}).items()
     told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}

@@ -24,6 +24,7 @@ OPEN = """
 import json, pathlib
 from percept_obs.labs import observer_lab
 lab = observer_lab({arguments})
+lab.face = "workbench"
 def keep(change):
     pathlib.Path("state.new").write_text(json.dumps(lab.settings))
     pathlib.Path("state.new").replace("state.json")

@@ -149,7 +149,7 @@ def test_a_hostile_address_leaves_a_lab_as_it_is_with_a_sentence(node, models):
 
 @pytest.mark.node
 def test_a_link_is_short_and_readable_and_an_anchor_of_the_page_is_none(node, models):
-    lab = observer_lab()
+    lab = observer_lab("ma2005_eq35")
     settings = lab.check({"outputs": ["y1"], "b": [0.4, 0.3, 0.3], "noise": {"kind": "uniform", "size": 0.01}})
     link = "1;b=0.4,0.3,0.3;outputs=y1;noise.size=0.01"
     addresses = [("observer", each) for each in ("", "#", "#the-camera", "#percept_obs.labs", f"#x=1&observer={link}")]
@@ -325,7 +325,7 @@ def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
 @pytest.mark.browser
 @pytest.mark.slow
 def test_two_labs_of_a_page_each_read_their_own_part(page):
-    states = [lab.get_state() for lab in (observer_lab(), observer_lab(outputs=["y1"]), points_lab())]
+    states = [lab.get_state() for lab in (observer_lab("ma2005_eq35"), observer_lab(outputs=["y1"]), points_lab())]
     starter = STARTER.read_text()
     places = "".join(place_of(state) for state in states)
     text = f"<!doctype html><body>{places}<script>{library_of(states)}</script><script>{starter}</script>"

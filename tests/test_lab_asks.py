@@ -49,14 +49,14 @@ def test_a_prediction_is_made_by_keys_judged_and_undone(show, name):
 
 
 def test_a_wrong_prediction_is_told_the_right_one(show):
-    page = show(observer_lab(), viewport=SIZE)
+    page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     page.check(control("predict foe 2"))
     page.click(control("act foe 0"))
     assert page.inner_text(".answer").startswith("Not what you predicted: For a moment only.")
 
 
 def test_a_question_stands_over_its_own_settings_and_an_answer_says_when_it_is_of_others(show):
-    page = show(observer_lab(), viewport=SIZE)
+    page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     opening = page.evaluate(SETTINGS)
     page.click(control("preset bias"))
     page.click(control("act bias 0"))
@@ -74,7 +74,7 @@ def test_a_question_stands_over_its_own_settings_and_an_answer_says_when_it_is_o
 
 
 def test_an_error_is_sketched_by_pointer_and_by_keys_and_stays_to_be_compared(show):
-    page = show(observer_lab(), viewport=SIZE)
+    page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     page.click(control("preset drop"))
     drawn(page)
     assert page.evaluate(SKETCH) == ""
@@ -103,7 +103,7 @@ def test_an_error_is_sketched_by_pointer_and_by_keys_and_stays_to_be_compared(sh
 
 
 def test_a_number_out_of_range_is_told_what_the_field_takes(show):
-    page = show(observer_lab(), viewport=SIZE)
+    page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     page.evaluate(UNFOLD)
     for name, text, told in (
         ("noise size number", "7", "a number from 0 to 1"),
@@ -138,7 +138,7 @@ def test_a_press_that_changes_the_true_world_says_so(show):
 
 
 def test_while_python_computes_nothing_is_red(show):
-    page = show(observer_lab(), viewport=SIZE)
+    page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     page.fill(control("noise size number"), "0.001")
     page.wait_for_selector(".silence:not([hidden])")
     assert "has not answered yet" in page.inner_text(".silence")

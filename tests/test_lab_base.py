@@ -44,7 +44,7 @@ def test_the_bundle_loads_nothing_from_a_network():
 
 
 def test_an_error_from_the_page_s_settings_shows_and_goes_with_the_next_good_ones():
-    lab = observer_lab()
+    lab = observer_lab("ma2005_eq35")
     with pytest.raises(ValueError, match="whole number"):
         lab.set_state({"settings": {**lab.settings, "seed": -1}, "summary": {"serial": 1}})
     assert lab.error.startswith("BadSettings: seed is -1")
@@ -56,12 +56,12 @@ def test_an_error_from_the_page_s_settings_shows_and_goes_with_the_next_good_one
 def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(monkeypatch):
     now = ["first cell", "run 1"]
     monkeypatch.setattr(base, "_running_cell", lambda: tuple(now))
-    one, two = observer_lab(), observer_lab()
+    one, two = observer_lab("ma2005_eq35"), observer_lab("ma2005_eq35")
     now[:] = ["second cell", "run 2"]
-    other = observer_lab()
+    other = observer_lab("ma2005_eq35")
     assert all(lab.comm is not None for lab in (one, two, other))
     now[:] = ["first cell", "run 3"]
-    again = observer_lab()
+    again = observer_lab("ma2005_eq35")
     assert one.comm is None
     assert two.comm is None
     assert other.comm is not None
@@ -71,16 +71,16 @@ def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(m
 def test_a_cell_that_runs_again_leaves_its_lab_where_another_cell_shows_it(monkeypatch):
     now = ["first cell", "run 1"]
     monkeypatch.setattr(base, "_running_cell", lambda: tuple(now))
-    lab = observer_lab()
+    lab = observer_lab("ma2005_eq35")
     lab._repr_mimebundle_()
     now[:] = ["second cell", "run 2"]
     lab._repr_mimebundle_()
     now[:] = ["first cell", "run 3"]
-    again = observer_lab()
+    again = observer_lab("ma2005_eq35")
     again._repr_mimebundle_()
     assert lab.comm is not None
     now[:] = ["first cell", "run 4"]
-    observer_lab()
+    observer_lab("ma2005_eq35")
     assert lab.comm is not None
     assert again.comm is None
 
@@ -100,7 +100,7 @@ def test_hats_matrices_and_cases_become_markup_that_browsers_know():
 
 
 def test_what_python_prints_while_it_answers_the_page_does_not_fill_the_log(capsys, monkeypatch):
-    lab = observer_lab()
+    lab = observer_lab("ma2005_eq35")
     monkeypatch.setattr(type(lab), "analyse", lambda self: print("moving: 50 %") or {})
     lab.set_state({"settings": lab.settings, "summary": {"serial": 7}})
     assert lab.analysis["serial"] == 7

@@ -145,7 +145,7 @@ def test_a_preset_asks_shows_and_leads_back(fresh):
     before = state(fresh)
     fresh.click(control("preset bias"))
     assert "Does it?" in fresh.inner_text(".question")
-    assert state(fresh)["settings"] == observer_lab().settings  # a question stands over the settings that it is about
+    assert state(fresh)["settings"] == observer_lab("ma2005_eq35").settings  # a question stands over the settings that it is about
     fresh.click(control("act bias 0"))
     rested(fresh)
     assert "driven to the bound" in state(fresh)["verdicts"][0]

@@ -41,7 +41,7 @@ CROSSING = {"A": TURNING, "b": [0.0, 0.0, 0.8], "X0": [-2.0, 0.0, 2.0], "duratio
 
 @pytest.fixture
 def page(show):
-    return show(observer_lab())
+    return show(observer_lab("ma2005_eq35"))
 
 
 def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(show):
@@ -68,7 +68,7 @@ def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_t
     still = [[0.0] * 3] * 3
     page = show(observer_lab(A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0))
     assert "nothing above 0 in this time" in page.evaluate(WRITTEN)
-    page = show(observer_lab())
+    page = show(observer_lab("ma2005_eq35"))
     assert "since the first sample" in page.evaluate(WRITTEN)
     begun = page.evaluate("""() => {
         const [{ shown: { excitation: { begun, time, smallest } } }] = window.perceptObsLabs;

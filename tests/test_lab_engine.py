@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.node, pytest.mark.slow]
 
 @pytest.fixture(scope="module")
 def lab():
-    return observer_lab()
+    return observer_lab("ma2005_eq35")
 
 
 @pytest.fixture(scope="module")

@@ -47,7 +47,7 @@ def of_pairs(node):
         shared = {"noise": NOISY, "seed": 3, "duration": 10.0, "dropout": 0.1}
         settings = observer_lab(**{**shared, **changes, "over": {"observer": observer, **changes["over"]}}).settings
         tasks.append({"settings": settings, "shares": somewhere(rng)})
-    return {p: {**t, **f} for p, t, f in zip(PAIRS, tasks, in_the_page(node, observer_lab(), tasks), strict=True)}
+    return {p: {**t, **f} for p, t, f in zip(PAIRS, tasks, in_the_page(node, observer_lab("ma2005_eq35"), tasks), strict=True)}
 
 
 @pytest.mark.node

@@ -131,7 +131,7 @@ def test_play_stops_at_the_end_and_begins_again(page):
 
 
 def test_with_reduced_motion_nothing_moves_by_itself(browser):
-    page = opened(browser, observer_lab(), reduced_motion="reduce")
+    page = opened(browser, observer_lab("ma2005_eq35"), reduced_motion="reduce")
     page.wait_for_function(DRAWN)
     assert page.get_attribute(control("play"), "aria-label") == "Step"
     page.click(control("play"))

@@ -20,7 +20,7 @@ def test_a_lab_works_under_the_policy_that_readme_states(browser, name):
 
 
 def test_a_policy_that_forbids_blobs_is_named_in_the_lab(browser):
-    page = opened(browser, observer_lab(), stated_policy().replace(" blob:", ""))
+    page = opened(browser, observer_lab("ma2005_eq35"), stated_policy().replace(" blob:", ""))
     page.wait_for_function("() => window.refused.length")
     page.locator(".problem:not([hidden])").first.wait_for()
     assert "must allow scripts from blob:" in page.locator(".problem:not([hidden])").first.inner_text()

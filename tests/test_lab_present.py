@@ -63,7 +63,7 @@ def test_a_focus_of_expansion_at_infinity_stands_at_the_rim_and_is_dragged_back(
 
 def test_a_number_does_not_move_a_focus_of_expansion_that_has_gone_to_infinity(show):
     """An earlier move may have sent it there, and its number is hidden only at the next picture."""
-    page = show(observer_lab())
+    page = show(observer_lab("ma2005_eq35"))
     wrong = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.wait_for_function(DRAWN)

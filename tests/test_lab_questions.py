@@ -29,7 +29,7 @@ SETTLING = "() => [...window.perceptObsLabs][0].shown.runs[0].settling"
 
 @pytest.fixture
 def page(show):
-    page = show(observer_lab())
+    page = show(observer_lab("ma2005_eq35"))
     page.click(control("way back"))  # the question is closed: here nobody is asked
     return page
 

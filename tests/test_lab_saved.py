@@ -79,6 +79,7 @@ def from_disk(browser, tmp_path):
     """Opens a lab's own page from the disk, without a network; the second value lists what left the page."""
 
     def opened(lab):
+        lab.face = "workbench"
         lab.save(tmp_path / "lab.html")
         asked = []
         page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})

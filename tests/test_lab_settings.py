@@ -18,7 +18,7 @@ NOISY = {"kind": "uniform", "size": 0.01}
 
 @pytest.fixture(scope="module")
 def lab():
-    return observer_lab()
+    return observer_lab("ma2005_eq35")
 
 
 def test_a_run_is_what_record_and_track_give(lab):
@@ -33,7 +33,7 @@ def test_the_model_is_complete_and_is_json(lab):
     model = whole_model(lab)
     assert set(model["surfaces"]) == set(SURFACES)
     assert set(model["observers"]) == set(BY_NAME)
-    assert model["opening"] == observer_lab().settings
+    assert model["opening"] == observer_lab("ma2005_eq35").settings
     assert model["pictures"] == list(PICTURES)
     choices = {name: system_of(name).output_choices for name in SURFACES}
     assert list(model["forms"]) == KEYS == [key_of(name, outputs) for name in SURFACES for outputs in choices[name]]
@@ -64,7 +64,7 @@ def test_terms_of_a_gain_that_is_zero_are_left_out_of_the_equations(lab):
 
 
 def test_a_point_that_leaves_is_followed_until_then(lab):
-    lab.settings = {**observer_lab().settings, "b": [0.5, 0.25, -0.9]}
+    lab.settings = {**observer_lab("ma2005_eq35").settings, "b": [0.5, 0.25, -0.9]}
     run = lab.run()["identifier_based"]
     assert 0.1 < run.time[-1] < 80
     assert (run.truth[:, 2] > 0).all()
@@ -143,5 +143,5 @@ def scenario_motion(settings):
 
 def test_presets_begin_with_the_same_settings_whatever_the_lab_was_opened_with():
     own = observer_lab("ma2005_eq36", outputs=["y1"], duration=5.0, noise={"kind": "uniform", "size": 0.01})
-    assert own.model["standard"] == observer_lab().model["opening"]
+    assert own.model["standard"] == observer_lab("ma2005_eq35").model["opening"]
     assert own.model["standard"] != own.model["opening"]

@@ -11,7 +11,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SWINGING = {"v_c_swing": [0.3, 0.2, -0.1], "v_p": [0.1, 0.0, 0.05], "w": [0.1, -0.2, 0.3]}
 LABS = {
-    "observer": lambda: observer_lab(),
+    "observer": lambda: observer_lab("ma2005_eq35"),
     "sphere": lambda: observer_lab(surface="sphere"),
     "plane": lambda: observer_lab(surface="plane", normal=[0.2, -0.1, 0.9]),
     "structure": lambda: structure_lab(**SWINGING),
@@ -104,7 +104,7 @@ def rate_of_y1(place, settings):
 
 
 def test_where_everything_is_told_there_is_nothing_unseen_to_move_and_with_reduced_motion_it_moves_by_steps(browser):
-    for lab in (observer_lab(), points_lab(), structure_lab()):
+    for lab in (observer_lab("ma2005_eq35"), points_lab(), structure_lab()):
         page = opened(browser, lab)
         page.wait_for_function(DRAWN)
         assert page.locator(control("swing")).is_hidden()

@@ -29,7 +29,7 @@ OF_A_POINT = [
 
 
 def test_of_a_point(node):
-    lab = observer_lab()
+    lab = observer_lab("ma2005_eq35")
     tasks = [lab.check({**SHORT, **task}) for task in OF_A_POINT]
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         for name, run in runs(settings).items():
@@ -42,7 +42,7 @@ def test_of_a_point(node):
 
 
 def test_a_single_sample_is_told(node):
-    for lab in (observer_lab(), structure_lab()):
+    for lab in (observer_lab("ma2005_eq35"), structure_lab()):
         (answer,) = run_in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
         assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]
 

@@ -83,7 +83,7 @@ def main(rounds: int = 5) -> None:
 
 def opened(context: Any) -> Any:
     """A lab at rest in a page of its own."""
-    page = open_alone(context, observer_lab())
+    page = open_alone(context, observer_lab("ma2005_eq35"))
     page.wait_for_function(lab_alone.DRAWN)
     rested(page, 60)
     return page

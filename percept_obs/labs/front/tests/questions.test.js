@@ -3,11 +3,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { changesInWords } from "../src/common/model/settings.js";
-import { PRESETS as ofObserver } from "../src/observer/model/presets.js";
+import { QUESTIONS as ofObserver } from "../src/observer/model/questions.js";
 import { PRESETS as ofPoints } from "../src/points/model/presets.js";
 import { PRESETS as ofStructure } from "../src/structure/model/presets.js";
 
-for (const [lab, presets] of Object.entries({ ofObserver, ofPoints, ofStructure })) {
+for (const [lab, presets] of Object.entries({ ofPoints, ofStructure })) {
   test(`every question of a lab has answers, and says which is right: ${lab}`, () => {
     for (const { name, answers, right, acts } of presets) {
       assert.ok(answers.length >= 2 && new Set(answers).size === answers.length, name);
@@ -16,6 +16,18 @@ for (const [lab, presets] of Object.entries({ ofObserver, ofPoints, ofStructure 
     }
     // Who always takes the same line must not be right.
     assert.ok(new Set(presets.map(({ right }) => right)).size > 1);
+  });
+}
+
+for (const [lab, questions] of Object.entries({ ofObserver })) {
+  test(`every question is one line with three answers, and its answer has 25 words at most: ${lab}`, () => {
+    for (const { name, chip, ask, answers, right, tells, note } of questions) {
+      assert.ok(answers.length === 3 && new Set(answers).size === 3, name);
+      assert.ok([0, 1, 2].includes(right) && chip && note && /[?]$/.test(ask), name);
+      assert.ok(tells.split(" ").length <= 25 && tells.endsWith("."), name);
+    }
+    // Who always takes the same line must not be right.
+    assert.ok(new Set(questions.map(({ right }) => right)).size > 1);
   });
 }
 

@@ -62,6 +62,8 @@ export class FirstScreen {
   last = 0;
   frame = 0;
   begun = false;
+  /** Timer of the first play. */
+  beginner = 0;
 
   /** @param {{image: string, world: string, axis: string, why?: boolean}} captions */
   constructor(lab, captions, controls, /** @type {Question[]} */ questions) {
@@ -123,7 +125,6 @@ export class FirstScreen {
 
   close() {
     this.pause();
-    clearTimeout(this.beginner);
     clearTimeout(this.timer);
     this.leave?.();
   }
@@ -175,8 +176,9 @@ export class FirstScreen {
   /** Show the end of the run, as if it had been played. */
   finish() {
     this.pause();
-    this.secret = this.waiting = false;
-    this.lab.point(this.end);
+    this.secret = false;
+    // The run may not be there yet, or be longer than the last one.
+    this.lab.state.cursor = Infinity;
     this.lab.schedule();
   }
 
@@ -201,6 +203,7 @@ export class FirstScreen {
 
   pause() {
     this.waiting = false;
+    clearTimeout(this.beginner);
     if (!this.playing) return;
     this.playing = false;
     cancelAnimationFrame(this.frame);
@@ -334,13 +337,15 @@ export class FirstScreen {
 
   /** Draw what is shown, as one scene. */
   draw(shown, ghost, theme) {
-    if (this.waiting && !this.lab.late) {
+    const { lab } = this;
+    if (this.waiting && !lab.late) {
       this.waiting = false;
       if (this.still.matches) this.finish();
       else this.play();
     }
     const now = this.present();
-    const { why, secret, end, lab } = this;
+    if (!lab.late && !(lab.state.cursor <= now)) lab.state.cursor = now;
+    const { why, secret, end } = this;
     const kept = (this.answered && this.open?.kept) || "kept run";
     const scene = { shown, ghost, kept, now, end, at: between(shown.time, now), why, secret, theme };
     const stamp = performance.now();
@@ -350,12 +355,12 @@ export class FirstScreen {
     const question = this.telling ? this.open : null;
     const noteOf = (/** @type {Question} */ { spot, note }) => ({ ...spot(scene), text: note });
     const noteOn = (name) => (question && question.on === name ? noteOf(question) : null);
+    this.resetButton.hidden = !this.moved || Boolean(this.open);
     const late = [
       this.drawImage(scene, motion, noteOn("image")),
       this.drawWorld(scene, motion, noteOn("world")),
       this.chart.draw({ ...this.chartOf(scene), note: noteOn("chart") }, now, theme, motion),
     ];
-    this.resetButton.hidden = !this.moved || Boolean(this.open);
     this.showStrip();
     this.say(this.sentenceNow(scene));
     this.label(now);

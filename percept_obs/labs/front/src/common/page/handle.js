@@ -55,7 +55,8 @@ export class Handle {
   take(event) {
     if (!this.at || event.button > 0) return;
     event.preventDefault();
-    this.node.focus({ preventScroll: true });
+    // A ring of focus under the finger would look like a mark.
+    this.node.focus(/** @type {any} */ ({ preventScroll: true, focusVisible: false }));
     // What had the focus comes to rest and is drawn, and this handle may be gone with it.
     if (!this.at) return;
     // A pointer that a script made cannot be captured; its moves arrive all the same.

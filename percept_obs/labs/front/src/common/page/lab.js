@@ -40,7 +40,7 @@ export class Lab extends LabBase {
   /** @type {import("../first/screen.js").FirstScreen} the screen that the lab opens with */
   first = NULL;
   /** @type {"first" | "workbench"} */
-  face = "first";
+  face = "workbench";
   formulas = NULL;
   /** Result of the kept run. */
   ghost = NULL;

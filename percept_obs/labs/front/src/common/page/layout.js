@@ -74,7 +74,7 @@ export function build(lab, place, presets) {
   const more = element("div", { class: "more" }, equations, symbolTable(lab.parts.symbols));
   const words = element("div", { class: "words" }, reading, verdicts, why, analysis);
   const sideTabs = tabs("Beside the pictures", [
-    { name: "question", title: "Question", node: questions },
+    { name: "question", title: presets.length ? "Question" : "What if?", node: questions },
     { name: "controls", title: "Controls", node: panel.body },
     { name: "words", title: "In words", node: words },
     { name: "equations", title: "Equations", node: more },

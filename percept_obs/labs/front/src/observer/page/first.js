@@ -71,9 +71,9 @@ export class ObserverFirst extends FirstScreen {
 
   /** The start of the estimate at the same distance on the ray of another point. */
   startFor(X0) {
-    const { settings, kernels } = this.lab;
+    const { settings } = this.lab;
     if (settings.start.mode !== "chosen") return settings.start;
-    const functions = kernels.of(settings);
+    const { functions } = this.seen;
     const shape = shapeOf(settings);
     const lengthOf = (y1, y2) => Math.hypot(...functions.ray([y1, y2, ...shape], new Float64Array(3)));
     const [z1, z2, inverse] = settings.start.values;
@@ -88,16 +88,16 @@ export class ObserverFirst extends FirstScreen {
   }
 
   steer(place) {
-    const { settings, kernels } = this.lab;
+    const { settings } = this.lab;
     const aim = place.map((value) => within(value, -MOST, MOST));
-    const b = translationTowards(aim, settings, kernels.of(settings));
+    const b = translationTowards(aim, settings, this.seen.functions);
     const speed = Math.hypot(...settings.b) / Math.hypot(...b);
     this.moveTo(b.map((value) => speed * value), this.seen.place);
   }
 
   aim(place) {
-    const { settings, kernels } = this.lab;
-    const ray = Array.from(kernels.of(settings).ray([...place, ...shapeOf(settings)], new Float64Array(3)));
+    const { settings } = this.lab;
+    const ray = Array.from(this.seen.functions.ray([...place, ...shapeOf(settings)], new Float64Array(3)));
     const length = Math.hypot(...this.seen.place) / Math.hypot(...ray);
     this.moveTo(settings.b, ray.map((value) => length * value));
   }
@@ -302,6 +302,7 @@ export class ObserverFirst extends FirstScreen {
     const y = (value) => height / 2 - 6 - (value - cz) * scale;
     const on = (place) => [x(place[0]), y(place[2])];
     this.drawGround(view, [cx, cz, scale], { x, y }, theme);
+    if (!this.resetButton.hidden) view.avoid(width - 60, 24, 60, 24);
     const camera = on(seen.camera);
     const reach = (1.2 * Math.hypot(width, height)) / scale;
     const along = (direction) => {
@@ -318,7 +319,6 @@ export class ObserverFirst extends FirstScreen {
         view.context.arc(u, v, 2.5, 0, 7);
         view.context.fill();
         view.context.globalAlpha = 1;
-        view.avoid(u, v, 3);
       }
     }
     const { b } = seen.motion;

@@ -1,0 +1,83 @@
+"""First screens in pages of their own: opening them, asking a question, and reading what is written in the pictures."""
+
+from contextlib import contextmanager
+
+from lab_alone import DRAWN, opened
+from lab_browser import control
+
+SIZES = {"cell": (830, 600), "wide": (1240, 680), "phone": (390, 760)}
+
+READY = "() => [...(window.perceptObsLabs ?? [])].some((lab) => lab.first?.scene)"
+WATCHED = """() => { const [{ first, late }] = window.perceptObsLabs;
+    return !late && !first.playing && !first.waiting && first.telling; }"""
+END = "() => { const [{ first }] = window.perceptObsLabs; first.begun = true; first.finish(); }"
+STILL = """() => new Promise((done) => { const [lab] = window.perceptObsLabs; let [calm, tries] = [0, 0];
+    const look = () => { calm = lab.pending || lab.late ? 0 : calm + 1;
+        return calm > 2 || ++tries > 300 ? done(true) : requestAnimationFrame(look); };
+    look(); })"""
+"""Wait until no view is on its way."""
+
+TEXTS = """() => { const [lab] = window.perceptObsLabs;
+    const wide = lab.first.views.filter(({ figure }) => figure.checkVisibility());
+    return wide.map((view) => ({ width: view.width, height: view.height, texts: view.texts })); }"""
+
+COUNTS = """() => {
+    const [{ first }] = window.perceptObsLabs;
+    const words = (text) => text.split(/[^\\p{L}\\p{N}.]+/u).filter((word) => /[\\p{L}]/u.test(word)).length;
+    const nodes = [...first.body.querySelectorAll("[data-control]")].filter((node) => node.checkVisibility());
+    const said = [...first.body.querySelectorAll("*")].filter((node) => node.checkVisibility() && !node.children.length
+        && !node.closest(".unseen, .handle, canvas, svg")).map((node) => node.textContent);
+    const own = [...first.body.querySelectorAll("label, .sliding > span")].flatMap((node) =>
+        [...node.childNodes].filter((child) => child.nodeType === 3).map((child) => child.textContent));
+    const drawn = first.views.flatMap(({ texts }) => texts.map(({ text }) => text));
+    const { width, height } = first.body.getBoundingClientRect();
+    const area = first.views.reduce((sum, { figure }) => {
+        const box = figure.getBoundingClientRect(); return sum + box.width * box.height; }, 0);
+    return { controls: nodes.length, words: words([...said, ...own, ...drawn].join(" ")), share: area / (width * height) };
+}"""
+
+
+@contextmanager
+def first_screen(browser, lab, size=SIZES["cell"], **options):
+    """A page with a lab's first screen that has drawn; no error of the page is left unseen."""
+    wrong = []
+    page = opened(browser, lab, face="first", viewport=dict(zip(("width", "height"), size, strict=True)), **options)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.set_default_timeout(15_000)
+    page.wait_for_function(READY)
+    yield page
+    assert wrong == []
+    page.close()
+
+
+def at_the_end(page):
+    """Show the end of the run at once, as if it had been played."""
+    page.evaluate(END)
+    page.wait_for_function(DRAWN)
+    page.evaluate(STILL)
+
+
+def asked(page, name, answer=0):
+    """Ask a question, answer it, and show the end of the run."""
+    page.evaluate("(name) => [...window.perceptObsLabs][0].first.ask(name)", name)
+    page.click(control(f"answer {answer}"))
+    page.wait_for_function(DRAWN)
+    at_the_end(page)
+    page.wait_for_function(WATCHED)
+
+
+def overlaps(page):
+    """Texts of the pictures that are cut, and pairs that cover each other."""
+    found = []
+    for view in page.evaluate(TEXTS):
+        boxes = [(each["text"], each["box"]) for each in view["texts"]]
+        found += [
+            text
+            for text, (left, top, right, bottom) in boxes
+            if left < 0 or top < 0 or right > view["width"] or bottom > view["height"]
+        ]
+        for k, (text, one) in enumerate(boxes):
+            for other_text, other in boxes[k + 1 :]:
+                if one[0] < other[2] and one[2] > other[0] and one[1] < other[3] and one[3] > other[1]:
+                    found.append((text, other_text))
+    return found

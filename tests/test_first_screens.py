@@ -1,0 +1,166 @@
+"""The first screens of the labs: few words and controls, large pictures, no label on another, and answers that hold."""
+
+import numpy as np
+import pytest
+from first_screens import COUNTS, SIZES, asked, at_the_end, first_screen, overlaps
+from lab_alone import DRAWN
+from lab_browser import control
+from sample_sizes import sampled
+
+from percept_obs.labs import observer_lab
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+LABS = {"observer": observer_lab}
+QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.map(({ name }) => name)"
+HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.open.holds(first.scene), first.spoken]; }"
+RANDOM = sampled(20, 200)
+"""Random settings in which labels are looked at."""
+VARY = """([seed]) => {
+    const [lab] = window.perceptObsLabs;
+    let state = seed;
+    const random = () => (state = (state * 16807) % 2147483647) / 2147483647;
+    for (let k = 0; k < 5; k++) random();
+    const ranges = [...lab.first.body.querySelectorAll(".handy input[type=range], .handy input[type=checkbox]")];
+    for (const box of ranges) {
+        if (box.type === "checkbox") { if (random() < 0.5) box.click(); continue; }
+        const [low, high, step] = [box.min, box.max, box.step].map(Number);
+        box.value = low + Math.round((random() * (high - low)) / step) * step;
+        box.dispatchEvent(new Event("input", { bubbles: true }));
+    }
+    for (const handle of lab.first.handles) {
+        if (!handle.at) continue;
+        handle.move(handle.at.map((value) => value + (random() - 0.5) * handle.nudge * 60));
+    }
+    lab.first.setWhy(random() < 0.3);
+    lab.state.cursor = random() * lab.first.end;
+    return lab.rest();
+}"""
+
+
+@pytest.mark.parametrize("name", LABS)
+@pytest.mark.parametrize("size", SIZES)
+def test_it_opens_with_few_words_and_controls_and_large_pictures(name, size, browser):
+    with first_screen(browser, LABS[name](), SIZES[size]) as page:
+        found = [page.evaluate(COUNTS)]
+        at_the_end(page)
+        found.append(page.evaluate(COUNTS))
+        print(name, size, found)
+        for counts in found:
+            assert counts["controls"] <= 12
+            assert counts["words"] <= 60
+            assert counts["share"] >= 0.7
+        assert page.evaluate("document.documentElement.scrollWidth") <= SIZES[size][0]
+
+
+@pytest.mark.parametrize("name", LABS)
+def test_what_an_answer_claims_holds_in_the_picture(name, browser):
+    with first_screen(browser, LABS[name]()) as page:
+        for question in page.evaluate(QUESTIONS):
+            asked(page, question)
+            holds, said = page.evaluate(HOLDS)
+            assert holds, question
+            assert len(said.split()) <= 25, said
+            assert overlaps(page) == [], question
+            page.click(control("done"))
+            page.wait_for_function(DRAWN)
+
+
+@pytest.mark.parametrize("name", LABS)
+@pytest.mark.parametrize("size", SIZES)
+def test_no_label_covers_another_or_is_cut(name, size, browser):
+    with first_screen(browser, LABS[name](), SIZES[size]) as page:
+        for seed in range(1, RANDOM + 1):
+            page.evaluate(VARY, [1000 * seed])
+            at_the_end(page) if seed % 3 == 0 else page.wait_for_function(DRAWN)
+            assert overlaps(page) == [], seed
+            if seed % 5 == 0:
+                page.evaluate("() => [...window.perceptObsLabs][0].first.again()")
+
+
+@pytest.mark.parametrize("name", LABS)
+def test_it_plays_once_by_itself_and_not_where_less_motion_is_asked_for(name, browser):
+    with first_screen(browser, LABS[name]()) as page:
+        page.wait_for_function("() => [...window.perceptObsLabs][0].first.playing")
+        page.wait_for_function("() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }")
+        assert page.evaluate("() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }")
+    with first_screen(browser, LABS[name](), reduced_motion="reduce") as page:
+        page.wait_for_function("() => ![...window.perceptObsLabs][0].first.secret")
+        assert page.evaluate("() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }")
+
+
+@pytest.mark.parametrize("name", LABS)
+def test_the_workbench_is_one_press_away_and_back_with_the_same_settings_and_time(name, browser):
+    with first_screen(browser, LABS[name]()) as page:
+        at_the_end(page)
+        before = page.evaluate("() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }")
+        page.click(control("workbench"))
+        page.wait_for_function(DRAWN)
+        assert page.locator(".stage").is_visible()
+        assert not page.locator(".first-screen").is_visible()
+        page.click(control("first screen"))
+        page.wait_for_function(DRAWN)
+        assert page.locator(".first-screen").is_visible()
+        after = page.evaluate("() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }")
+        assert after == before
+
+
+@pytest.fixture
+def page(browser):
+    with first_screen(browser, observer_lab()) as page:
+        at_the_end(page)
+        yield page
+
+
+SEEN = """() => { const [{ first, settings, shown }] = window.perceptObsLabs;
+    const { y, place, foe } = first.seen; const last = shown.truth.length - 3;
+    return { y, place, foe, settings, truth: Array.from(shown.truth.slice(last)) }; }"""
+
+
+@pytest.mark.parametrize("time", [0.0, 2.0, 4.0])
+def test_a_hand_moves_what_it_sees_now(page, time):
+    page.evaluate("(time) => { const [lab] = window.perceptObsLabs; lab.point(time); lab.paint(); }", time)
+    before = page.evaluate(SEEN)
+    box = page.locator(control("first foe")).bounding_box()
+    x, y = box["x"] + 22, box["y"] + 22
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 40, y + 30, steps=6)
+    page.mouse.up()
+    page.wait_for_function(DRAWN)
+    after = page.evaluate(SEEN)
+    np.testing.assert_allclose(after["place"], before["place"], atol=1e-9)  # the present stays
+    assert after["foe"] != before["foe"]
+    assert np.linalg.norm(after["settings"]["b"]) == pytest.approx(np.linalg.norm(before["settings"]["b"]))
+    moved = page.locator(control("first foe")).bounding_box()
+    assert [moved["x"] + 22, moved["y"] + 22] == pytest.approx([x - 40, y + 30], abs=1.5)  # under the finger
+    page.focus(control("first distance"))
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function(DRAWN)
+    farther = page.evaluate(SEEN)
+    assert np.linalg.norm(farther["place"]) > np.linalg.norm(after["place"])
+    np.testing.assert_allclose(farther["y"], after["y"], atol=1e-9)
+    page.evaluate("() => [...window.perceptObsLabs][0].undo()")
+    page.wait_for_function(DRAWN)
+    np.testing.assert_allclose(page.evaluate(SEEN)["place"], after["place"], atol=1e-9)
+
+
+def test_the_focus_of_expansion_on_the_point_hides_its_distance(page):
+    page.evaluate("() => { const [{ first }] = window.perceptObsLabs; first.steer(first.seen.y); }")
+    page.evaluate("() => [...window.perceptObsLabs][0].rest()")
+    page.wait_for_function(DRAWN)
+    near, here, far = page.evaluate("() => [...window.perceptObsLabs][0].first.seen.copies")
+    np.testing.assert_allclose([near, here, far], 0, atol=1e-7)
+    assert "too near" in page.inner_text(".says").lower() or "Not found" in page.inner_text(".says")
+
+
+def test_the_chart_and_the_keys_of_the_play_button_move_the_time(page):
+    box = page.locator(".first-screen .scrub").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 30)
+    middle = page.evaluate("() => [...window.perceptObsLabs][0].state.cursor")
+    assert 1.5 < middle < 2.5
+    page.focus(control("first play"))
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("() => [...window.perceptObsLabs][0].state.cursor") > middle
+    page.keyboard.press("Home")
+    assert page.evaluate("() => [...window.perceptObsLabs][0].state.cursor") == 0
