@@ -66,10 +66,10 @@ def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(ask):
     np.testing.assert_allclose([copy["velocity"][0] for copy in copies], copies[0]["velocity"][0], atol=1e-7)
     assert np.ptp([copy["velocity"][1] for copy in copies]) > 0.01  # what y2 would tell
     assert max(c["distance"] for c in copies) > 2 * min(c["distance"] for c in copies)
-    assert names_of(page, "alike to y1 alone")
+    assert names_of(page, "look the same to y1 now")
     page.click(control("outputs y1+y2"))
     page.wait_for_function(DRAWN)
-    assert not names_of(page, "alike to y1 alone")
+    assert not names_of(page, "look the same to y1 now")
 
 
 def test_an_error_is_drawn_with_what_noise_adds_and_with_the_same_run_without_noise(ask):

@@ -169,7 +169,7 @@ class PerspectiveSystem:
                 rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}",
                 dict(zip(map(str, surface.coordinates), (*surface.image, 1 / surface.distance), strict=True)),
             ),
-            "So the point lies on a ray, at the distance one over the inverse distance:": (
+            "Image and distance say where the point is:": (
                 joined(
                     [
                         rf"{point} = \frac{{1}}{{{eta}}}\, m(y)",

@@ -236,7 +236,7 @@ class ObserverLab(Lab):
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
         followed, beyond = within_reach(steps, states, work)
         window = min(settings["window"], float(np.ptp(recording.time)))
-        sentences = [excitation_in_words(self._registry.form(*seen), recording, window)]
+        sentences = excitation_in_words(self._registry.form(*seen), recording, window)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)
             found = self.runs({**settings, "observers": followed})

@@ -97,7 +97,7 @@ export function drawAlike(pen, frame, alike, speed, theme) {
     if (measured === 0) label(pen, text, x + 10 * away, y, colour, theme, away > 0 ? "left" : "right", "middle");
     else label(pen, text, x, y + 10 * away, colour, theme, "center", away > 0 ? "top" : "bottom");
   });
-  caption(pen, frame, copies, [`alike to ${name} alone:`, `same ${name}, same speed along it`], theme);
+  caption(pen, frame, copies, [`look the same to ${name} now`], theme);
 }
 
 /** Seconds that an arrow stands for. */

@@ -14,23 +14,20 @@ export function reasons(shown, model) {
   const found = leavingInWords(shown);
   const least = leastOf(shown.excitation);
   if (least) {
-    const over = `any ${readable(shown.excitation.window)} s`;
+    const over = `in any ${readable(shown.excitation.window)} s`;
+    const value = `smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}`;
+    const hidden = hiddenNames.join(" and ");
     found.push(
       least.value < UNEXCITED
-        ? `Not excited: in the window that ends at ${readable(least.time)} s the image hardly moves with one ` +
-          `direction of ` +
-            `${hiddenNames.join(", ")} (smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}).`
-        : `Excited: in ${over} the image moves enough to tell ${hiddenNames.join(" and ")} (smallest eigenvalue of ` +
-          `∫ w wᵀ: ` +
-            `${readable(least.value, 2)} or more).`,
+        ? `Until ${readable(least.time)} s, w alone shows next to nothing of one direction of ${hidden} (${value}). ` +
+            "The motion may show it all the same."
+        : `The image moves with ${hidden} ${over} (${value} or more).`,
     );
   }
   if (measured.length < hiddenNames.length) {
     const [name, drawn] = [names[measured[0]], shown.truth && !(settings.scenario in model.recordings)];
-    const others = drawn ? ` Others, with the same ${name} and the same speed along it, are drawn in the image.` : "";
-    found.push(
-      `Only ${name} is measured: one instant never tells both hidden coordinates, a window of time may.${others}`,
-    );
+    const others = drawn ? ` Drawn in the image are two other points that look the same to ${name} now.` : "";
+    found.push(`Only ${name} is measured: one instant never tells both hidden coordinates, some seconds may.${others}`);
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
@@ -58,15 +55,13 @@ export function reasons(shown, model) {
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
     found.push(
-      "The stronger the shade of a place in the image, the less any unbiased observer can know of the distance of a " +
-      "point that is first seen there. " +
-        "Where there is no shade, the point comes behind the camera.",
+      "The darker a place in the image, the less any unbiased observer can know of the distance of a point that is " +
+        "first seen there. Where there is no shade, the point comes behind the camera.",
     );
   }
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
   if (settings.noise.size > 0 && measured.length === 1 && biased) {
-    found.push("The noise of one output is in w and in the innovation at the same time: it does not only blur the " +
-      "estimate, it pushes it.");
+    found.push("The same noise is in w and in the innovation: their product has a mean, which pushes the estimate.");
   }
   return found;
 }
@@ -77,10 +72,9 @@ function noiseInWords({ shares }) {
   if (!(added > 0))
     return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
   return (
-    `Noise adds ${percent(added, 2)} to the error after ` +
-    `${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s (filled in its chart). Without noise the ` +
-    `error would follow the thin ` +
-    "dashed line. More gain lets that line fall faster, and lifts what noise adds."
+    `After ${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s noise adds ${percent(added, 2)} to the ` +
+    "error (filled in its chart). The thin dashed line is the error without noise: more gain lets it fall faster, and " +
+    "lifts what noise adds."
   );
 }
 
