@@ -16,6 +16,7 @@ from typing import Any
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.site import front_ends
+from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
@@ -81,9 +82,15 @@ def build(
     """
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder)
-        _notebooks(source, notebooks, parallel, tell)
+        lab = first_lab()
+        _notebooks(source, notebooks, parallel, lab, tell)
         tell("judging the papers' equations")
-        for path, text in [*ledger_pages(ledgers), *reference(), *_texts()]:
+        for path, text in [
+            *ledger_pages(ledgers),
+            *reference(),
+            *_texts(),
+            ("index.md", front(lab, notebooks, ledgers)),
+        ]:
             _write(source / path, text)
         tell("writing the pages")
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers)})
@@ -91,12 +98,16 @@ def build(
 
 
 def _notebooks(
-    source: Path, notebooks: Mapping[str, Mapping[str, Any]], parallel: int, tell: Callable[[str], object]
+    source: Path,
+    notebooks: Mapping[str, Mapping[str, Any]],
+    parallel: int,
+    lab: Mapping[str, Any],
+    tell: Callable[[str], object],
 ) -> None:
-    """Run the notebooks, and write them with the scripts of their labs."""
+    """Run the notebooks, and write them with the scripts of their labs and of the first page's."""
     import nbformat
 
-    states: dict[bytes, Mapping[str, Any]] = {}
+    states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
     for name, notebook in run_all(notebooks, parallel):
         tell(f"ran {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}

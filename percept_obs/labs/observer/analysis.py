@@ -29,7 +29,9 @@ def excitation_in_words(form: PartitionedSystem, recording: Recording, window: f
     if form.culprits:
         return [f"There is no canonical form, and so no w: {', '.join(form.culprits)} do not enter linearly."]
     least = windowed(form.canonical_form(), recording, window).least
-    start = f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}."
+    start = (
+        f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}."
+    )
     return [start, _shown_in_words(form, recording, window)] if recording.truth is not None else [start]
 
 
@@ -44,8 +46,8 @@ def _shown_in_words(form: PartitionedSystem, recording: Recording, window: float
     told = [name for name in shown.names if not any(name in direction.split() for direction in lost)]
     rest = f" They show {' and '.join(told)}." if told else ""
     return (
-        f"{counted} the window that begins at {begin:.3g} s do not show {' and '.join(missed)}: no observer can find it "
-        f"there.{rest}"
+        f"{counted} the window that begins at {begin:.3g} s do not show {' and '.join(missed)}: "
+        f"no observer can find it there.{rest}"
     )
 
 

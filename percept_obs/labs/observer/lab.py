@@ -61,8 +61,9 @@ class ObserverLab(Lab):
     Parameters
     ----------
     scenario : str, Scenario or Recording
-        Opens the lab: the name of a scenario, or one of your own; without any argument it is a drive past a point.  A motion in expressions of time is typed into
-        the lab; one that is sampled, or a function, is taken as samples that stay as they are after the last one.
+        Opens the lab: the name of a scenario, or one of your own; without any argument it is a drive past a point.
+        A motion in expressions of time is typed into the lab; one that is sampled, or a function, is taken as samples
+        that stay as they are after the last one.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
     observers : list, optional

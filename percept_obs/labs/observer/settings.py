@@ -13,7 +13,9 @@ from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.recording import Scenario, scenarios
 
-SCENARIOS = {make.__name__: make for make in (scenarios.drive, scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
+SCENARIOS = {
+    make.__name__: make for make in (scenarios.drive, scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)
+}
 FIRST_GUESS = 6.0
 """Metres from the camera at which the estimate of a drive starts: not where the point is, and in the picture."""
 HOLDS = ("zero", "first", "exact")

@@ -147,7 +147,9 @@ class Lab(anywidget.AnyWidget):
         self._opening = opening
         self._opening = self.check(settings)
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
-        super().__init__(kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening, face=face)
+        super().__init__(
+            kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening, face=face
+        )
         _close_those_of_an_earlier_run(self)
 
     def __init_subclass__(cls) -> None:

@@ -36,6 +36,7 @@ function asked(before, after, kept = before) {
 
 const CURVE = { A: [[0, 0, -0.24], [0, 0, 0], [0.24, 0, 0]], b: towards([0, 0.05], 1.6), X0: [5.5, 0.55, 11] };
 const ABOVE = { b: towards([0.1, -0.22], 1.3), X0: [1.1, 0.9, 11] };
+const STRAIGHT = { X0: [1.76, -0.44, 11] };
 const HIDDEN = { A: [[0, 1, 0], [0, 0, 0], [0, 0, 0]], b: [1, 0, 0], X0: [-1, 0.4, 4], guess: 2 };
 
 const errorsOf = (result) => result.runs[0].error;
@@ -64,6 +65,23 @@ const sampleAt = ({ time }, part) => Math.floor(part * (time.length - 1));
 
 /** @type {import("../../common/first/screen.js").Question[]} */
 export const QUESTIONS = [
+  {
+    name: "straight",
+    chip: "Straight at it?",
+    ask: "You drive straight at a standing point. Does its image tell how far it is?",
+    answers: ["Yes, at once", "Yes, but slowly", "No"],
+    right: 2,
+    before: drive(STRAIGHT),
+    after: drive(STRAIGHT),
+    tells: "No. Near or far, it stands still in the image, so nothing tells them apart.",
+    on: "image",
+    note: "it stands still",
+    spot: () => ({}),
+    holds: ({ shown }) => {
+      const apart = shown.truth.filter((_, k) => k % 3 < 2).map((value, k) => Math.abs(value - shown.truth[k % 2]));
+      return Math.max(...apart) < 1e-9 && !settles(shown);
+    },
+  },
   {
     name: "foe",
     chip: "Cross the focus?",
