@@ -83,19 +83,12 @@ def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> It
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Return True if two expressions are the same function of their letters, which are matched by name.
+    """Return True if two expressions are the same function of their letters by name; None if it cannot be told.
 
     Rational functions of moderate size are compared exactly, as quotients of polynomials.  Others are compared at
     random points with sixty digits: a "no" is certain, and a "yes" means that all of `POINTS` values agree to forty.
     Functions with kinks are only the same if their arguments are.
 
-    Returns
-    -------
-    bool, or None
-        None if it cannot be told.
-
-    Examples
-    --------
     >>> x = sp.Symbol("x", real=True)
     >>> same((x + 1) ** 2, x**2 + 2 * x + 1), same(sp.sin(2 * x), 2 * sp.sin(x)), same(x * sp.sign(x), abs(x))
     (True, False, True)

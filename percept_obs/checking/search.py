@@ -26,17 +26,7 @@ THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
 
 @dataclass(frozen=True)
 class Search:
-    """A search for changes that mend one line.
-
-    Parameters
-    ----------
-    mine : expression
-    line : Line
-        The true line.
-    letters : set of symbols
-    until : float
-        The time on the clock at which it ends.
-    """
+    """Search for changes that mend one line, until a time on the clock."""
 
     mine: sp.Expr
     line: Line

@@ -34,17 +34,11 @@ VALUE, EQUATION, INEQUALITY, ZEROS = "value", "equation", "inequality", "zeros"
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a target.
+    """Line of a target.
 
-    Parameters
-    ----------
-    name : str
-        Left side as it is typed, "y1'", or words; empty if it has no name.
-    formula : expression
-        Right side; of other equations and inequalities the left side less the right one.
-    kind : "value", "equation", "inequality" or "zeros"
-        Equations are the same up to a number, inequalities up to a positive one; of "zeros" it only matters where
-        the formula is zero.
+    The name is the left side as it is typed, "y1'", or words; empty if it has none.  The formula is the right side; of
+    other equations and inequalities the left side less the right one.  Equations are the same up to a number,
+    inequalities up to a positive one; of "zeros" it only matters where the formula is zero.
     """
 
     name: str
@@ -403,12 +397,8 @@ def condition(formula: Boolean) -> sp.Expr:
 def matrix_target(relations: Iterable[Relational]) -> Target:
     """Return a target whose matrices can be typed by their letters, "xi' = G A xi", and are compared entry by entry.
 
-    The inverse of a letter has entries of its own, for written out it is too long.
-
-    Raises
-    ------
-    ValueError
-        If a matrix is given in several forms, or is an integral: entries do not tell whether those are the same.
+    The inverse of a letter has entries of its own, for written out it is too long.  Refused are a matrix in several
+    forms and integrals: entries do not tell whether those are the same.
     """
     relations = tuple(relations)
     named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]

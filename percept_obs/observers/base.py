@@ -56,14 +56,9 @@ class About:
 
 @dataclass(frozen=True)
 class FastestRate:
-    """Decay rate of the fastest part of an observer, which an integration step must resolve.
+    """Decay rate in 1/s of an observer's fastest part, which an integration step must resolve.
 
-    Parameters
-    ----------
-    rate : expression
-        Decay rate in 1/s, from the gains and `elapsed`.
-    remedy : str
-        Advice if the step is too long, besides shortening it.
+    It depends on the gains and `elapsed`; the remedy is advice besides a shorter step.
     """
 
     rate: sp.Expr

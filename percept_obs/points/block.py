@@ -24,14 +24,7 @@ class NotLinear(ValueError):
 class PointBlock:
     """Image of one point without a division: l(xi) (y - h(xi)) = -B(y) xi.
 
-    Parameters
-    ----------
-    y : symbols
-        Image coordinates of the point, m of them.
-    N : matrix of shape (m, 3)
-        The image times the distance, N xi = l(xi) h(xi).
-    l : matrix of shape (1, 3)
-        The distance l xi.
+    Here y are its m image coordinates, N xi = l(xi) h(xi) is the image times the distance, and l xi the distance.
     """
 
     y: tuple[sp.Symbol, ...]

@@ -81,18 +81,7 @@ def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
 def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ()) -> Array:
     """Return states at the times under a motion that varies, shape (K, n), by scipy's DOP853 and its dense output.
 
-    Parameters
-    ----------
-    rate : function of (time, state)
-    start : array of shape (n,)
-    times : array of shape (K,)
-    breaks : array, optional
-        Times at which the rate has a kink, so that no step crosses them.
-
-    Raises
-    ------
-    TooMuchWork
-        If the motion changes so fast that it would have to be evaluated too often.
+    No step crosses the breaks, times at which the rate has a kink.
     """
     from scipy.integrate import DOP853
 

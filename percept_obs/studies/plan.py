@@ -49,13 +49,7 @@ Variances = tuple[tuple[str, float], ...]
 
 
 def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> xr.Dataset:
-    """Coordinates over which an ensemble goes, the seed first; a DataArray brings its dimensions.
-
-    Raises
-    ------
-    ValueError
-        If values are none, not finite, or lengths of a dimension differ.
-    """
+    """Coordinates over which an ensemble goes, the seed first; a DataArray brings its dimensions."""
     import xarray as xr
 
     columns: dict[str, Any] = {"seed": ("seed", seeds, {"units": "1"})}

@@ -253,22 +253,10 @@ def linear(
 def bound(
     name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, coefficients: list[Coefficient], times: ArrayLike | None
 ) -> Motion:
-    """Motion with values for its symbols.
+    """Motion with values for the symbols of A and b.
 
-    Parameters
-    ----------
-    name : str
-    A, b : sympy matrices
-        In the symbols of the blocks.
-    coefficients : list of (value, block of symbols)
-        Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
-    times : array of shape (K,), optional
-        Times in seconds of sampled values.
-
-    Raises
-    ------
-    ValueError
-        If only some values are None, shapes do not match, values are not finite or times do not increase.
+    Values of each block of symbols are as `affine` takes them: arrays, functions of time, expressions (in `TIME` or
+    others), or None for all; the times are those of sampled values.
     """
     values, symbols = [value for value, _ in coefficients], tuple(s for _, block in coefficients for s in block)
     missing = [_title(block) for value, block in coefficients if value is None]

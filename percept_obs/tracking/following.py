@@ -153,13 +153,7 @@ def track(
 
 @singledispatch
 def follow(observer: Any, grid: TimeGrid, start: Any, believed: Motion | None, language: Language | None) -> Run:
-    """Let an observer follow a recording on a grid; each kind of observer registers its own function.
-
-    Raises
-    ------
-    DoesNotFit
-        If the observer cannot follow it, or is none.
-    """
+    """Let an observer follow a recording on a grid; each kind of observer registers its own function."""
     raise DoesNotFit(f"an observer is needed, such as ibo(form), not {observer!r}")
 
 

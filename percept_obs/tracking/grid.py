@@ -20,17 +20,10 @@ Hold = Literal["zero", "first", "exact"]
 
 @dataclass(frozen=True, eq=False)
 class TimeGrid:
-    """Integration steps along a recording.
+    """Integration steps along a recording: times of their N + 1 ends, and the index of the K samples among them.
 
-    Parameters
-    ----------
-    recording : Recording
-    times, index : arrays of shapes (N + 1,) and (K,)
-        Ends of the steps in seconds, and the positions of the samples among them, as from `step_grid`.
-    hold : "zero", "first" or "exact"
-        Signal that stands for the outputs between samples; see `track`.
-    longest_hold : float
-        Seconds after a sample from which on it is not held.
+    The signal stands for the outputs between samples by the `hold`, see `track`; after `longest_hold` seconds a sample
+    is no longer held.
     """
 
     recording: Recording

@@ -23,13 +23,7 @@ FAR = 1e3
 
 @dataclass(frozen=True, eq=False)
 class Explained:
-    """Residuals of a recording's samples when one point explains them best.
-
-    Parameters
-    ----------
-    residuals : array of shape (K, m)
-        NaN where a sample was lost.
-    """
+    """Residuals of samples when one point explains them best, shape (K, m); NaN where a sample was lost."""
 
     residuals: Array
 
