@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from hostile_messages import TYPED
 from lab_settings import as_array, copied_runs, run_in_node, whole_model
+from refusals import refuses
 from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
@@ -189,36 +190,31 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
         np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("make", "settings", "reason"),
-    [
-        (
-            observer_lab,
-            {"motion": "a12 = 0.3 foo(t)"},
-            r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
-        ),
-        (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
-        (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
-        (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
-        (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
-        (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
-        (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
-        (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
-        (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
-        (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
-        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
-        (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
-        (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
-        (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
-        (points_lab, {"P": "[[1, t, 0], [t, 1, 0], [0, 0, 1]]"}, r"it must be a number or a diagonal \[a, b, c\]"),
-        (points_lab, {"P": "1; P = 2"}, "P gives an expression, P; it must be one expression"),
-        (points_lab, {"P": "P = 1; P = 2"}, "P gives P, P; it must be one expression"),
-        (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
-    ],
+test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
+    lambda make, settings: make(**settings),
+    (
+        observer_lab,
+        {"motion": "a12 = 0.3 foo(t)"},
+        r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
+    ),
+    (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
+    (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
+    (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
+    (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
+    (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
+    (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
+    (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
+    (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
+    (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
+    (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
+    (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
+    (points_lab, {"P": "[[1, t, 0], [t, 1, 0], [0, 0, 1]]"}, r"it must be a number or a diagonal \[a, b, c\]"),
+    (points_lab, {"P": "1; P = 2"}, "P gives an expression, P; it must be one expression"),
+    (points_lab, {"P": "P = 1; P = 2"}, "P gives P, P; it must be one expression"),
+    (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
 )
-def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
-    with pytest.raises(ValueError, match=reason):
-        make(**settings)
 
 
 TIMES = np.array([0.0, 0.133, 0.4, 0.71])
@@ -476,24 +472,19 @@ BROKEN = np.where(MEASURED > 0.2, np.nan, MEASURED)
 MANY = np.arange(MOST_SAMPLES + 1) / 100
 
 
-@pytest.mark.parametrize(
-    ("bring", "settings", "reason"),
-    [
-        (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
-        (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
-        (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
-        (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
-        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
-        (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
-        (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
-        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
-        (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
-        (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
-        (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
-        (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
-        (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
-    ],
+test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do = refuses(
+    lambda bring, settings: structure_lab(bring(), **settings),
+    (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
+    (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
+    (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
+    (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
+    (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
+    (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
+    (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
+    (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
+    (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
+    (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
+    (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
+    (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
+    (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
 )
-def test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do(bring, settings, reason):
-    with pytest.raises(ValueError, match=reason):
-        structure_lab(bring(), **settings)

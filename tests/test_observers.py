@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from examples import AFFINE, BOTH, FORMS, MOTIONS, NOISY, ON_SPHERE, ONE, SQUARE, SURFACES, ZERO
+from refusals import refuses
 from scipy.integrate import solve_ivp
 
 from percept_obs import NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
@@ -170,24 +171,19 @@ def test_noise_bias_of_the_sliding_mode_observer():
     np.testing.assert_allclose([float(b.subs(at)) for b in bias], [float(b.subs(at)) for b in expected])
 
 
-@pytest.mark.parametrize(
-    ("make", "gains", "message"),
-    [
-        (ibo, {"reset_ratio": 1.0}, "reset_ratio = 1 is out of range: gamma > 1 is needed; at 1 the reset maps"),
-        (ibo, {"reset_ratio": 0.5}, "gamma > 1"),
-        (ibo, {"gain": 0}, "G > 0"),
-        (ibo, {"gain": float("nan")}, "not finite"),
-        (ibo, {"gain": float("inf")}, "not finite"),
-        (ibo, {"gain": "much"}, "expected a real number"),
-        (ibo, {"G": 3}, "no gain G; it has gain, injection, lyapunov"),
-        (ibo, {"noise_variance": -1}, "it is a variance"),
-        (smo, {"boundary_layer": 0}, "divides by the error"),
-        (ekf, {"noise_variance": 0}, "R > 0"),
-    ],
+test_gains_out_of_range_are_refused = refuses(
+    lambda make, gains: make(ONE, **gains),
+    (ibo, {"reset_ratio": 1.0}, "reset_ratio = 1 is out of range: gamma > 1 is needed; at 1 the reset maps"),
+    (ibo, {"reset_ratio": 0.5}, "gamma > 1"),
+    (ibo, {"gain": 0}, "G > 0"),
+    (ibo, {"gain": float("nan")}, "not finite"),
+    (ibo, {"gain": float("inf")}, "not finite"),
+    (ibo, {"gain": "much"}, "expected a real number"),
+    (ibo, {"G": 3}, "no gain G; it has gain, injection, lyapunov"),
+    (ibo, {"noise_variance": -1}, "it is a variance"),
+    (smo, {"boundary_layer": 0}, "divides by the error"),
+    (ekf, {"noise_variance": 0}, "R > 0"),
 )
-def test_gains_out_of_range_are_refused(make, gains, message):
-    with pytest.raises(ValueError, match=message):
-        make(ONE, **gains)
 
 
 def test_other_gains_make_another_observer():
