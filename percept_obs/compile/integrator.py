@@ -53,19 +53,8 @@ LARGEST_SQUARED_STATE = 1e300
 
 
 def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
-    """Divide the intervals between times into equal steps no longer than given.
+    """Divide the intervals between times into equal steps no longer than given: the steps' ends, and each time's index.
 
-    Returns
-    -------
-    grid : array
-        Times of all steps' ends, from ``times[0]`` to ``times[-1]``.
-    index : array of shape (len(times),)
-        Index of each time in the grid.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from percept_obs.compile.integrator import step_grid
     >>> grid, index = step_grid(np.array([0.0, 1.0]), longest=0.4)
     >>> grid.round(2).tolist(), index.tolist()
     ([0.0, 0.33, 0.67, 1.0], [0, 3])

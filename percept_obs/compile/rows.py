@@ -26,30 +26,9 @@ Rows = Callable[[Sequence[Array], Array], Array]
 def by_row(
     tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language
 ) -> Rows:
-    """Make a function of tables and constants of several expressions.
+    """Make a function of tables with K rows and of constants that gives expressions, shape (K, expressions).
 
-    Parameters
-    ----------
-    tables : tuples of symbols
-        Columns of each table.
-    constants : symbols
-    expressions : tuple of expressions or conditions
-    language : "python" or "numba"
-        Python's runs in numpy.
-
-    Returns
-    -------
-    function of (arrays of shape (K, symbols), array of shape (constants,))
-        Returns an array of shape (K, expressions), with 1 where a condition holds.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> y, t, k = sp.symbols("y t k")
-    >>> triple = by_row(((y,), (t,)), (k,), (k * y, t > y), "python")
-    >>> triple([np.array([[1.0], [2.0]]), np.array([[1.5], [1.5]])], np.array([3.0]))
-    array([[3., 1.],
-           [6., 0.]])
+    A condition gives 1 where it holds.  Python's function runs in numpy.
     """
     if language == "python":
         symbols = tuple(symbol for table in tables for symbol in table)

@@ -103,14 +103,9 @@ class Figure:
 
 
 def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]]:
-    """Make a Figure of what a function draws and says.
+    """Make a Figure of what a function draws and says; its ValueError is described by `refuses`, after "If".
 
     Common parameters, Returns and Raises are added to its docstring.
-
-    Parameters
-    ----------
-    refuses : str
-        Condition of its ValueError, after "If".
     """
 
     def of(draw: Callable[P, Drawing]) -> Callable[P, Figure]:

@@ -23,24 +23,12 @@ Rate = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Small errors e of the coordinates along a recording's truth: e(t_k+1) = Phi_k e(t_k) + noise of covariance Q_k.
+    """Small errors e of coordinates along a recording's truth: e(t_k+1) = Phi_k e(t_k) + noise of covariance Q_k."""
 
-    Parameters
-    ----------
-    measured : integer array of shape (m,)
-        Positions of the measured coordinates.
-    seen : array of shape (K, m) of bool
-        Measured outputs that were sampled.
-    transitions : array of shape (K - 1, n, n)
-        Phi_k, in the order of the form's coordinates.
-    spreads : array of shape (K - 1, n, n)
-        Q_k, from doubts in the motion.
-    """
-
-    measured: Indices
-    seen: Flags
-    transitions: Array
-    spreads: Array
+    measured: Indices  # (m,), positions of the measured coordinates
+    seen: Flags  # (K, m), measured outputs that were sampled
+    transitions: Array  # (K - 1, n, n), Phi_k, in the order of the form's coordinates
+    spreads: Array  # (K - 1, n, n), Q_k, from doubts in the motion
 
 
 def names_of(form: PartitionedSystem) -> tuple[str, ...]:

@@ -49,28 +49,14 @@ EXAMPLES = MappingProxyType(
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of values; it also annotates what no class stands for, as ``Annotated[..., Kind(...)]``.
+    """A kind of values; it also annotates what no class stands for, as ``Annotated[..., Kind(...)]``."""
 
-    Parameters
-    ----------
-    label : str
-        Its name in messages.
-    fits : function of a value
-        Return True if a value is of this kind.
-    example : str
-        Code that makes such a value.
-    by_type : bool
-        Whether the type of a value, or of an array's entries, decides; then a call is checked once a type.
-    entries, alternatives : tuples of Kind
-        Kinds of a sequence's entries, and of a union's members.
-    """
-
-    label: str
+    label: str  # name in messages
     fits: Callable[[Any], bool]
-    example: str = ""
-    by_type: bool = False
-    entries: tuple[Kind, ...] = ()
-    alternatives: tuple[Kind, ...] = ()
+    example: str = ""  # code that makes such a value
+    by_type: bool = False  # whether the type of a value, or of an array's entries, decides
+    entries: tuple[Kind, ...] = ()  # kinds of a sequence's entries
+    alternatives: tuple[Kind, ...] = ()  # kinds of a union's members
 
 
 def are_numbers(value: Any) -> bool:

@@ -42,22 +42,12 @@ FALLBACK = "identifier_based"
 
 @dataclass(frozen=True, eq=False)
 class Registry:
-    """Surfaces and observers by their names.
+    """Surfaces and observers by their names."""
 
-    Parameters
-    ----------
-    user_surfaces : mapping of names to imaging surfaces with numbers
-    user_observers : mapping of names to observers
-    asked : names of observers
-        The package's observers that are printed on the user's surfaces, for all of them take many seconds.
-    origins : mapping of names to texts
-        Imports of the user's surfaces in copied code.
-    """
-
-    user_surfaces: Mapping[str, ImagingSurface]
+    user_surfaces: Mapping[str, ImagingSurface]  # with numbers
     user_observers: Mapping[str, UserObserver]
-    asked: tuple[str, ...]
-    origins: Mapping[str, Texts]
+    asked: tuple[str, ...]  # the package's observers that are printed on the user's surfaces; all take many seconds
+    origins: Mapping[str, Texts]  # imports of the user's surfaces in copied code
 
     @cached_property
     def surfaces(self) -> dict[str, ImagingSurface]:
@@ -154,11 +144,7 @@ def registry_of(
 ) -> tuple[Registry, list[str]]:
     """The registry of a lab with a user's surfaces and observers, and the names of these surfaces.
 
-    Parameters
-    ----------
-    surfaces : sequence of imaging surfaces, or functions that give one
-    observers : mapping of names to observers
-    asked : names of observers that the lab opens with
+    A surface may be a function that gives one; `asked` are the names of the observers that the lab opens with.
     """
     found: dict[str, ImagingSurface] = {}
     origins: dict[str, Texts] = {}

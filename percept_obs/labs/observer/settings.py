@@ -35,13 +35,9 @@ def _translation(about: str = "") -> Row:
 
 
 def as_settings(scenario: Scenario, surface: str = "") -> Settings:
-    """Settings of a scenario: motion, point, surface and duration; a motion that varies is taken at time 0.
+    """Settings of a scenario: motion, point, duration, and its surface under the lab's name for it, if there is one.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    surface : str
-        The lab's name of its surface; the surface's own when left out.
+    A motion that varies is taken at time 0.
     """
     motion = scenario.motion
     numbers = dict(zip(motion.parameters, motion.known(0.0)[0].tolist(), strict=True))

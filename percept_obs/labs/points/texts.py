@@ -47,14 +47,7 @@ def form_of(state: str, points: int, manoeuvre: Manoeuvre, typed: Typed | None =
 
 
 def state_of(form: PointsForm, places: Any) -> np.ndarray:
-    """The smallest state whose points are at these places, shape (n,).
-
-    Parameters
-    ----------
-    form : PointsForm
-    places : array of shape (p, 3)
-        Metres, in the camera's frame.
-    """
+    """The smallest state, shape (n,), whose points are at places of shape (p, 3), in metres in the camera's frame."""
     return np.linalg.pinv(form.blocks.reshape(-1, form.states)) @ np.ravel(places)
 
 
@@ -116,14 +109,7 @@ def _state_for_the_page(name: str) -> Texts:
 
 
 def own_state_for_the_page(form: PointsForm) -> Texts:
-    """The one layout of a user's form, and its coefficients.
-
-    Raises
-    ------
-    ValueError
-        If the page cannot move it: its motion is not known, a function that is not printed, samples that do not suit a
-        run, or couples vectors of three states.
-    """
+    """The one layout of a user's form, and its coefficients; a ValueError if the page cannot move it."""
     motion, n = form.motion, form.states
     rows, columns = form.layout.rows, form.layout.columns
     if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():

@@ -43,13 +43,9 @@ def noise(**sizes: Number) -> Group:
 
 
 def over(gains: Mapping[str, Iterable[str]], places: Sequence[str]) -> Group:
-    """A map over two settings: what it shows, of which observer, and the places of both.
+    """A map over two settings: what it shows, of which observer, and the places of both: its gains, and others.
 
-    Parameters
-    ----------
-    gains : mapping of observers' names to names of gains
-    places : sequence of str
-        What else it may go over; it opens with the first gain and the first of these.
+    It opens with the first gain and the first of the other places.
     """
     axes = [f"gains.{name}.{gain}" for name, names in gains.items() for gain in names]
     shown = {

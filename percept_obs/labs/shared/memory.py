@@ -33,8 +33,6 @@ def kept_by_reads(function: F) -> F:
     A result is used again where the settings that it read have the same values, and the other arguments are the same
     objects.
 
-    Examples
-    --------
     >>> made = kept_by_reads(lambda settings: [settings["a"]])
     >>> first = made({"a": 1, "b": 2})
     >>> made({"a": 1, "b": 3}) is first, made({"a": 2, "b": 2}) is first
