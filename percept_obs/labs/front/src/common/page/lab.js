@@ -346,7 +346,6 @@ export class Lab extends LabBase {
       const speaking = this.speaking && shown.whole;
       this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
-      this.latest.drawn();
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {
