@@ -163,8 +163,7 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, centre: Array, radius: f
 def _fit_height(ax: Axes) -> None:
     """Make the figure of a wide picture lower, without empty margins."""
     width, height = np.ptp([ax.get_xlim(), ax.get_ylim()], axis=1)
-    whole: Any = ax.get_figure(root=True)
-    lettering = 1.2  # inches above and below the axes
+    whole, lettering = base.whole(ax), 1.2  # inches above and below the axes
     whole.set_figheight(min(whole.get_figheight(), look.WIDTH * height / width + lettering))
 
 

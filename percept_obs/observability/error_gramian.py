@@ -34,14 +34,12 @@ MOST_WINDOWS = 24
 class ErrorGramian(Windows):
     """Change of the outputs of a window with the coordinates at its beginning, squared and integrated.
 
+    It comes from `error_gramian` or `empirical_gramian`.
+
     Parameters
     ----------
     names, time, matrices, window, scale
         See `Windows`; `time` holds the windows' beginnings, and the states are the form's coordinates, in its order.
-
-    See Also
-    --------
-    error_gramian, empirical_gramian : Compute it.
 
     Examples
     --------

@@ -52,7 +52,6 @@ class MapKernel:
 
     See Also
     --------
-    map_kernel : Derives it.
     bound_map : Evaluates it over the image.
 
     Examples
@@ -146,11 +145,6 @@ class BoundMap:
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
         Time after which the bound holds, and distance of the points at the beginning.
-
-    See Also
-    --------
-    bound_map : Computes it.
-    percept_obs.figures.bound_map : Draws it.
 
     Examples
     --------
