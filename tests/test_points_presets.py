@@ -15,7 +15,7 @@ pytestmark = [pytest.mark.node, pytest.mark.slow]
 def acts(node, always_compiled):
     """The settings of every act, as Python accepts them."""
     lab = points_lab()
-    found = run_script(node, FRONT / "tests/points_presets.js", lab.model["standard"])
+    found = run_script(node, FRONT / "tests/presets.js", {"lab": "points", "standard": lab.model["standard"]})
     return {name: [lab.check(settings) for settings in several] for name, several in found.items()}
 
 

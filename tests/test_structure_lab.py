@@ -159,7 +159,7 @@ def test_each_corollary_is_one_click_and_converges(case):
 @pytest.fixture(scope="module")
 def acts(lab, node):
     """The settings of every act of every preset, as Python accepts them."""
-    acts = run_script(node, FRONT / "tests/structure_presets.js", lab.model["standard"])
+    acts = run_script(node, FRONT / "tests/presets.js", {"lab": "structure", "standard": lab.model["standard"]})
     return {name: [lab.check(act) for act in found] for name, found in acts.items()}
 
 

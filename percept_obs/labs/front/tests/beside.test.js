@@ -2,7 +2,7 @@
 // nobody.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distanceError, settlingTime } from "../src/common/model/errors.js";
+import { distanceError } from "../src/common/model/errors.js";
 import { Latest } from "../src/common/model/latest.js";
 import { moduleText } from "../src/common/model/modules.js";
 import { constantPath } from "../src/common/model/path.js";
@@ -292,5 +292,4 @@ test("an estimate without one of its coordinates has no error, and one behind th
   const estimate = Float64Array.of(0, 1, NaN, 1, Infinity, 1, 0, -1);
   const error = distanceError([2, 2, 2, 2], [1, 1, 1, -1], estimate, 2);
   assert.deepEqual([...error], [1, NaN, NaN, Infinity]);
-  assert.equal(settlingTime([3, 4, 5], [NaN, 0.01, 0.02], 0.05), 1);
 });

@@ -15,7 +15,7 @@ import { noBound } from "./model/bound.js";
 import { pythonOf } from "./model/code.js";
 import { Engine, focusOf, translationTowards } from "./model/engine.js";
 import { Kernels, keyOf } from "./model/kernels.js";
-import { PRESETS, settingsOf } from "./model/presets.js";
+import { PRESETS } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { causesOf } from "./model/causes.js";
 import { reasons } from "./model/text.js";
@@ -32,7 +32,7 @@ export class ObserverLab extends Lab {
 
   constructor(widget, place, model) {
     super(widget, model, {
-      ...{ words: WORDS, presets: PRESETS, settingsOf },
+      ...{ words: WORDS, presets: PRESETS },
       reasons: (shown) => [...reasons(shown, model), ...this.unbound(shown.settings)],
       ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, readingAt, summaryOf, pythonOf, causesOf },
     });

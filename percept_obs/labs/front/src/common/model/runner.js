@@ -4,7 +4,7 @@
 import { columnOf } from "./derived.js";
 import { settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
-import { arriving, EACH, held, lastSamples } from "./tables.js";
+import { arriving, EACH, held, instants, lastSamples, spansOf } from "./tables.js";
 
 /** Base class of the engines that run observers. */
 export class Runner {
@@ -22,6 +22,12 @@ export class Runner {
    */
   relativeError(_result, _estimate) {
     throw new Error("a lab says what its verdicts judge");
+  }
+
+  /** The signal without noise at the instants of a grid's steps, a column each. */
+  exact(settings, grid, functions) {
+    const make = (read) => /** @type {any} */ (this).camera.exact(read, functions, instants(grid));
+    return this.memory.once("exact", settings, make, grid);
   }
 
   /** Inputs of all observers of a run: steps, held outputs, samples as they arrive, known numbers. */
@@ -83,11 +89,11 @@ export class Runner {
       estimate,
       deviation: functions.variances ? readDeviations(functions, kernel, states, inputs, width) : null,
       resets: timesOf(resets, grid),
-      gaps: gapsOf(lacking, time),
+      gaps: spansOf(time.length, (k) => lacking[k]).map(({ first, last, key }) => [time[first], time[last], key]),
       gapReasons: kernel.gapReasons,
       divergedAt: diverged < 0 ? null : grid[diverged],
       error,
-      settling: error && settlingTime(time, error, result.tolerance),
+      settling: error && settlingTime(time, (k) => error[k], result.tolerance),
     };
   }
 }
@@ -145,17 +151,6 @@ function readEstimates(functions, kernel, states, inputs, gains, { width, time, 
   }
 }
 
-/** The times of every gap's first and last sample, and its number, where a hidden coordinate has no estimate. */
-function gapsOf(lacking, time) {
-  const found = [];
-  for (let k = 0; k < time.length; k++) {
-    if (!lacking[k]) continue;
-    if (lacking[k] === lacking[k - 1]) found.at(-1)[1] = time[k];
-    else found.push([time[k], time[k], lacking[k]]);
-  }
-  return found;
-}
-
 /** The standard deviations that are claimed at the samples. */
 function readDeviations(functions, kernel, states, { index }, width) {
   const deviation = new Float64Array(index.length * width);
@@ -170,9 +165,5 @@ function readDeviations(functions, kernel, states, { index }, width) {
 }
 
 function timesOf(resets, grid) {
-  let count = 0;
-  for (let k = 0; k < resets.length; k++) if (resets[k]) count++;
-  const found = new Float64Array(count);
-  for (let k = 0, at = 0; at < count; k++) if (resets[k]) found[at++] = grid[k];
-  return found;
+  return grid.filter((_, k) => resets[k]);
 }

@@ -160,6 +160,18 @@ export function knownAt(motion, shape, places) {
   return { rows, width, varying: true };
 }
 
+/** The spans in which a key of each sample stays the same and is not 0: their first and last sample, and the key. */
+export function spansOf(count, keyAt) {
+  const spans = /** @type {{first: number, last: number, key: any}[]} */ ([]);
+  for (let k = 0, before = 0; k < count; k++) {
+    const key = keyAt(k);
+    if (key && key === before) spans[spans.length - 1].last = k;
+    else if (key) spans.push({ first: k, last: k, key });
+    before = key;
+  }
+  return spans;
+}
+
 /** By how many seconds two times may differ and still be the same one, as slack_of() in Python. */
 export function slackOf(time) {
   const gaps = Float64Array.from({ length: time.length - 1 }, (_, k) => time[k + 1] - time[k]).sort();

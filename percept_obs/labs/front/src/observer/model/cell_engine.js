@@ -1,6 +1,6 @@
 // The engine of a map's cells: the same runs, of which nothing is kept but when they settle and how they end.
 
-import { errorOfOne, settlingFrom } from "../../common/model/errors.js";
+import { errorOfOne, settlingTime } from "../../common/model/errors.js";
 import { argumentsAt, startState } from "../../common/model/runner.js";
 import { Engine } from "./engine.js";
 
@@ -50,7 +50,7 @@ export class CellEngine extends Engine {
       functions.estimate(x, out);
       return errorOfOne(truth[(k + 1) * width - 1], out[width - 1], out, 0, width);
     };
-    const settling = settlingFrom(time, errorAt, tolerance);
+    const settling = settlingTime(time, errorAt, tolerance);
     return { divergedAt: null, settling, error: [errorAt(time.length - 1)] };
   }
 }

@@ -5,11 +5,11 @@ import { columnOf } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
-import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { known, knownAt, lastSamples, spansOf, stepGrid, withSteps } from "../../common/model/tables.js";
 import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
-import { spansInside, windowed } from "./measures.js";
+import { windowed } from "./measures.js";
 import { divides, sharesOf, withoutNoise } from "./shares.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
@@ -47,7 +47,11 @@ export class Engine extends Runner {
     };
     if (result.problem) return { ...result, whole: true };
     const { truth, time, circle } = result;
-    if (truth && circle) result.inside = spansInside(time, truth, 3, circle);
+    if (truth && circle) {
+      const [y1, y2, radius] = circle;
+      const isInside = (k) => (truth[3 * k] - y1) ** 2 + (truth[3 * k + 1] - y2) ** 2 < radius * radius;
+      result.inside = spansOf(time.length, isInside).map(({ first, last }) => [time[first], time[last]]);
+    }
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
     const kernelOf = (name) => form.observers[name][switchOf(settings, name)];
@@ -103,10 +107,6 @@ export class Engine extends Runner {
   relativeError({ truth, width }, estimate) {
     const [right, found] = [truth, estimate].map((rows) => columnOf(rows, width, width - 1));
     return distanceError(right, found, estimate, width);
-  }
-
-  exact(settings, grid, functions) {
-    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
   }
 
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {

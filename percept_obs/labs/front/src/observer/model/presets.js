@@ -1,7 +1,9 @@
 // Questions worth asking: answers to choose from, then what happens, and perhaps a second act. `right` counts from 0.
 
-import { presetsOf, settingsAfter } from "../../common/model/settings.js";
+import { presetsOf } from "../../common/model/settings.js";
 
+/** A of (35), the standard motion, whose b is 0.5, 0.25, 0.3. */
+const A_OF_35 = [[-0.2, 0.4, -0.6], [0.1, -0.2, 0.3], [0.3, -0.4, 0.4]];
 const NOISE = { kind: "uniform", size: 0.01 };
 
 export const PRESETS = presetsOf([
@@ -61,16 +63,11 @@ export const PRESETS = presetsOf([
     answers: ["Faster, but less exact", "Yes, faster and as exact", "Neither faster nor more exact"],
     right: 0,
     sketch: true,
+    changes: { noise: NOISE, duration: 8, window: 2, pictures: ["innovation", "step", "error"] },
     acts: [
       {
-        changes: {
-          noise: NOISE,
-          gains: { identifier_based: { gain: 60 } },
-          duration: 8,
-          window: 2,
-          pictures: ["innovation", "step", "error"],
-        },
-        beside: { gain: 10 },
+        changes: { gains: { identifier_based: { gain: 60 } } },
+        beside: { gains: { identifier_based: { gain: 10 } } },
         answer:
           "It is faster, and it follows the noise: the error ends about ten times higher. The kept run has gain 10. " +
           "The innovation is about as large in both runs, for most of it is noise. But each step of the estimate is " +
@@ -122,8 +119,7 @@ export const PRESETS = presetsOf([
     right: 2,
     acts: [
       {
-        changes: { pictures: ["outputs", "distance", "error"] },
-        believe: 1.5,
+        changes: { pictures: ["outputs", "distance", "error"], believed: { A: A_OF_35, b: [0.75, 0.375, 0.45] } },
         answer:
           "No. A point that is 1.5 times as far and moves 1.5 times as fast looks exactly the same. The outputs fit, " +
           "and every distance comes out 1.5 times too large: only b tells the observer how long a metre is.",
@@ -131,12 +127,3 @@ export const PRESETS = presetsOf([
     ],
   },
 ]);
-
-/** The settings of an act, whose observers may believe a motion so many times as fast. */
-export function settingsOf(act, standard) {
-  const changed = settingsAfter(act, standard);
-  if (act.beside)
-    changed.kept = settingsAfter({ changes: { ...act.changes, gains: { identifier_based: act.beside } } }, standard);
-  if (act.believe) changed.believed = { A: changed.A, b: changed.b.map((value) => value * act.believe) };
-  return changed;
-}

@@ -6,7 +6,7 @@ import { differences } from "../../common/model/tables.js";
 import { Camera } from "./camera.js";
 import { inversesOf } from "./flow.js";
 import { windowsOf } from "./gramian.js";
-import { decayRate, largestOf, norms, pointErrors, spansOf } from "./measures.js";
+import { absencesOf, decayRate, largestOf, norms, pointErrors } from "./measures.js";
 import { Observer } from "./observer.js";
 
 export class PointsEngine {
@@ -33,10 +33,10 @@ export class PointsEngine {
       ...{ settings, points, n, names: layout.names, ...recording, estimate, divergedAt, size },
       estimated: this.camera.project(scene, estimate),
       errors,
-      ...{ relative, worst, settling: settlingTime(time, worst, this.model.tolerance) },
+      ...{ relative, worst, settling: settlingTime(time, (k) => worst[k], this.model.tolerance) },
       tolerance: this.model.tolerance,
       fit: decayRate(time, size),
-      absences: Array.from({ length: points }, (_, k) => spansOf(time, outputs, points, k)),
+      absences: Array.from({ length: points }, (_, k) => absencesOf(time, outputs, points, k)),
       gramian: null,
       whole: false,
     };

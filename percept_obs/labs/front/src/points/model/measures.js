@@ -1,5 +1,7 @@
 // Measures of a run of many points: size and decay of the error, times when points were not seen.
 
+import { spansOf } from "../../common/model/tables.js";
+
 export function norms(truth, estimate, n) {
   const found = new Float64Array(truth.length / n);
   for (let k = 0; k < found.length; k++) {
@@ -53,19 +55,8 @@ export function decayRate(time, size) {
 }
 
 /** Spans of samples from begin to end in which a point is not seen. */
-export function spansOf(time, outputs, points, point) {
-  /** @type {{first: number, last: number}[]} */
-  const spans = [];
-  for (let k = 0; k < time.length; k++) {
-    if (!Number.isNaN(outputs[2 * (k * points + point)])) continue;
-    const open = spans.at(-1);
-    if (open && open.last === k - 1) open.last = k;
-    else spans.push({ first: k, last: k });
-  }
-  return spans.map(({ first, last }) => ({
-    first,
-    last,
-    begin: time[first],
-    end: time[Math.min(last + 1, time.length - 1)],
-  }));
+export function absencesOf(time, outputs, points, point) {
+  const spans = spansOf(time.length, (k) => Number.isNaN(outputs[2 * (k * points + point)]));
+  const endOf = (last) => time[Math.min(last + 1, time.length - 1)];
+  return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: endOf(last) }));
 }

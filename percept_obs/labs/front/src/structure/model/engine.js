@@ -149,10 +149,6 @@ export class StructureEngine extends Runner {
     return this.memory.once("grid", settings, make, settings.period, time.length);
   }
 
-  exact(settings, grid, functions) {
-    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
-  }
-
   /** Known signals of the observers: rows of w, M, m. */
   known({ settings, hidden }, { grid }, functions) {
     const count = hidden.length;
