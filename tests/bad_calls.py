@@ -22,6 +22,7 @@ from camera_paths import write_stereo_mat
 
 import percept_obs as po
 from percept_obs import observers, points, structure
+from percept_obs.compile.equations import Equations
 from percept_obs.observability import (
     empirical_gramian,
     error_gramian,
@@ -110,6 +111,7 @@ def calls():
         (observer.initial_state, {"outputs": {"y1": 0.0, "y2": 0.0}, "start": {"y3": 1.0}}),
         (observer.lambdify, {"motion": motion, "measured": lambda t: (0.0, 0.0)}),
         (po.with_point, {"observer": observer}),
+        (Equations, {"state": (sp.Symbol("x"),), "flow": (1 - sp.Symbol("x"),)}),
         (ultimate_bound, {"observer": ismo, "disturbance": 0.5, "time": 1.0}),
         (tolerable_amplification, {"observer": ismo, "noise": 0.1, "hidden": 1.0, "time": 1.0, "margin": 10.0}),
         (po.Camera, {"period": 0.1, "noise": po.Uniform(0.1), "dropout": 0.1, "reach": 3.0}),

@@ -72,14 +72,6 @@ def shares(count, slips, among):
 
 
 @pytest.mark.slow
-def test_a_slip_is_refused_and_found():
-    told, _ = shares(12, 1, few_cases())
-    assert told["refused"] == told["line"] == 1
-    assert told["term"] >= 0.9
-    assert told["slip"] >= 0.8
-
-
-@pytest.mark.slow
 def test_slips_in_all_that_is_derived_are_refused_found_and_named():
     told, seconds = shares(SLIPS, 1, cases())
     assert told["refused"] == told["line"] == 1

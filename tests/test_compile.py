@@ -292,24 +292,6 @@ def test_the_page_steps_by_the_same_method_and_draws_by_the_same_marks(file, pri
     assert there == printed(), "run python -m percept_obs.labs.printing and build the page"
 
 
-def test_the_classical_method_is_of_fourth_order():
-    """Butcher's conditions: eight sums over trees."""
-    A, b, _ = integrator.numbers()
-    c = A.sum(axis=1)
-    sums = {
-        1: [b.sum()],
-        2: [b @ c],
-        3: [b @ c**2],
-        6: [b @ A @ c],
-        4: [b @ c**3],
-        8: [b @ (c * (A @ c))],
-        12: [b @ A @ c**2],
-        24: [b @ A @ A @ c],
-    }
-    for parts, found in sums.items():
-        np.testing.assert_allclose(found, 1 / parts, rtol=1e-14)
-
-
 def test_an_unknown_language_is_refused():
     with pytest.raises(ValueError, match="neither 'python' nor 'numba'"):
         solve(Equations((x,), (x,)), [1.0], steps(1), (), "fortran")

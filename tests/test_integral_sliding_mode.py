@@ -17,8 +17,6 @@ from percept_obs.observers.integral_sliding_mode import (
     b,
     c,
     gamma,
-    k1,
-    k2,
     tolerable_amplification,
     ultimate_bound,
 )
@@ -52,35 +50,11 @@ def surfaces(observer):
     return e, se, v, g_hat
 
 
-def along(observer, expression, g):
-    """Time derivative of an expression in the state and the outputs, which move with the unknown g."""
-    eq = observer.equations
-    outputs = expression.jacobian(eq.measured) * (observer.form.phi + g)
-    return outputs + expression.jacobian(eq.state) * sp.Matrix(eq.flow)
-
-
 def zero(matrix, switches=()):
     """Whether a matrix is zero, at numbers drawn at random; sgn s is replaced by the symbols given for it."""
     symbols = sorted(matrix.free_symbols, key=str)
     values = vectorised(symbols, list(matrix))(*np.random.default_rng(1).uniform(-0.5, 0.5, (len(symbols), 50)))
     return np.abs(values).max() < 1e-9
-
-
-def test_the_surfaces_move_as_the_proof_says():
-    """Chwa 2019, (15) and (18)."""
-    observer = ismo(FORM, "sign")
-    _, se, v, g_hat = surfaces(observer)
-    g = sp.Matrix(sp.symbols("g1:4", real=True))
-    slope = se.applyfunc(lambda entry: sp.tanh(c * entry))
-    s = v + gamma * slope
-    assert zero(along(observer, se, g) - (g - k1 * se + s - gamma * slope))
-    sech2 = slope.applyfunc(lambda entry: 1 - entry**2)
-    printed = [
-        gamma * h * c * gi - gamma**2 * c * h * sp.sign(si) - k2 * sp.sign(si) - sei
-        for h, gi, si, sei in zip(sech2, g, s, se, strict=True)
-    ]
-    assert zero(along(observer, s, g) - sp.Matrix(printed))
-    assert zero(g_hat - (k1 * se - v + gamma * surfaces(observer)[0].applyfunc(lambda entry: sp.tanh(c * entry))))
 
 
 def test_the_slope_grows_with_time():

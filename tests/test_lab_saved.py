@@ -109,14 +109,6 @@ def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
     page.close()
 
 
-def test_its_curves_are_those_of_python(from_disk):
-    page, _ = from_disk(
-        observer_lab(outputs=["y1"], observers=["identifier_based", "de_luca"], noise={"kind": "uniform", "size": 0.01})
-    )
-    assert_equals_python(state(page))
-    page.close()
-
-
 @pytest.mark.parametrize("place", ["folder", "none/lab.html"])
 def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
     (tmp_path / "folder").mkdir()

@@ -68,22 +68,6 @@ def test_settings_that_are_none_are_refused(lab, whole):
     assert lab.settings == before
 
 
-def test_the_page_changes_settings_and_nothing_else(lab):
-    before, model = lab.settings, lab.model
-    for value in HOSTILE:
-        for wrong in (value, {**before, "period": value}, {**before, "kept": value}):
-            message = {"settings": wrong, "summary": {}, "model": value, "texts": value, "parts": ["/etc/passwd"]}
-            refusal = refusal_of(lambda message=message: lab.set_state(message))
-            assert refusal is None or str(refusal) in lab.error
-            assert lab.check(lab.settings) == lab.settings
-            lab.settings = before
-    assert lab.model is model
-    assert lab.texts.startswith(b"\x1f\x8b")
-    lab.set_state({"settings": {**before, "seed": 1}, "summary": {"serial": 9}})
-    assert (lab.error, lab.settings["seed"], lab.analysis["serial"]) == ("", 1, 9)
-    lab.settings = before
-
-
 def test_arrays_and_numbers_of_numpy_are_read_as_plain_data():
     lab = observer_lab(A=np.eye(3), b=(np.float32(0.5), 0, 1), seed=np.int64(3))
     assert lab.settings["A"] == np.eye(3).tolist()

@@ -11,17 +11,6 @@ from percept_obs.points import constant, lyapunov, riccati, scheduled
 from percept_obs.points.scenarios import moving_body
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("points", "states"), [(1, 3), (1, 4), (2, 3)])
-def test_the_error_dynamics_are_the_printed_ones(points, states):
-    """rho' = (A - P^-1 C^T B^T B C) rho, Inaba et al. 2005, (12), for symbols in every place."""
-    observer = luenberger(generic(points, states))
-    form, rho = observer.form, sp.Matrix(observer.error)
-    seen = form.B * form.stacked
-    printed = (form.motion.A - observer.inverse * seen.T * seen) * rho
-    assert (observer.error_dynamics() - printed).expand() == sp.zeros(states, 1)
-
-
 @pytest.mark.parametrize("points", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_the_gain_has_no_division(points):
     observer = luenberger(generic(points, 3))

@@ -87,22 +87,6 @@ def test_an_error_without_dynamics_of_its_own():
         integral_sliding_mode(BOTH).error_dynamics()
 
 
-def test_the_error_dynamics_of_the_identifier_based_observer():
-    G, A, P = sp.symbols("G A P", real=True)
-    e1, e2, e3 = e = sp.symbols("e1:4", real=True)
-    derived = ibo(BOTH).error_dynamics().subs(sigma2, 0)
-    y3 = BOTH.coordinates[2]
-    g = BOTH.g[0]
-    expected = sp.Matrix(
-        [
-            *(-G * A * sp.Matrix([e1, e2]) + BOTH.w.T * e3),
-            *(G**2 * P * BOTH.w * sp.Matrix([e1, e2]) + sp.Matrix([g - g.subs(y3, y3 - e3)])),
-        ]
-    )
-    assert (derived - expected).expand() == sp.zeros(3, 1)
-    assert ibo(BOTH).error == e
-
-
 @pytest.mark.parametrize("make", [ibo, ekf, de_luca, spica], ids=lambda make: make.__name__)
 def test_lambdify_gives_the_flow_to_scipy(make):
     form = ONE
@@ -266,47 +250,11 @@ def test_a_start_that_needs_parameters_says_so():
         range_identification(BOTH).initial_state({"y1": 0.1, "y2": 0.2}, {})
 
 
-@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
-def test_the_identifier_based_flow_is_de_lucas_for_any_outputs(form):
-    G, A, P, H, Lam = sp.symbols("G A P H Lambda", real=True)
-    mine = sp.Matrix(de_luca(form).equations.flow).subs({H: G * A, Lam: -(G**2) * P})
-    assert (mine - sp.Matrix(ibo(form).equations.flow).subs(sigma2, 0)).expand() == sp.zeros(3, 1)
-
-
-def test_de_lucas_flow_on_the_pinhole():
-    """Written out by hand, since the three depth observers share the code that derives theirs."""
-    (y1, y2, _), (h1, h2, h3) = BOTH.coordinates, hats(BOTH.coordinates)
-    a11, a12, a13, a21, a22, a23, a31, a32, a33, b1, b2, b3 = BOTH.parameters
-    H, Lam = sp.symbols("H Lambda", real=True)
-    expected = sp.Matrix(
-        [
-            H * (y1 - h1) + (b1 - b3 * y1) * h3 + a13 + (a11 - a33) * y1 + a12 * y2 - a31 * y1**2 - a32 * y1 * y2,
-            H * (y2 - h2) + (b2 - b3 * y2) * h3 + a23 + a21 * y1 + (a22 - a33) * y2 - a31 * y1 * y2 - a32 * y2**2,
-            Lam * ((b1 - b3 * y1) * (y1 - h1) + (b2 - b3 * y2) * (y2 - h2))
-            - (a31 * y1 + a32 * y2 + a33) * h3
-            - b3 * h3**2,
-        ]
-    )
-    assert (expected - sp.Matrix(de_luca(BOTH).equations.flow)).expand() == sp.zeros(3, 1)
-
-
 def test_spica_is_de_lucas_with_critical_damping():
     H, Lam = sp.symbols("H Lambda", real=True)
     damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in BOTH.w))
     difference = sp.Matrix(spica(BOTH).equations.flow) - sp.Matrix(de_luca(BOTH).equations.flow).subs(H, damping)
     assert difference.expand() == sp.zeros(3, 1)
-
-
-def test_the_error_dynamics_of_immersion_and_invariance():
-    """e' = -(lambda |w|^2 + c + b3 (y3 + y3hat)) e, with c = a31 y1 + a32 y2 + a33."""
-    y1, y2, y3 = BOTH.coordinates
-    a31, a32, a33, b3, lam = sp.symbols("a31 a32 a33 b3 lambda", real=True)
-    e = immersion_and_invariance(BOTH).error[2]
-    squared = sum(entry**2 for entry in BOTH.w)
-    printed = -(lam * squared + a31 * y1 + a32 * y2 + a33 + b3 * (y3 + (y3 - e))) * e
-    derived = immersion_and_invariance(BOTH).error_dynamics()
-    assert list(derived[:2]) == [0, 0]
-    assert sp.expand(derived[2] - printed) == 0
 
 
 def test_what_an_observer_cannot_do_is_refused():

@@ -35,12 +35,6 @@ def generic(points, states, surface=None):
     return PointsForm(linear(states=states), C, surface or pinhole())
 
 
-def test_the_pinholes_block_is_the_printed_one():
-    block = point_block(pinhole())
-    assert sp.ImmutableMatrix([[1, 0, -y1], [0, 1, -y2]]) == block.B
-    assert block.eigenvalues() == {0: 1, 1: 1, 1 + y1**2 + y2**2: 1}
-
-
 @pytest.mark.parametrize("points", [1, 2, 3])
 def test_the_innovation_is_linear_in_the_error(points):
     """y - H(C xhat) = E(xhat) B(y) C (x - xhat) with y = H(C x), for symbols in every place."""

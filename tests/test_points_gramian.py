@@ -1,6 +1,5 @@
 """Condition (14) and the decay of the error are as they were verified, and what is not seen is named."""
 
-import warnings
 from functools import lru_cache
 
 import numpy as np
@@ -172,9 +171,3 @@ def test_the_bound_needs_what_the_proof_needs():
         decay_bound(recording(1), luenberger(recording(1).view, lambda t: 1 + t), 4)
     with pytest.raises(ValueError, match="2 points, the recording 1"):
         gramian(recording(1), 4, moving_body(2).form)
-
-
-def test_no_warning_for_what_is_seen():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        moving_body(2)

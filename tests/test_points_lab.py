@@ -169,26 +169,6 @@ def test_what_is_guaranteed_lies_below_what_is_measured(lab):
     assert 0 < lab.analysis["bound"] < lab.run().decay_rate(10, 30)
 
 
-ONE_POINT = {"points": [[0.0, 1.2, 2.5]], "duration": 60.0, "start": "error"}
-TWO_POINTS = {**ONE_POINT, "points": [[0.0, 1.2, 2.5], [0.5, 0.9, 2.9]]}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("settings", "rate", "least"),
-    [
-        (ONE_POINT, 0.179, 0.749),
-        (TWO_POINTS, 0.085, 0.277),
-        ({**TWO_POINTS, "size": 10.0}, 0.029, 0.277),
-    ],
-)
-def test_the_lab_is_the_set_up_of_the_verified_figures(lab, settings, rate, least):
-    """The rates of one point and of two, as they were verified for the moving body."""
-    run = run_of(lab.check({**settings, "hold": "exact"}))
-    assert run.decay_rate(20, 60) == pytest.approx(rate, rel=0.02)
-    assert gramian(run.recording, 8).least == pytest.approx(least, rel=0.01)
-
-
 def test_the_lab_opens_with_what_a_camera_does_so_that_noise_is_felt():
     quiet = points_lab(duration=1.0, period=0.1, points=[[0.0, 1.2, 2.5]], window=0.5)
     noisy = points_lab(**{**quiet.settings, "noise": {"kind": "uniform", "size": 0.05}})

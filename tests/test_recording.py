@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from examples import NOISE, NOISY, SURFACES
+from examples import NOISE, NOISY
 from refusals import refuses
 from scipy.linalg import expm
 
@@ -41,22 +41,6 @@ def test_the_truth_is_the_matrix_exponential():
     recording = record(scenario, 80, Camera(period=0.5))
     exact = [(expm(together * t) @ [*scenario.position, 1])[:3] for t in recording.time]
     np.testing.assert_allclose(recording.points, exact, rtol=1e-9)
-
-
-def test_a_function_of_time_moves_the_point():
-    turning = rigid(lambda t: [0, 0, 0.3], lambda t: [np.cos(t), 0, 0], [0, 0, 0])
-    still_camera = rigid([0, 0, 0.3], [0, 0, 0], [0, 0, 0])
-    scenarios_ = [Scenario("s", m, (1, 0, 2), 2, pinhole()) for m in (turning, still_camera)]
-    moved, rotated = (s.points([0.0, 2.0])[-1] for s in scenarios_)
-    np.testing.assert_allclose(rotated, [np.cos(0.6), np.sin(0.6), 2], atol=1e-9)
-    assert np.linalg.norm(moved - rotated) > 0.1
-
-
-@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
-def test_every_surface_sees_the_same_point(surface):
-    recording = record(scenarios.ma2005_eq35(surface), 2)
-    np.testing.assert_allclose(recording.points, record(scenarios.ma2005_eq35(), 2).points, rtol=1e-9)
-    assert recording.names == tuple(str(s) for s in surface.image_coordinates)
 
 
 def test_the_exact_signal_continues_the_samples():

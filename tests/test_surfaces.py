@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refuses
 
-from percept_obs import BehindCamera, ImagingSurface, chained, ellipsoid, pinhole, plane, sphere, unified
+from percept_obs import ImagingSurface, chained, ellipsoid, pinhole, plane, sphere, unified
 from percept_obs.system.surfaces.base import X, Y, Z
 
 coordinate = st.floats(-3, 3)
@@ -29,18 +29,6 @@ def test_the_image_stays_and_the_distance_scales(surface, point, scale):
     near, far = surface.project(point), surface.project(np.multiply(scale, point))
     np.testing.assert_allclose(far[:-1], near[:-1], rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(far[-1] * scale, near[-1], rtol=1e-9)
-
-
-def test_the_third_output_of_a_plane_depends_on_the_others():
-    normal = np.array([0.1, -0.2, 0.9])
-    seen = plane(normal, outputs=3).project([[1, 2, 3], [0.3, -1, 2]])
-    np.testing.assert_allclose(seen[:, :3] @ normal, 1)
-
-
-@pytest.mark.parametrize("behind", [(0, 0, -1), (1, 1, 0)])
-def test_a_point_behind_the_camera_is_refused(behind):
-    with pytest.raises(BehindCamera, match="positive distance"):
-        pinhole().project(behind)
 
 
 def test_an_inverse_distance_that_is_not_positive_has_no_finite_point():
