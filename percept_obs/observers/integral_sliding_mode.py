@@ -12,11 +12,11 @@ from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.inversion import (
     AMPLIFICATION_GAIN,
     Unobservable,
+    c_max,
     elapsed,
     first_innovation,
     inverted,
     needs_more_outputs,
-    start_left_over,
 )
 from percept_obs.observers.parts import hats, innovation
 from percept_obs.observers.switching import Switch, switch_named, switch_option
@@ -252,14 +252,19 @@ def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch)
 
 
 def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobservable:
-    """Unobservable part at the start, from bounds on its rest in ghat - g = gamma tanh(c e) - se'.
+    """Condition under which the start may still make up half of the hidden coordinates.
 
-    On the surface e' = -gamma tanh(c e) + se', so that sinh(a |e|) shrinks at least like exp(-gamma a t); and se'
-    begins with the rate g, of which ghat is the estimate, and shrinks at least like exp(-(k1 + gamma a) t).
+    Its rest is bounded in ghat - g = gamma tanh(c e) - se'.  On the surface e' = -gamma tanh(c e) + se', so that
+    sinh(a |e|) shrinks at least like exp(-gamma a t); and se' begins with the rate g, of which ghat is the estimate,
+    and shrinks at least like exp(-(k1 + gamma a) t).  The bound and ghat are inverted alike, so that the same rest does
+    not matter where the hidden coordinates follow easily.  Shrunk below 1 / c_max, no inversion brings it back.
     """
     slower, faster = (sp.exp(-rate * elapsed) for rate in (gamma * a, k1 + gamma * a))
     begun = first_innovation(form).applyfunc(lambda entry: gamma * sp.sinh(a * sp.Abs(entry)))
-    return start_left_over(form, g_hat, begun * slower + g_hat.applyfunc(sp.Abs) * faster, slower)
+    left, (numerator, _) = begun * slower + g_hat.applyfunc(sp.Abs) * faster, form.cramer
+    squared = [sum(entry**2 for entry in matrix) for matrix in (numerator, left, numerator * g_hat)]
+    half = sp.And(sp.Ge(4 * squared[0] * squared[1], squared[2]), sp.Ge(c_max * slower, 1))
+    return Unobservable(half, "what is left of the start may be half of what is found")
 
 
 def _fastest(switch: str) -> FastestRate | None:

@@ -50,18 +50,3 @@ def inverted(form: CanonicalForm, rate: sp.ImmutableMatrix) -> tuple[sp.Immutabl
     too_large = sp.Ge(sum(entry**2 for entry in numerator), (c_max * determinant) ** 2)
     reason = f"{', '.join(form.hidden)} nearly drop out of what is seen"
     return numerator * rate / determinant, Unobservable(too_large, reason)
-
-
-def start_left_over(
-    form: CanonicalForm, rate: sp.ImmutableMatrix, left: sp.ImmutableMatrix, shrunk: sp.Expr
-) -> Unobservable:
-    """Condition under which the start may still make up half of the hidden coordinates.
-
-    Both the estimate of w^T x2 and bounds on the rest of the start in it, shapes (n1, 1), are inverted, so that the
-    same rest does not matter where the hidden coordinates follow easily, and hides them where they hardly do.  It has
-    shrunk by a factor; below 1 / c_max no inversion brings it back.
-    """
-    numerator, _ = form.cramer
-    squared = [sum(entry**2 for entry in matrix) for matrix in (numerator, left, numerator * rate)]
-    half = sp.And(sp.Ge(4 * squared[0] * squared[1], squared[2]), sp.Ge(c_max * shrunk, 1))
-    return Unobservable(half, "what is left of the start may be half of what is found")

@@ -28,16 +28,12 @@ NOISE_GAIN = Gain(
 
 
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols of the estimates: yhat1 for y1.
+    """Return symbols of the estimates: yhat1 for y1.
 
     Parameters
     ----------
     symbols : sequence of symbols
         Such as y1; the hat goes before the number at the end.
-
-    Returns
-    -------
-    tuple of symbols
 
     See Also
     --------
@@ -85,7 +81,7 @@ def output_injection(
     hidden_gain: sp.Expr,
     bias: sp.ImmutableMatrix | None = None,
 ) -> Expressions:
-    """Flow of a copy of the system with feedback of a correction.
+    """Return the flow of a copy of the system with feedback of a correction.
 
     With the correction c, the gains L1, L2 and the bias b of w c::
 
@@ -100,10 +96,6 @@ def output_injection(
     measured_gain, hidden_gain : expressions
     bias : matrix of shape (n2, 1), optional
         Such as `noise_bias`; none when left out.
-
-    Returns
-    -------
-    tuple of n1 + n2 expressions
 
     See Also
     --------
@@ -125,15 +117,11 @@ def output_injection(
 
 
 def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
-    """Measured outputs minus their estimates, x1 - x1hat.
+    """Return measured outputs minus their estimates, x1 - x1hat, shape (n1, 1).
 
     Parameters
     ----------
     form : CanonicalForm
-
-    Returns
-    -------
-    matrix of shape (n1, 1)
 
     See Also
     --------
@@ -182,7 +170,7 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
 
 @checked
 def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Bias of ``w(x1) correction(x1)`` by white noise on the outputs.
+    """Return the bias of ``w(x1) correction(x1)``, shape (n2, 1), by white noise on the outputs.
 
     The same sample n enters both factors: with the variance sigma^2 in each output,
     E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
@@ -194,10 +182,6 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     form : CanonicalForm
     correction : matrix of shape (n1, 1)
         Factor of w in the observer, in terms of the measured outputs.
-
-    Returns
-    -------
-    matrix of shape (n2, 1)
 
     See Also
     --------

@@ -127,13 +127,13 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     form = form or seen
     if form.points != seen.points:
         raise ValueError(f"the form has {form.points} points, the recording {seen.points}")
-    images = true_images(recording)
+    images = _true_images(recording)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
 @checked
 def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """Information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
+    """Return the information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
 
     The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
     with epsilon, this one is at least epsilon / (1 + sup |y|^2) (Proposition 3.3); the converse fails.
@@ -142,10 +142,6 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     ----------
     recording, window, form
         See `gramian`.  Points count while they are seen.
-
-    Returns
-    -------
-    Gramian
 
     Raises
     ------
@@ -225,7 +221,7 @@ class DecayBound:
 
 @checked
 def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
-    """Bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
+    """Return a bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
     With z = B C rho, (15) gives V(t) - V(t + T) >= 2 int |z|^2.  By (22), the error without corrections would have
     shown B C Phi rho(t) = z + K z, where K is the operator with the kernel B C Phi(s, tau) P^-1 C^T B^T.  So
@@ -241,10 +237,6 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         With a given P, that meets (15).
     window : float
         Seconds.
-
-    Returns
-    -------
-    DecayBound
 
     Raises
     ------
@@ -271,7 +263,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window, holds_samples=True)
-    time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
+    time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     if P.computed or not conditions(observer, time[every], images[every], _over(P, time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
@@ -308,31 +300,8 @@ def _over(P: LyapunovMatrix, times: Array) -> Array:
     return np.broadcast_to(values, (len(times), *values.shape[1:]))
 
 
-def true_images(recording: Recording) -> Array:
-    """Images without noise where the truth is known, else the outputs.
-
-    Parameters
-    ----------
-    recording : Recording
-        Of K samples of p points, with m image coordinates each.
-
-    Returns
-    -------
-    array of shape (K, p, m)
-        NaN where a point is not seen.
-
-    See Also
-    --------
-    gramian : Uses them.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, Gaussian, record
-    >>> from percept_obs.points.gramian import true_images
-    >>> from percept_obs.points.scenarios import along_the_line_of_sight
-    >>> true_images(record(along_the_line_of_sight(), 1, Camera(0.5, Gaussian(0.01)))).round(3).tolist()
-    [[[0.2, 0.1]], [[0.2, 0.1]], [[0.2, 0.1]]]
-    """
+def _true_images(recording: Recording) -> Array:
+    """Images without noise where the truth is known, else the outputs; NaN where a point is not seen."""
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)

@@ -136,7 +136,7 @@ class LuenbergerObserver:
 def luenberger(
     form: PointsForm, P: ArrayLike | Callable[[float], ArrayLike] | LyapunovMatrix = 1.0
 ) -> LuenbergerObserver:
-    """Luenberger-type observer of a linear state seen through many points.
+    """Return the Luenberger-type observer of a linear state seen through many points.
 
     ::
 
@@ -151,10 +151,6 @@ def luenberger(
     P : number, array of shape (n, n), function of time, or LyapunovMatrix
         A number stands for its multiple of the identity.  Others come from `constant`, `scheduled`, `lyapunov` and
         `riccati`.  A smaller P corrects more.
-
-    Returns
-    -------
-    LuenbergerObserver
 
     Raises
     ------

@@ -121,7 +121,7 @@ OFFSET = (0.5, -0.3, 0.4)
 
 @checked
 def moving_body(points: int = 1) -> PointsScenario:
-    """Scenario of a rigid body that stays in the view of a turning camera, for 60 s.
+    """Return a scenario of a rigid body that stays in the view of a turning camera, for 60 s.
 
     The camera moves as in `Manoeuvre`, whose path the first point follows.  The second one is at `OFFSET` from it;
     further ones are drawn at random, always the same, from a cube of 1 m around it.
@@ -130,10 +130,6 @@ def moving_body(points: int = 1) -> PointsScenario:
     ----------
     points : int
         Points of the body, from 1 on.
-
-    Returns
-    -------
-    PointsScenario
 
     See Also
     --------
@@ -155,13 +151,9 @@ def moving_body(points: int = 1) -> PointsScenario:
 
 @checked
 def lost_offset() -> PointsScenario:
-    """Scenario of two points of which the camera sees the first one only: the second one's offset is lost.
+    """Return a scenario of two points of which the camera sees the first one: the second one's offset is lost.
 
     It warns of an `UnseenDirection`.
-
-    Returns
-    -------
-    PointsScenario
 
     See Also
     --------

@@ -18,22 +18,13 @@ from percept_obs.validation import checked, limit
 Seed = np.random.Generator | int
 
 
-class _Noise(ABC):
+class _Noise:
     """Independent noise of one spread, which is its bound or its standard deviation."""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
-
-    @property
-    @abstractmethod
-    def variance(self) -> float:
-        """Variance of a sample."""
-
-    @abstractmethod
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Return independent samples of a shape."""
 
 
 @checked

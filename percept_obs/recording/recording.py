@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags, Indices
+from percept_obs.compile import Array, Flags
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import warn_if_implausible
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
@@ -199,16 +199,6 @@ class Recording:
     def intervals(self) -> Array:
         """Seconds from each sample to the next, shape (K - 1,)."""
         return readonly(np.diff(self.time))
-
-    @cached_property
-    def places(self) -> Indices:
-        """Indices 0 to K - 1 of the samples in a grid in which each ends a step."""
-        return np.arange(len(self.time))
-
-    @cached_property
-    def longest_interval(self) -> float:
-        """The longest of `intervals`."""
-        return float(self.intervals.max())
 
     @cached_property
     def last_outputs(self) -> Array:

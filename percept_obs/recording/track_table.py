@@ -156,7 +156,8 @@ def _tracks(
                 "by time and remove repeated ones"
             )
         samples = rows[seen[rows]]
-        parts = [part for part in np.split(samples, _ends(time[samples], gap)) if len(part)]
+        ends = np.flatnonzero(np.diff(time[samples]) > gap * (1 + 1e-9)) + 1
+        parts = [part for part in np.split(samples, ends) if len(part)]
         lasting = [part for part in parts if len(part) > 1 and np.ptp(time[part]) >= shortest]
         single += sum(len(part) == 1 for part in parts)
         for number, part in enumerate(lasting, 1):
@@ -170,8 +171,3 @@ def _tracks(
     if single and not shortest:
         warn(Unlikely(f"{file}: {single} sightings of a single sample are left out, for nothing follows from one"))
     return found
-
-
-def _ends(time: Array, gap: float) -> Indices:
-    """Indices at which a gap longer than this has just ended."""
-    return np.flatnonzero(np.diff(time) > gap * (1 + 1e-9)) + 1

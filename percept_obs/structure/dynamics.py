@@ -43,11 +43,7 @@ class ScaledDynamics:
 
 @lru_cache(maxsize=1)
 def scaled_dynamics() -> ScaledDynamics:
-    """Derive the dynamics of the scaled inverse depth from a rigid motion seen by a pinhole.
-
-    Returns
-    -------
-    ScaledDynamics
+    """Return the dynamics of the scaled inverse depth, from a rigid motion seen by a pinhole.
 
     See Also
     --------

@@ -127,15 +127,11 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
 
 @checked
 def apparent_size(images: ArrayLike) -> Array:
-    """Root mean square distance of image points to their centre.
+    """Return the root mean square distance of image points to their centre, shape (...).
 
     Parameters
     ----------
     images : array of shape (..., n, 2)
-
-    Returns
-    -------
-    array of shape (...)
 
     See Also
     --------

@@ -10,6 +10,7 @@ from contextlib import closing
 from typing import Any
 
 from percept_obs.compile import Array
+from percept_obs.compile.batch import compiled
 from percept_obs.studies.plan import NOT_RUN, Plan
 from percept_obs.validation import bar, warn, workers
 
@@ -44,7 +45,7 @@ def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stor
     chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
     todo = [each for each in chunks if missing[each].any()]
     if client is None:
-        plan.prepare()
+        compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
     if client or workers() > 1:
         computed = _concurrent(plan, todo, client)
     else:

@@ -182,12 +182,6 @@ class Consistency:
         return bool(abs(self.autocorrelation) <= norm.ppf((1 + self.confidence) / 2) / np.sqrt(self.whitened.size))
 
     @property
-    def whiteness(self) -> str:
-        """The autocorrelation in words."""
-        means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
-        return f"The innovations are {means}; neighbours have the correlation {self.autocorrelation:.2g}"
-
-    @property
     def judgement(self) -> str:
         """One of "consistent", "overconfident" (innovations are too large) and "conservative" (too small)."""
         low, high = self.interval(len(self.nis))
@@ -207,9 +201,11 @@ class Consistency:
         """The summary, the share of moving averages inside their interval, and the whiteness."""
         lowest, highest = self.interval(self.samples)
         inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
+        means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
         return (
             f"{self.summary}. Of the moving averages of {self.samples} samples {100 * inside:.0f} % lie in their "
-            f"interval, {lowest:.3g} to {highest:.3g}. {self.whiteness}"
+            f"interval, {lowest:.3g} to {highest:.3g}. The innovations are {means}; neighbours have the correlation "
+            f"{self.autocorrelation:.2g}"
         )
 
     def __repr__(self) -> str:

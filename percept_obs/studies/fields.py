@@ -145,7 +145,7 @@ def field_bound(
     size: int = 41,
     prior: float = 1.0,
 ) -> FieldBound:
-    """Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
+    """Return the Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
 
     A point in space moves linearly, X(t) = Phi(t) X(0) + d(t), so that the information on X(0) of its images is a sum.
     Images outside of the field of view are not used.
@@ -171,10 +171,6 @@ def field_bound(
         Directions across the field of view.
     prior : float
         Relative standard deviation of a point before the first image, in each direction of space.
-
-    Returns
-    -------
-    FieldBound
 
     Raises
     ------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from percept_obs.compile import Array, Indices, Language, vectorised
-from percept_obs.compile.batch import Batch, compiled, run_batch
+from percept_obs.compile.batch import Batch, run_batch
 from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop, MovingPoint
 from percept_obs.compile.integrator import by_step, instants, step_grid
 from percept_obs.observability import cramer_rao
@@ -122,10 +122,6 @@ class Plan:
             noises_alike=self.grid.sizes["seed"] == 1 and not {"noise", "dropout"} & varied,
             truths_alike=not self.scenes,
         )
-
-    def prepare(self) -> None:
-        """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
-        compiled(self.loop, self.language)
 
     def compute(self, chunk: slice) -> Array:
         """Statistics of a chunk of runs, shape (L, number of statistics)."""

@@ -102,7 +102,7 @@ def sensitivity(
     believed: Motion | None = None,
     **settings: Any,
 ) -> Sensitivity:
-    """Derivative of an observer's estimate with respect to entries of the believed motion, along a run.
+    """Return the derivative of an observer's estimate with respect to entries of the believed motion, along a run.
 
     The variational equations are integrated: the observer's flow, measurement update, reset, start and estimate,
     each differentiated.
@@ -118,10 +118,6 @@ def sensitivity(
         The recording's own when left out.
     **settings
         Passed to `track`, such as ``hold``.
-
-    Returns
-    -------
-    Sensitivity
 
     Raises
     ------

@@ -91,7 +91,12 @@ class PerspectiveSystem:
         moved = self._rate(self._gradients, self._velocity)
         if self.surface.multiplied_out:
             return moved.expand()
-        return moved if self._image_over_distance.free_symbols else self._short_rate(self._velocity)
+        if self._image_over_distance.free_symbols:
+            return moved
+        # an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1
+        y, along = sp.ImmutableMatrix(self.surface.image_coordinates), (self._gradients[-1, :] * self._velocity)[0]
+        image = self._image_over_distance * self._velocity - y * along
+        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * along])
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of `rate` with respect to `coordinates`."""
@@ -182,7 +187,7 @@ class PerspectiveSystem:
                 lambda ray: self._rate(self._gradients, self._velocity_along(ray)),
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
-                rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}",
+                rf"J(m) = {sp.latex(self._gradients[:-1, :])},\quad \nabla l(m) = {sp.latex(self._gradients[-1, :])}",
                 {
                     f"the derivative of {way} with respect to {axis}": self._gradients[i, j]
                     for i, way in enumerate(ways)
@@ -235,33 +240,17 @@ class PerspectiveSystem:
         *image, distance = gradients * velocity
         return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * distance])
 
-    def _short_rate(self, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """Rate for an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1."""
-        y = sp.ImmutableMatrix(self.surface.image_coordinates)
-        along = (self._distance_gradient * velocity)[0]
-        image = self._image_over_distance * velocity - y * along
-        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * along])
-
     @cached_property
     def _image_over_distance(self) -> sp.ImmutableMatrix:
         """Gradient of the image times the distance; without symbols if that is linear in the point."""
         y = sp.ImmutableMatrix(self.surface.image_coordinates)
-        return (self._image_gradient + y * self._distance_gradient).applyfunc(sp.cancel)
+        return (self._gradients[:-1, :] + y * self._gradients[-1, :]).applyfunc(sp.cancel)
 
     @cached_property
     def _gradients(self) -> sp.ImmutableMatrix:
-        return self._image_gradient.col_join(self._distance_gradient)
-
-    @cached_property
-    def _image_gradient(self) -> sp.ImmutableMatrix:
-        return self._on_the_ray(sp.ImmutableMatrix(self.surface.image).jacobian(POINT))
-
-    @cached_property
-    def _distance_gradient(self) -> sp.ImmutableMatrix:
-        return self._on_the_ray(sp.ImmutableMatrix([self.surface.distance]).jacobian(POINT))
-
-    def _on_the_ray(self, gradient: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """Evaluate a gradient at X = m(y), where the distance is 1."""
-        at_one = gradient.subs(self.surface.distance, 1)
-        ray = dict(zip(POINT, self.surface.ray, strict=True))
-        return at_one.subs(dict(self.surface.roots)).subs(ray, simultaneous=True).applyfunc(sp.cancel)
+        """Gradients of the image and the distance at X = m(y), where the distance is 1."""
+        surface = self.surface
+        gradients = sp.ImmutableMatrix([*surface.image, surface.distance]).jacobian(POINT)
+        ray = dict(zip(POINT, surface.ray, strict=True))
+        at_one = gradients.subs(surface.distance, 1).subs(dict(surface.roots))
+        return at_one.subs(ray, simultaneous=True).applyfunc(sp.cancel)
