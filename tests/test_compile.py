@@ -216,7 +216,7 @@ from percept_obs.compile import kernels
 from percept_obs.points import kernel
 from percept_obs.points.scenarios import moving_body
 equations = ekf(BOTH).equations
-loops = kernels._compiled(equations), kernel._compiled(moving_body(1).form.block)
+loops = kernels._compiled(equations), kernel._loop(moving_body(1).form.block, "numba")
 compiled = [sum(loop.stats.cache_misses.values()) for loop in loops]
 """
 

@@ -104,7 +104,8 @@ def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Itera
     parts = _parts(node)
     for k, part in enumerate(parts):
         here: list[Slip] = []
-        is_term = _is_a_term(node, k)
+        # of a sum, a side of a relation, an entry of a matrix, a branch
+        is_term = _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
         if is_term and not _is_sum(part) and part != 0:
             here += factored(part, moves)
         if isinstance(node, sp.Pow) and k == 1 and part.is_number:
@@ -140,11 +141,6 @@ def _parts(node: sp.Basic) -> list[sp.Basic]:
 
 def _is_sum(node: sp.Basic) -> bool:
     return isinstance(node, sp.Add | sp.MatAdd | sp.MatrixBase)
-
-
-def _is_a_term(node: sp.Basic, k: int) -> bool:
-    """Return True for a term: of a sum, a side of a relation, an entry of a matrix, a branch."""
-    return _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
 
 
 def _rebuilt(node: sp.Basic, parts: list[sp.Basic]) -> sp.Basic:

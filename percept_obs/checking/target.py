@@ -165,7 +165,9 @@ class Target:
             return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
         if isinstance(mine, Mapping):
             return [
-                replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
+                replace(r, name=r.name or (f"step{name}" if isinstance(name, int) else typed(str(name))))
+                for name, part in mine.items()
+                for r in self.read(part)
             ]
         if isinstance(mine, Sequence) and all(isinstance(part, str) for part in mine):
             return self.read("\n".join(mine))
@@ -182,10 +184,6 @@ class Target:
         if isinstance(whole, Relational) and isinstance(whole.lhs, sp.MatrixBase):
             return [Reading("", whole.func(*sides, evaluate=False)) for sides in zip(*whole.args, strict=True)]
         return [Reading("", whole)]
-
-    @staticmethod
-    def _named(name: object) -> str:
-        return f"step{name}" if isinstance(name, int) else typed(str(name))
 
     def words(self, text: str) -> list[Token]:
         """Return the tokens of a text, with the letters of this target told apart."""

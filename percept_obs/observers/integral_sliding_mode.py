@@ -129,12 +129,7 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
 
 
 class GainTooSmall(ValueError):
-    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing.
-
-    See Also
-    --------
-    ultimate_bound : Raises it.
-    """
+    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing."""
 
 
 @checked

@@ -12,12 +12,7 @@ from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
 class NotLinear(ValueError):
-    """The surface's images do not become linear in the point when they are multiplied by its distance.
-
-    See Also
-    --------
-    point_block : Raises it.
-    """
+    """The surface's images do not become linear in the point when they are multiplied by its distance."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
-from percept_obs.validation import Entries, checked, expression, matrix, numbers, warn
+from percept_obs.validation import Entries, checked, expression, matrix, numbers, set_fields, warn
 
 DRAWS = 4
 """Random values of a motion's symbols, by which directions are found that no motion shows."""
@@ -29,12 +29,7 @@ JUDGED = "the points' positions"
 
 
 class UnseenDirection(UserWarning):
-    """A direction of the state that no image of any point depends on, whatever the camera sees.
-
-    See Also
-    --------
-    PointsForm : Warns with it.
-    """
+    """A direction of the state that no image of any point depends on, whatever the camera sees."""
 
 
 class Layout(NamedTuple):
@@ -103,9 +98,8 @@ class PointsForm:
                 f"C has blocks of shape {', '.join(map(str, sorted(shapes))) or 'none'}; the motion has {n} states, so "
                 f"each point needs a block of shape {(3, n)}"
             )
-        object.__setattr__(self, "C", tuple(map(_matrix, blocks)))
         names = tuple(self.names) or tuple(f"x{k + 1}" for k in range(n))
-        object.__setattr__(self, "names", names)
+        set_fields(self, C=tuple(map(_matrix, blocks)), names=names)
         if len(set(names)) != len(names) or len(names) != n:
             raise ValueError(f"{len(names)} names were given for {n} states; each state needs a name of its own")
         point_block(self.surface)

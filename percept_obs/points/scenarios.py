@@ -15,16 +15,11 @@ from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.recording import Scene
 from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import TIME, Motion, linear
-from percept_obs.validation import checked
+from percept_obs.validation import checked, set_fields
 
 
 class LeavesEveryBound(ValueError):
-    """The state grows without end, so that nothing can be recorded of it.
-
-    See Also
-    --------
-    PointsScenario : Raises it.
-    """
+    """The state grows without end, so that nothing can be recorded of it."""
 
 
 @checked
@@ -71,7 +66,7 @@ class PointsScenario(Scene):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "state", self._check("state", self.state, self.form.names))
+        set_fields(self, state=self._check("state", self.state, self.form.names))
 
     @property
     def view(self) -> PointsForm:

@@ -210,8 +210,11 @@ class Camera:
         """
         exact = scene.view.outputs(truth)
         outputs = exact + self.noise.draw(generator, exact.shape)
-        lost = self.lost(generator, exact.shape[:-1])
-        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._out_of_view(scene.view, truth)] = np.nan
+        lost = self.lost(generator, exact.shape[:-1]) | ~(np.abs(exact).max(axis=-1) <= self.reach)
+        if self.field_of_view < 2 * math.pi:
+            points = scene.view.locate(truth)
+            lost |= points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1)
+        outputs[lost] = np.nan
         return outputs, self.noise.variance
 
     def drawn(self, seeds: Sequence[int], shape: tuple[int, ...]) -> Array:
@@ -222,13 +225,6 @@ class Camera:
             if self.dropout:
                 noise[k][self.lost(generator, shape[:-1])] = np.nan
         return noise
-
-    def _out_of_view(self, view: View, truth: Array) -> Flags | bool:
-        """Return True for points outside of the field of view, shape (K, ...)."""
-        if self.field_of_view == 2 * math.pi:
-            return False
-        points = view.locate(truth)
-        return np.asarray(points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1))
 
     def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         """Return True for samples lost by chance; the first ones never are."""

@@ -33,12 +33,7 @@ PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 
 class DatasetUnavailable(ConnectionError):
-    """Raised when the recording is not on this machine and could not be fetched.
-
-    See Also
-    --------
-    find_utias : Raises it.
-    """
+    """Raised when the recording is not on this machine and could not be fetched."""
 
 
 @checked

@@ -20,7 +20,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -239,7 +239,7 @@ class StructureScenario(Scenario):
         if not (np.isfinite(self.scale) and self.scale > 0):
             raise ValueError(f"d_s is {self.scale}; it is one over a distance in metres, finite and positive")
         if self.choice.parameters:
-            object.__setattr__(self, "choice", replace(self.choice, scale=self.scale))
+            set_fields(self, choice=replace(self.choice, scale=self.scale))
         self.choice.known_motion(self.motion)
 
     @property

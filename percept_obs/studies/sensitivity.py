@@ -160,8 +160,11 @@ def sensitivity(
         unobservable=(),
         fastest=None,
     )
-    directions = [_with_change(motion, moved, direction) for direction in np.eye(len(moved))]
-    runs = [track(recording, varied, start, believed=each, **settings) for each in directions]
+    runs = []
+    for direction in np.eye(len(moved)):  # the changes of the entries are further parameters of the motion
+        signal = _mapped(motion, lambda rows, more=direction: np.hstack([rows, np.tile(more, (len(rows), 1))]))
+        changed = replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
+        runs.append(track(recording, varied, start, believed=changed, **settings))
     derivatives = np.stack([each.estimate for each in runs], axis=-1)
     derivatives[np.isnan(run.estimate)] = np.nan
     return Sensitivity(run, tuple(symbol.name for symbol in moved), derivatives, _sizes(motion, moved, recording.time))
@@ -213,12 +216,6 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
     if unknown or not names:
         raise ValueError(f"the {motion.name} motion has no entry {', '.join(unknown)}; it has {', '.join(there)}")
     return tuple(there[name] for name in names)
-
-
-def _with_change(motion: Motion, moved: Sequence[sp.Symbol], direction: Array) -> Motion:
-    """Return the motion with the changes of its entries as further parameters."""
-    signal = _mapped(motion, lambda rows: np.hstack([rows, np.broadcast_to(direction, (len(rows), len(direction)))]))
-    return replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
 
 
 def _mapped(motion: Motion, of: Any) -> Signal:

@@ -27,21 +27,11 @@ Start = Mapping[str, float] | Sequence[float] | None
 
 
 class DoesNotFit(ValueError):
-    """An observer cannot follow this recording.
-
-    See Also
-    --------
-    track : Raises it.
-    """
+    """An observer cannot follow this recording."""
 
 
 class StepTooLong(UserWarning):
-    """The steps become too long for the fastest part of an observer, which will then chatter.
-
-    See Also
-    --------
-    track : Warns with it.
-    """
+    """The steps become too long for the fastest part of an observer, which will then chatter."""
 
 
 TOO_LONG = (

@@ -22,12 +22,7 @@ X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
 
 class BehindCamera(ValueError):
-    """A point is not in front of the imaging surface, so it has no image there.
-
-    See Also
-    --------
-    ImagingSurface : Refuses such points.
-    """
+    """A point is not in front of the imaging surface, so it has no image there."""
 
 
 @checked
