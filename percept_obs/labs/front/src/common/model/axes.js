@@ -49,14 +49,8 @@ export function gainAxes({ observers }, name) {
   return gains.map(({ name: gain, low, high, unit }) => {
     const place = `gains.${name}.${gain}`;
     return {
-      ...{
-        place,
-        label: withUnit(gain.replaceAll("_", " "), unit),
-        low,
-        high,
-        log: low > 0 && high / low >= DECADE,
-        records: false,
-      },
+      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, records: false },
+      log: low > 0 && high / low >= DECADE,
       get: (settings) => (ways[switchOf(settings, name)].includes(gain) ? settings.gains[name][gain] : undefined),
       put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
     };

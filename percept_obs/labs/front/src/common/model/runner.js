@@ -104,14 +104,8 @@ export class Runner {
  */
 export function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
-  const inputs = [
-    ...columns.map((values) => values[0]),
-    ...parameters,
-    ...gains,
-    ...asked,
-    ...columns.map(() => (own ? 1 : 0)),
-  ];
-  return functions.start(inputs, new Float64Array(kernel.states));
+  const [first, given] = [columns.map((values) => values[0]), columns.map(() => (own ? 1 : 0))];
+  return functions.start([...first, ...parameters, ...gains, ...asked, ...given], new Float64Array(kernel.states));
 }
 
 /** A function that fills in what the estimate at a sample follows from: outputs, what is known, gains, the state. */

@@ -1,5 +1,4 @@
-// Settings of a lab: kinds and ranges of Python's schema, with the page's words; types.js says what each
-// holds.
+// Settings of a lab: kinds and ranges of Python's schema, with the page's words; types.js says what each holds.
 
 /** Holds of the outputs between samples. */
 export const HOLD = { choices: { zero: "the last sample", first: "a line to the next", exact: "the exact signal" } };

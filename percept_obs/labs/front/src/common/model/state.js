@@ -1,5 +1,4 @@
-// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way
-// back.
+// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way back.
 
 import { same } from "./settings.js";
 

@@ -160,9 +160,7 @@ export function sharesOf({ across, up }, settings, functions) {
   return [across, up].map((axis) => shareOf(axis, axis.get(settings, functions)));
 }
 
-/**
- * Summary of a level: numbers of runs that settle, diverge, or are none, and the cells of least and greatest value.
- */
+/** Summary of a level: numbers of runs that settle, diverge, or are none, and the cells of least and greatest value. */
 export function countsOf({ values }, what) {
   const counts = { settled: 0, never: 0, diverged: 0, none: 0, least: -1, greatest: -1 };
   for (let at = 0; at < values.length; at += EACH_CELL) {

@@ -5,7 +5,7 @@ import { INSTANTS, PLANT_STEP, STEP_ROUNDING } from "./integrator.js";
 /** Rows that a step adds to a table of known signals; its end is the next one's start. */
 export const EACH = INSTANTS.length - 1;
 
-/** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
+/** The intervals between times in equal steps no longer than given; index says where in the grid the times stand. */
 export function stepGrid(times, longest) {
   const index = new Int32Array(times.length);
   const counts = new Int32Array(times.length - 1);
@@ -20,29 +20,24 @@ export function stepGrid(times, longest) {
     for (let j = 1; j < counts[k]; j++) grid[index[k] + j] = times[k] + interval * (j / counts[k]);
   }
   for (let k = 0; k < index.length; k++) grid[index[k]] = times[k];
-  return { grid, index };
+  return { grid, index, steps: differences(grid) };
 }
 
 export function differences(grid) {
   return grid.subarray(1).map((end, k) => end - grid[k]);
 }
 
-export function withSteps({ grid, index }) {
-  return { grid, index, steps: differences(grid) };
-}
-
 /**
  * The steps in which the truth moves: from time 0 on, with an end at each of the times, and at each of the breaks,
- * where
- * its motion has a kink; index says where time 0 and the times stand.
+ * where its motion has a kink; index says where time 0 and the times stand.
  */
 export function plantGrid(times, breaks = /** @type {number[]} */ ([])) {
   const last = times[times.length - 1];
   const places = [{ time: 0, wanted: true }, ...Array.from(times, (time) => ({ time, wanted: true }))];
   for (const time of breaks) if (time > 0 && time < last) places.push({ time, wanted: false });
   if (breaks.length) places.sort((one, other) => one.time - other.time);
-  const { grid, index } = stepGrid(Float64Array.from(places, ({ time }) => time), PLANT_STEP);
-  return withSteps({ grid, index: index.filter((_, k) => places[k].wanted) });
+  const { index, ...steps } = stepGrid(Float64Array.from(places, ({ time }) => time), PLANT_STEP);
+  return { ...steps, index: index.filter((_, k) => places[k].wanted) };
 }
 
 export function sampleTimes(period, duration) {

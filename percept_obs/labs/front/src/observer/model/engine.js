@@ -5,7 +5,7 @@ import { columnOf } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
 import { Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
-import { known, knownAt, lastSamples, spansOf, stepGrid, withSteps } from "../../common/model/tables.js";
+import { known, knownAt, lastSamples, spansOf, stepGrid } from "../../common/model/tables.js";
 import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
@@ -30,20 +30,14 @@ export class Engine extends Runner {
     const { coordinates: names } = this.model.surfaces[settings.surface];
     const form = this.model.forms[keyOf(settings)];
     const { measured, hidden } = form;
+    const { tolerance, settledPart, judged } = this.model;
     const result = {
       settings,
       ...this.camera.record(settings, functions),
       ...this.geometry(settings, functions, form),
       ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
-      tolerance: this.model.tolerance,
-      settledPart: this.model.settledPart,
-      judged: this.model.judged,
-      runs: [],
-      bound: null,
-      shares: null,
-      excitation: null,
-      inside: [],
-      whole: false,
+      ...{ tolerance, settledPart, judged, runs: [], inside: [] },
+      ...{ bound: null, shares: null, excitation: null, whole: false },
     };
     if (result.problem) return { ...result, whole: true };
     const { truth, time, circle } = result;
@@ -74,21 +68,15 @@ export class Engine extends Runner {
     const { time, measured } = result;
     const recorded = settings.scenario in this.model.recordings;
     const clock = recorded ? [time] : [settings.period, time.length];
-    const lines = memory.once("grid", settings, () => withSteps(stepGrid(time, LONGEST_STEP)), ...clock);
+    const lines = memory.once("grid", settings, () => stepGrid(time, LONGEST_STEP), ...clock);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
     const believe = (read) => {
       const { motion, shape } = this.camera.motion(read, functions);
       return known(read.believed ? constantMotion(read.believed) : motion, shape, lines.grid);
     };
     const table = memory.once("known", settings, believe, lines);
-    return this.layOut(
-      result,
-      lines,
-      table,
-      settings.hold,
-      exact && measured.map((c) => exact[c]),
-      settings.start.mode === "own",
-    );
+    const { hold, start } = settings;
+    return this.layOut(result, lines, table, hold, exact && measured.map((c) => exact[c]), start.mode === "own");
   }
 
   /** The least relative error that the noise leaves, where it is drawn and there is one. */
@@ -136,12 +124,8 @@ export class Engine extends Runner {
     if (varies(settings, this.model)) return nowhere;
     const foe = focusOf(settings, functions, this.model);
     if (!foe) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
-    const found = { foe, foeTowards: null, circle: null };
-    if (!form.circle) return found;
-    return {
-      ...found,
-      circle: Array.from(functions.circle([...parametersOf(settings), settings.threshold], [0, 0, 0])),
-    };
+    const at = [...parametersOf(settings), settings.threshold];
+    return { ...nowhere, foe, circle: form.circle ? Array.from(functions.circle(at, [0, 0, 0])) : null };
   }
 }
 

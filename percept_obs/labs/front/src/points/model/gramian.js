@@ -12,8 +12,7 @@ const MOST_NUMBERS = 1500;
  * matrix of the window that misses most directions or shows one least.
  *
  * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
- * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows
- * some
+ * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks. Of many windows some
  * are looked at, and if the whole is wanted all about the weakest.
  */
 export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory, whole }) {

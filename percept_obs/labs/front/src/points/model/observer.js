@@ -1,7 +1,7 @@
 // @ts-check
 // The observer of many points: the same numbers as track() in Python.
 
-import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
+import { EACH, instants, plantGrid, stepGrid } from "../../common/model/tables.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { layoutFollowed } from "./kernels.js";
@@ -20,7 +20,7 @@ export class Observer {
     const { settings, layout, n } = scene;
     const { time, truth } = recording;
     const divide = ({ step }) => {
-      const made = withSteps(stepGrid(time, step));
+      const made = stepGrid(time, step);
       return { ...made, places: instants(made.grid) };
     };
     const steps = memory.once("steps", settings, divide, time);

@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { userDefined, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { userDefined, durationOf, list, NOISES, script, trackings } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { isSampled, varies } from "./camera.js";
 import { isZero, valuesAtStart } from "./kernels.js";
@@ -51,8 +51,7 @@ export function pythonOf(shown, model) {
     ...own.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
-  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
-  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
+  return script(wanted, lines);
 }
 
 function motionIn(settings, model) {
@@ -66,16 +65,12 @@ function motionIn(settings, model) {
 /** Velocities as numbers and swings set them, and what was typed of these. */
 function motionThatIsTyped(settings, { phases, written }) {
   const { python } = written[settings.motion];
-  const swung = (which) => settings[which].map((value, k) => {
-    const swing = settings[`${which}_swing`][k];
-    return swing ? `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})` : `${value}`;
-  });
   const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
   const moved = (which) => list(namesOf(which).map((name) => python[name] ?? name));
   return [
     "def velocities(t):",
     `    ${namesOf("w").join(", ")} = ${settings.w.join(", ")}`,
-    ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(which).join(", ")}`),
+    ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(settings, phases, which).join(", ")}`),
     `    return ${["w", "v_c", "v_p"].map(moved).join(", ")}`,
     "",
     "motion = rigid(*(lambda t, k=k: velocities(t)[k] for k in range(3)))",
@@ -83,14 +78,14 @@ function motionThatIsTyped(settings, { phases, written }) {
 }
 
 function motionThatSwings(settings, phases) {
-  const component = (which) => (value, k) => {
+  const velocities = ["v_c", "v_p"].map((which) => `${which} = lambda t: ${list(swung(settings, phases, which))}`);
+  return [...velocities, `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`];
+}
+
+/** The components of a velocity, with the swings of those that swing. */
+function swung(settings, phases, which) {
+  return settings[which].map((value, k) => {
     const swing = settings[`${which}_swing`][k];
-    return `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})`;
-  };
-  const velocity = (which) => `lambda t: [${settings[which].map(component(which)).join(", ")}]`;
-  return [
-    `v_c = ${velocity("v_c")}`,
-    `v_p = ${velocity("v_p")}`,
-    `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`,
-  ];
+    return swing ? `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})` : `${value}`;
+  });
 }
