@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from examples import BOTH, ONE, ZERO
 from refusals import refuses
-from scipy.stats import chi2, norm
 
 from percept_obs import Camera, Gaussian, affine, check_consistency, ekf, ibo, record, scenarios, track
 from percept_obs.studies.consistency import claimed_distance, claimed_interval
@@ -47,6 +46,8 @@ def test_a_wrong_noise_variance_is_told(form, factor, judgement):
 
 
 def test_the_interval_is_that_of_chi_squared():
+    from scipy.stats import chi2  # only here, for it takes a while
+
     found = check_consistency(filtered(BOTH))
     for count in (1, 50, 401):
         inside = np.diff(chi2.cdf(count * np.array(found.interval(count)), 2 * count))
@@ -71,6 +72,8 @@ def test_whiteness_of_the_innovations_is_told():
 
 def test_nis_nees_and_likelihood_are_those_of_the_innovations_before_the_update():
     """Recomputed from the covariance before each update, which the flow gives from the one after the last."""
+    from scipy.stats import norm
+
     run = filtered(ONE)
     R, sizes = SIGMA**2, run.nis[np.isfinite(run.nis)]
     after = run.covariance[1:, 0, 0]
