@@ -1,9 +1,6 @@
 """A formula in any form is accepted, a slip is refused, found and named, and the step in which it happened."""
 
-import gc
-import statistics
 import time
-from collections import Counter
 from dataclasses import replace
 
 import pytest
@@ -27,67 +24,42 @@ FORMS, SLIPS, PAIRS = sampled(100, 300), sampled(50, 300), sampled(20, 100)
 
 
 def accepted(seeds, among):
-    """Rewrites that were accepted, what was not, and seconds of each."""
-    hows, failed, seconds = Counter(), [], []
-    for seed in seeds:
-        how, mine, case = equivalent(seed, among)
-        start = time.process_time()
-        right = check(mine, case.target).right
-        seconds.append(time.process_time() - start)
-        hows[how] += 1
-        if right is not True:
-            failed.append((seed, case.name, how, right))
-    return hows, failed, seconds
+    """Rewrites that were not accepted."""
+    made = ((seed, *equivalent(seed, among)) for seed in seeds)
+    return [(seed, case.name, how) for seed, how, mine, case in made if check(mine, case.target).right is not True]
 
 
 def test_equivalent_forms_are_accepted():
-    assert accepted(range(300, 330), few_cases())[1] == []
+    assert accepted(range(300, 330), few_cases()) == []
 
 
 @pytest.mark.slow
 def test_many_equivalent_forms_are_accepted():
-    made = cases()
-    gc.freeze()  # going through all cases to collect garbage is not what is timed
-    hows, failed, seconds = accepted(range(FORMS), made)
-    gc.unfreeze()
-    late = sum(s > 0.02 for s in seconds)
-    print(
-        f"\n{dict(hows)}\n{1e3 * statistics.median(seconds):.1f} ms, at worst {1e3 * max(seconds):.0f}, {late} over 20"
-    )
-    assert failed == []
-    assert statistics.median(seconds) < 0.02
-    assert late <= 15
+    assert accepted(range(FORMS), cases()) == []
 
 
 def shares(count, slips, among):
-    """Shares of formulas with slips that were refused, with the right line, term and slip; and seconds."""
+    """Shares of formulas with slips that were refused, with the right line, term and slip."""
     found = [reviewed(seed, slips, among) for seed in range(count)]
     for one in found:
         if not (one.refused and one.line and one.term and (one.slip or slips > 1)):
             print(one.about)
-    told = {name: sum(getattr(one, name) for one in found) / count for name in ("refused", "line", "term", "slip")}
-    seconds = [one.seconds for one in found]
-    print(f"\n{told}\n{1e3 * statistics.median(seconds):.0f} ms, at worst {1e3 * max(seconds):.0f}")
-    return told, seconds
+    return {name: sum(getattr(one, name) for one in found) / count for name in ("refused", "line", "term", "slip")}
 
 
 @pytest.mark.slow
 def test_slips_in_all_that_is_derived_are_refused_found_and_named():
-    told, seconds = shares(SLIPS, 1, cases())
+    told = shares(SLIPS, 1, cases())
     assert told["refused"] == told["line"] == 1
     assert told["term"] >= 0.98
     assert told["slip"] >= 0.95
-    assert statistics.median(seconds) < 0.5
-    assert max(seconds) < 2
 
 
 @pytest.mark.slow
 def test_pairs_of_slips_are_refused_and_found():
-    told, seconds = shares(PAIRS, 2, cases())
+    told = shares(PAIRS, 2, cases())
     assert told["refused"] == 1
     assert told["term"] >= 0.85
-    assert statistics.median(seconds) < 0.5
-    assert max(seconds) < 2
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ from percept_obs.points.gramian import Gramian, decay_bound, gramian
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import scenarios
 from percept_obs.recording.path import lowest_between, varying_path
-from percept_obs.structure import COROLLARIES, LinearView, StructureAndMotion, competitors, linear_view
+from percept_obs.structure import LinearView, StructureAndMotion, competitors, linear_view
 from percept_obs.structure.pixels import homography
 from percept_obs.structure.scenarios import (
     chwa2019_crossing,
@@ -41,7 +41,6 @@ from percept_obs.structure.scenarios import (
     chwa2019_semigeneral,
     chwa2019_simulation,
 )
-from percept_obs.structure.stages import semigeneral
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import plane
 from percept_obs.tracking.verdict import percent
@@ -232,24 +231,6 @@ def test_a_moving_scene_begins_as_the_still_one_of_its_set_up():
         still, whole = case("IV.A"), chwa2019_semigeneral(name)
         assert (whole.position, whole.scale) == (still.position, still.scale)
     assert chwa2019_crossing().motion.known(1.0)[0, 6:][2] == 0
-
-
-def test_stages_hand_on_what_they_find():
-    setup = chwa2019_semigeneral("simulation")
-    recording = record(setup, 1.0, setup.camera if setup.camera.period >= 0.01 else replace(setup.camera, period=0.01))
-    prior = {"noise_variance": 1e-9, "hidden_process_noise": 1.0, "hidden_variance": 100.0}
-    run = semigeneral(
-        recording, setup.motion, 0.6, make=lambda form: extended_kalman(form, **prior), average=0.1,
-        scale=setup.scale, hold="first", language="python",
-    )  # fmt: skip
-    choice = COROLLARIES[0].choice()
-    last = run.static.estimate[run.static.time >= 0.5 - 1e-9, -len(choice.unknown) :]
-    assert run.found == pytest.approx({n: float(v) for n, v in choice.quantities(last.mean(axis=0)).items()})
-    assert run.moving.time[0] == run.static.time[-1] == pytest.approx(0.6)
-    assert run.moving.recording.truth is not None
-    truth = setup.motion.known(run.moving.time)[:, 6:]
-    assert run.object_velocity.shape == truth.shape
-    assert np.abs(run.object_velocity - truth)[-1].max() < 1.0
 
 
 def test_the_spread_is_that_of_each_window(monkeypatch):

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
-from examples import BOTH, ONE
+from examples import BOTH
 from refusals import refuses
 
 from percept_obs import Scenario, affine, pinhole, record, scenarios, track
 from percept_obs.compile import vectorised
-from percept_obs.observers import NeedsMoreOutputs, ismo, rio
+from percept_obs.observers import ismo, rio
 from percept_obs.observers.integral_sliding_mode import (
     GainTooSmall,
     a,
@@ -28,7 +28,6 @@ from percept_obs.tracking.following import StepTooLong
 
 ZERO = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0}
 FORM = COROLLARIES[0].choice().form
-EXPERIMENT = ("IV.A", "IV.B", "V.B", "VI.B", "VI.C")
 LAYER = "hyperbolic tangent"
 fine = {"step": 1e-3, "language": "python"}
 
@@ -95,23 +94,6 @@ def assert_only_the_start_is_missing(run, latest):
     assert not hidden.unobservable_intervals
     error = np.linalg.norm(hidden.error[:, 3:], axis=1) / np.linalg.norm(hidden.truth[:, 3:], axis=1)
     assert error[run.time <= end].min() > 0.01
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("hold", ["exact", "first"])
-@pytest.mark.parametrize("switch", ["ideal", LAYER])
-@pytest.mark.parametrize("section", EXPERIMENT)
-def test_the_five_cases_of_the_experiment(section, switch, hold):
-    setup = chwa2019_experiment(section)
-    run = track(record(setup, 3), ismo(setup.choice.form, switch), ZERO, hold=hold, **fine)
-    found, true = quantities(run)
-    assert_only_the_start_is_missing(run, 0.55)
-    for name in setup.choice.unknown:
-        error = np.abs(found[name] - true[name])
-        if name == "d_s":
-            assert error[run.time >= 1].max() < 0.005 * 10.4
-        else:
-            assert error[run.time >= 1.5].max() < 0.01
 
 
 def test_the_first_values_of_the_scale():
@@ -282,15 +264,6 @@ def test_the_bound_of_the_theorem_holds():
     assert late == pytest.approx(early / 4)
     with pytest.raises(GainTooSmall, match=r"alpha = .* must be below 1, so take a larger switching_gain"):
         ultimate_bound(ismo(FORM), 15.0)
-
-
-def test_range_of_a_point_with_two_outputs():
-    """The form of any imaging surface will do, if it has enough outputs."""
-    recording = record(scenarios.ma2005_eq35(), 40)
-    run = track(recording, ismo(BOTH), hold="exact")
-    assert run.settling_time(0.01, "y3") < 2
-    with pytest.raises(NeedsMoreOutputs, match="y2, y3 are hidden; measure every image coordinate"):
-        ismo(ONE)
 
 
 def test_a_gap_at_the_focus_of_expansion():

@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise, apparent_size, homography
-from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 
 small = st.floats(-0.3, 0.3)
 vectors = st.tuples(small, small, small)
@@ -36,17 +35,6 @@ def test_pixels_and_image_coordinates_are_each_others_inverse(f1, f2, image):
 
 def test_the_intrinsic_matrix_is_that_of_the_paper():
     np.testing.assert_array_equal(CHWA_CAMERA.matrix, [[720, 0, 320], [0, 720, 240], [0, 0, 1]])
-
-
-def test_the_points_of_the_paper_do_not_stay_in_an_ordinary_image():
-    """With 640 x 480 pixels, the experiment's points leave within 0.3 s, and the simulations' start outside."""
-    camera = PixelCamera(CHWA_CAMERA.focal, CHWA_CAMERA.centre, (640, 480))
-    simulated = chwa2019_simulation("V.A").coordinates([0.0])[:, :2]
-    assert not camera.sees(camera.pixels(simulated)).any()
-    for section in ("IV.A", "IV.B", "V.B", "VI.B", "VI.C"):
-        image = chwa2019_experiment(section).coordinates([0.0, 0.3])[:, :2]
-        assert camera.sees(camera.pixels(image)).tolist() == [True, False]
-    assert CHWA_CAMERA.sees(CHWA_CAMERA.pixels(simulated)).all()
 
 
 test_a_camera_that_is_none_is_refused = refuses(

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from percept_obs import Camera, PointsScenario, luenberger, record, track
-from percept_obs.points import UnseenDirection, riccati, rigid_body
+from percept_obs.points import riccati, rigid_body
 from percept_obs.points.gramian import decay_bound, gramian, linear_gramian
-from percept_obs.points.scenarios import along_the_line_of_sight, lost_offset, moving_body
+from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 
 START_ERROR = np.array([0.3, -0.2, 0.5, 0.2, -0.1, 0.3])
 RATES = {
@@ -68,14 +68,6 @@ def test_the_bound_holds_window_by_window():
     V = run.deviation**2
     at = np.searchsorted(whole.time, [*bound.time, bound.time[-1] + window])
     assert (V[at[1:]] / V[at[:-1]] <= bound.contraction).all()
-
-
-def test_an_offset_that_is_not_seen_is_named():
-    with pytest.warns(UnseenDirection, match="3 directions.*d2_x; d2_y; d2_z"):
-        scenario = lost_offset()
-    found = gramian(record(scenario, 20), 8)
-    assert not found.holds
-    assert "3 directions are not seen: d2_x; d2_y; d2_z" in found.verdict()
 
 
 def test_a_depth_that_is_not_seen_is_named():

@@ -66,6 +66,8 @@ def test_another_observer_in_both_stages(wandering):
         return ekf(form, noise_variance=1e-7, hidden_process_noise=1.0, hidden_variance=100.0)
 
     run = semigeneral(recording, setup.motion, 5.0, make=filter_of, **fine)
+    last = run.static.estimate[run.static.time >= 4.5 - 1e-9, 3:].mean(axis=0)
+    assert run.found == pytest.approx({name: float(v) for name, v in COROLLARIES[0].choice().quantities(last).items()})
     assert run.found["d_s"] == pytest.approx(4, rel=1e-2)
     assert worst(run, setup, 2.0) < 0.1
 

@@ -1,11 +1,10 @@
 """Speed of labs that draw while the hand drags, and that open, in JupyterLab.
 
-    python tests/benchmarks/bench_lab.py [--alone | --saved | --opening] [part of a name]
+    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
 
 With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
-JupyterLab, with ``--saved`` in the page that a lab saves itself into, and with ``--opening`` only how long a lab takes
-to open: from the key that runs a cell to the first picture, and to the answer to the first switch, which asks for
-texts that nothing has needed before.
+JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
+picture, and to the answer to the first switch, which asks for texts that nothing has needed before.
 
 A configuration is dragged five times, and medians are told.  Before each drag the lab is put back to what it opened
 with and shows all of its time, so that each drag begins where the one before it did, and where it is dear.
@@ -267,16 +266,10 @@ def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
 
 
 def open_alone(context: Any, lab: Any) -> Any:
-    """A page without JupyterLab, and without Python but for an answer."""
-    return lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
-
-
-def open_saved(context: Any, lab: Any) -> Any:
-    """The page that a lab saves itself into, opened from the disk."""
-    with tempfile.TemporaryDirectory() as folder:
-        lab.save(Path(folder) / "lab.html")
-        page = context.new_page()
-        page.goto((Path(folder) / "lab.html").as_uri())
+    """A lab at rest in a page without JupyterLab, and without Python but for an answer."""
+    page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+    page.wait_for_function(lab_alone.DRAWN)
+    rested(page, 60)
     return page
 
 
@@ -291,14 +284,11 @@ def launched() -> Any:
         browser.close()
 
 
-def measure_alone(wanted: dict[str, Case], opened: Callable[[Any, Any], Any]) -> None:
+def measure_alone(wanted: dict[str, Case]) -> None:
     """Measure configurations in pages without JupyterLab, which open at once."""
     with launched() as context, reference_page(context) as reference:
         for title, case in wanted.items():
-            lab = getattr(labs, case.lab)(**case.settings)
-            page = opened(context, lab)
-            page.wait_for_function(lab_alone.DRAWN)
-            rested(page, 60)
+            page = open_alone(context, getattr(labs, case.lab)(**case.settings))
             measure(title, page, reference, HANDLES[case.lab])
             page.close()
 
@@ -309,8 +299,8 @@ def main(*arguments: str) -> None:
     wanted = {title: case for title, case in CASES.items() if all(name in title for name in names)}
     if not wanted:
         raise SystemExit(f"nothing is called {' '.join(names)!r}; there are:\n" + "\n".join(CASES))
-    if "--alone" in arguments or "--saved" in arguments:
-        measure_alone(wanted, open_saved if "--saved" in arguments else open_alone)
+    if "--alone" in arguments:
+        measure_alone(wanted)
     elif "--opening" in arguments:
         measure_in_jupyterlab({}, opening=True)
     else:
