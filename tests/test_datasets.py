@@ -138,7 +138,7 @@ def rate_errors(tables: StereoTracks, sign_of_v: int, sign_of_w: int) -> Values:
     return relative
 
 
-@pytest.mark.parametrize("signs", product((1, -1), repeat=2))
+@pytest.mark.parametrize("signs", [*product((1, -1), repeat=2)])
 def test_the_known_motion_and_none_of_another_sign_moves_the_image(
     tables: StereoTracks, signs: tuple[int, int]
 ) -> None:
