@@ -6,7 +6,7 @@ import { differences } from "../../common/model/tables.js";
 import { Camera } from "./camera.js";
 import { inversesOf } from "./flow.js";
 import { windowsOf } from "./gramian.js";
-import { absencesOf, decayRate, largestOf, norms, pointErrors } from "./measures.js";
+import { absencesOf, decayRate, distancesOf, largestOf, norms } from "./measures.js";
 import { Observer } from "./observer.js";
 
 export class PointsEngine {
@@ -24,9 +24,9 @@ export class PointsEngine {
     const recording = this.camera.record(scene);
     const { estimate, divergedAt } = this.observer.track(scene, recording);
     const { time, truth, outputs } = recording;
-    const size = norms(truth, estimate, n);
-    const errors = pointErrors(layout, truth, estimate, n);
-    const distances = pointErrors(layout, truth, new Float64Array(truth.length), n);
+    const off = truth.map((value, i) => value - estimate[i]);
+    const size = norms(off, n);
+    const [errors, distances] = [off, truth].map((rows) => distancesOf(layout, rows, n));
     const relative = errors.map((values, p) => values.map((value, k) => value / distances[p][k]));
     const worst = largestOf(relative);
     const result = {
