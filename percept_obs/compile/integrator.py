@@ -111,7 +111,7 @@ def for_the_page() -> str:
         "WEIGHTS": weights.tolist(),
         "INSTANTS": list(map(float, INSTANTS)),
     }
-    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "STEP_ROUNDING", "LARGEST_STEP_RATE", "LARGEST_SQUARED_STATE"):
+    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "STEP_ROUNDING", "LARGEST_SQUARED_STATE"):
         constants[name] = globals()[name]
     lines = [f"export const {name} = {json.dumps(value)};" for name, value in constants.items()]
     return "\n".join(["// Printed by percept_obs/compile/integrator.py, which says what they mean.", *lines, ""])

@@ -11,15 +11,12 @@ const BETWEEN_PARTS = 90;
 const REST = 40;
 
 /**
+ * @typedef {{model: any, kernels: any, engine: any, runs: any, axesOf: any}} Lab
+ *   `engine` keeps of a run what a cell holds, and that of `runs` all of it
  * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first
  *   picture has
  * @typedef {{id: number, cells: number, from: number, values: Float64Array, cost: number}} Part
  *   Numbers of cells of a map with so many cells a side, and the milliseconds that one took.
- */
-
-/**
- * @typedef {{model: any, kernels: any, engine: any, runs: any, axesOf: any}} Lab
- *   `engine` keeps of a run what a cell holds, and that of `runs` all of it
  */
 
 export class Filling {
@@ -90,13 +87,8 @@ export class Filling {
         spent += now - before;
         const whole = k + 1 === cells * cells;
         if (whole || (cells > first && now - since > BETWEEN_PARTS)) {
-          this.tell({
-            id,
-            cells,
-            from,
-            values: values.slice(EACH_CELL * from, EACH_CELL * (k + 1)),
-            cost: spent / (k + 1),
-          });
+          const part = values.slice(EACH_CELL * from, EACH_CELL * (k + 1));
+          this.tell({ id, cells, from, values: part, cost: spent / (k + 1) });
           [from, since] = [k + 1, now];
         }
         if (now - began < this.slice && !whole) continue;

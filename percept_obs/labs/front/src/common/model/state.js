@@ -48,6 +48,11 @@ export class State {
     return this.now.preset;
   }
 
+  /** The settings before a preset, to which it leads back. */
+  get before() {
+    return this.preset?.before ?? this.settings;
+  }
+
   /** Take changes of a hand that may go on; those of the same settings are one step until release(). */
   move(changes) {
     const keys = Object.keys(changes).join();
@@ -113,8 +118,7 @@ export class State {
 
   /** Ask a preset's question, over the settings that it is about. */
   ask(name, settings) {
-    const before = this.preset?.before ?? this.settings;
-    this.step({ settings, preset: { name, act: -1, before, of: settings, said: null } });
+    this.step({ settings, preset: { name, act: -1, before: this.before, of: settings, said: null } });
   }
 
   /** Say what one expects. */
@@ -123,13 +127,12 @@ export class State {
   }
 
   act(act, settings) {
-    const before = this.preset?.before ?? this.settings;
-    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before, of: settings } });
+    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before: this.before, of: settings } });
   }
 
   /** Close the preset, and go back to the settings before it. */
   leave() {
-    this.step({ settings: this.preset?.before ?? this.settings, preset: null });
+    this.step({ settings: this.before, preset: null });
   }
 
   reset(settings) {

@@ -52,7 +52,7 @@ export function mapAt({ y1, y2, resolution, relative }, place) {
 }
 
 /** Phi and what is moved, of X(t) = Phi X(0) + moved at times from 0 on. */
-export function displacements(motion, times) {
+function displacements(motion, times) {
   const { grid, index, steps } = stepGrid(times, LONGEST_STEP);
   const table = known(motion, [], grid);
   const state = Float64Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0); // rows of Phi, each with what is moved behind it
