@@ -226,10 +226,6 @@ def target_of(thing: Any) -> Target:
     thing : anything that the package derives, formula, sequence or mapping of them
         As `percept_obs.check` takes it.
 
-    Returns
-    -------
-    Target
-
     Raises
     ------
     ValueError

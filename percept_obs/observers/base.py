@@ -173,12 +173,9 @@ class Observer:
         return sp.symbols(f"e1:{len(self.form.coordinates) + 1}", real=True)
 
     def error_dynamics(self) -> sp.ImmutableMatrix:
-        """Time derivative of the error e = x - xhat between samples and resets.
+        """Return the time derivative of the error e = x - xhat between samples and resets, shape (n, 1).
 
-        Returns
-        -------
-        matrix of shape (n, 1)
-            In terms of the true coordinates and the error, in the order of ``form.coordinates``.
+        It is in terms of the true coordinates and the error, in the order of ``form.coordinates``.
 
         Raises
         ------
@@ -231,7 +228,7 @@ class Observer:
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
     ) -> Callable[[float, Sequence[float]], list[float]]:
-        """Flow as a function of time and state, for scipy's solvers; resets are left to the caller.
+        """Return the flow as a function of (t, state), for scipy's solvers; resets are left to the caller.
 
         Parameters
         ----------
@@ -239,11 +236,6 @@ class Observer:
             Known motion, with numbers.
         measured : function of a time, optional
             Measured outputs; not needed where the equations use none, as with `with_point`.
-
-        Returns
-        -------
-        function of (t, state)
-            Time derivative of the state.
 
         Raises
         ------

@@ -134,9 +134,10 @@ class GainTooSmall(ValueError):
 
 @checked
 def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) -> float:
-    """Bound on each entry of se, outside of which Theorem 1 makes it shrink.
+    """Return a bound on each entry of se, outside of which Theorem 1 makes it shrink.
 
     With alpha = |g| / gamma < 1 it is ln((1 + alpha) / (1 - alpha)) / (2 (a + b t)), and goes to 0 with time if b > 0.
+    It is in the unit of the outputs.
 
     Parameters
     ----------
@@ -146,11 +147,6 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
         Largest absolute value of the entries of g = w^T x2.
     time : float
         Seconds since the first sample.
-
-    Returns
-    -------
-    float
-        In the unit of the outputs.
 
     Raises
     ------
@@ -191,10 +187,11 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
 def tolerable_amplification(
     observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
 ) -> float:
-    """Value for the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
+    """Return the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
 
     White noise of standard deviation sigma on the samples passes into ghat with the factor k1 + 2 gamma c, and from
-    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.
+    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.  It
+    is hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
 
     Parameters
     ----------
@@ -208,11 +205,6 @@ def tolerable_amplification(
         Seconds at the end of the run; with b > 0 the factor grows.
     margin : float
         How many standard deviations must fit into `hidden`.
-
-    Returns
-    -------
-    float
-        hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
 
     Raises
     ------

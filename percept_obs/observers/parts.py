@@ -49,17 +49,12 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
 
 
 def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols that are 1 where a measured output starts from its first sample, and 0 where the user sets its start.
+    """Return symbols s_y1 for y1 that are 1 where an output starts from its first sample, 0 where its start is set.
 
     Parameters
     ----------
     x1 : sequence of symbols
         Measured outputs.
-
-    Returns
-    -------
-    tuple of symbols
-        Named s_y1 for y1, for use in an observer's start.
 
     See Also
     --------
@@ -138,7 +133,7 @@ def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
 
 
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
-    """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
+    """Return the reset condition and the reset that shrink an estimate to the bound M once its norm reaches gamma M.
 
     Ma 2005, (12), p. 65.  Other states stay.
 
@@ -147,11 +142,6 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     state : symbols
     estimate : symbols
         Those of the state whose norm is bounded.
-
-    Returns
-    -------
-    condition : sympy condition
-    reset : expressions, one a state
 
     See Also
     --------

@@ -68,17 +68,12 @@ class PointBlock:
 
 @lru_cache(maxsize=64)
 def point_block(surface: ImagingSurface) -> PointBlock:
-    """Derive one point's block from the surface.
+    """Return one point's block, derived from the surface.
 
     Parameters
     ----------
     surface : ImagingSurface
         The pinhole or a plane.
-
-    Returns
-    -------
-    PointBlock
-        Kept for each surface.
 
     Raises
     ------

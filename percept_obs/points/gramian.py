@@ -89,7 +89,9 @@ class Gramian(Windows):
 
 @checked
 def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """Information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
+    """Return the information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
+
+    There is a window for each sample from which it fits into the recording.
 
     Parameters
     ----------
@@ -99,11 +101,6 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
         Seconds.
     form : PointsForm, optional
         System with the believed motion; the recording's own when left out.
-
-    Returns
-    -------
-    Gramian
-        With a window for each sample from which it fits into the recording.
 
     Raises
     ------

@@ -100,11 +100,7 @@ class LuenbergerObserver:
         return sp.symbols(f"rho1:{self.form.states + 1}", real=True)
 
     def error_dynamics(self) -> sp.ImmutableMatrix:
-        """Rate of the error rho = x - xhat, in terms of the images and the error; Inaba et al. 2005, (12).
-
-        Returns
-        -------
-        matrix of shape (n, 1)
+        """Return the rate of the error rho = x - xhat, in terms of images and error; Inaba et al. 2005, (12).
 
         Notes
         -----

@@ -170,12 +170,9 @@ def lost_offset() -> PointsScenario:
 
 @checked
 def along_the_line_of_sight() -> PointsScenario:
-    """Scenario of a point that recedes along its ray: the images stand still, and its depth is lost.
+    """Return a scenario of a point that recedes along its ray: the images stand still, and its depth is lost.
 
-    Returns
-    -------
-    PointsScenario
-        In the coordinates X, Y, Z in metres, for 60 s.
+    Its coordinates are X, Y, Z in metres, for 60 s.
 
     See Also
     --------

@@ -199,6 +199,8 @@ def rigid_from_poses(
 ) -> Motion:
     """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
+    It is X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
+
     Parameters
     ----------
     times : array of shape (K,)
@@ -212,11 +214,6 @@ def rigid_from_poses(
         "camera" for poses of the world in the camera's frame, X_camera = R X_world + p, as calibration has them.
     derivative : Neighbours, Quadratic or SmoothingSpline
         For the velocities; a parabola over 0.1 s to either side when left out.
-
-    Returns
-    -------
-    Motion
-        X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
 
     Raises
     ------

@@ -77,17 +77,14 @@ class Scenario(Scene):
         self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
-        """Return positions of the point: exact if the motion is constant, else to a relative error of 1e-10 a step.
+        """Return positions of the point in metres, shape (K, 3).
+
+        They are exact if the motion is constant, else to a relative error of 1e-10 a step.
 
         Parameters
         ----------
         times : array of shape (K,)
             Seconds, from 0 on, not decreasing.
-
-        Returns
-        -------
-        array of shape (K, 3)
-            Metres.
 
         Raises
         ------

@@ -78,21 +78,17 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
 
 @checked
 def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, ...]:
-    """Return tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
+    """Return 44 tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
 
     The motion is rigid: the point rests and the camera moves, with angular velocity w = -(the camera's).  The truth is
-    the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth.
-    A measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.
+    the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth. A
+    measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.  They last 3.0 to
+    8.6 s.
 
     Parameters
     ----------
     path : path, optional
         See `find_utias`, also for the exceptions.
-
-    Returns
-    -------
-    tuple of Recording
-        44 tracks of 3.0 to 8.6 s.
 
     See Also
     --------
@@ -110,20 +106,16 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
 def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
     """Return the camera's motion and the landmarks' tracks in the recording.
 
-    The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted
-    around each sample to the recorded poses within 0.30 s, or to the nearest five where these are fewer.  The
-    recorded gyroscope is not used: it agrees poorly with the motion of the image.  A track is a landmark seen
-    at consecutive samples for at least 3 s, without a gap of more than 0.30 s.
+    The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted around each
+    sample to the recorded poses within 0.30 s, or to the nearest five where these are fewer.  The recorded gyroscope is
+    not used: it agrees poorly with the motion of the image.  A track is a landmark seen at consecutive samples for at
+    least 3 s, without a gap of more than 0.30 s.  There are 1900 samples of the camera, 20 landmarks and 44 tracks with
+    2739 measurements.
 
     Parameters
     ----------
     path : path, optional
         See `find_utias`, also for the exceptions.
-
-    Returns
-    -------
-    StereoTracks
-        1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
 
     See Also
     --------

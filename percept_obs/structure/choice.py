@@ -235,13 +235,10 @@ class StructureAndMotion(OnePoint):
         return f"{far}; and where {stands_still}: no known velocity is left that the scale could be compared with"
 
     def sensitivity(self) -> sp.ImmutableMatrix:
-        """Sensitivity of theta to errors of ybar3 and of its rate, to first order.
+        """Return the sensitivity of theta to errors of ybar3 and of its rate, to first order, shape (n, 2).
 
-        Returns
-        -------
-        matrix of shape (n, 2)
-            Derivatives of theta, as it is recovered from ybar and its rate, with respect to ybar3 and ybar3', in
-            terms of ybar, theta and the known signals.
+        These are the derivatives of theta, as it is recovered from ybar and its rate, with respect to ybar3 and ybar3',
+        in terms of ybar, theta and the known signals.
         """
         numerator, determinant = self.form.cramer
         changed = self.form.rate[: len(OUTPUTS), :].diff(ybar3)
@@ -257,16 +254,13 @@ class StructureAndMotion(OnePoint):
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
     def quantities(self, theta: ArrayLike) -> dict[str, Array]:
-        """Unknown quantities by name, from values of theta.
+        """Return unknown quantities by name, d_s in 1/m and velocities in m/s, from values of theta.
+
+        They are NaN where theta gives no positive d_s, so that no velocity follows.
 
         Parameters
         ----------
         theta : array of shape (..., n)
-
-        Returns
-        -------
-        mapping of names to arrays of shape (...)
-            d_s in 1/m and velocities in m/s, NaN where theta gives no positive d_s, so that no velocity follows.
 
         Raises
         ------

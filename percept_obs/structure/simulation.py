@@ -148,7 +148,9 @@ class PatchDepth:
 
 @checked
 def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:
-    """Offsets of the points of a square grid from the tracked one in its centre.
+    """Return offsets in metres of a square grid's points from the tracked one in its centre, shape (count^2, 3).
+
+    The tracked one is first.
 
     Parameters
     ----------
@@ -158,11 +160,6 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
         Points along a side; odd, so that the tracked one is among them.
     normal : three floats
         Normal vector of the patch in the camera's frame; facing the camera when left out.
-
-    Returns
-    -------
-    array of shape (count^2, 3)
-        In metres, zero first.
 
     Raises
     ------
@@ -348,7 +345,7 @@ def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
 
 @checked
 def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, scale: float | None = None) -> Recording:
-    """Recording of the same samples with another choice of unknowns.
+    """Return the recording of the same samples, times and noise with another choice of unknowns.
 
     Parameters
     ----------
@@ -360,11 +357,6 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
         From `rigid`; its unknown parameters are not used unless the truth is asked for.
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
-
-    Returns
-    -------
-    Recording
-        With the same samples, times and noise.
 
     Raises
     ------
@@ -399,17 +391,14 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
 
 @checked
 def linear_view(recording: Recording) -> Recording:
-    """Recording in scaled positions, for the Kalman filter.
+    """Return the recording in scaled positions (y1, y2, 1) / ybar3, for the Kalman filter.
+
+    It names no variance, for the noise is no longer the same in all outputs.
 
     Parameters
     ----------
     recording : Recording
         Of (y1, y2, ybar3).
-
-    Returns
-    -------
-    Recording
-        Of (y1, y2, 1) / ybar3; it names no variance, for the noise is no longer the same in all outputs.
 
     Raises
     ------

@@ -74,7 +74,9 @@ class Tuned:
 
 @checked
 def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
-    """Log-likelihood of all innovations of some runs, by the filter's own claims.
+    """Return the log-likelihood of all innovations of some runs, by the filter's own claims.
+
+    It is minus infinity if a run diverged.
 
     Parameters
     ----------
@@ -82,11 +84,6 @@ def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
         Of an observer that claims a covariance and has a measurement update.
     after : float
         Seconds since the first sample of each run to leave out.
-
-    Returns
-    -------
-    float
-        Minus infinity if a run diverged.
 
     Raises
     ------

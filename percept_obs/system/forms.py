@@ -193,15 +193,10 @@ class CanonicalForm(PartitionedSystem):
 
     @property
     def cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
-        """Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
+        """Return Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
 
         With as many outputs as hidden coordinates N / D is the inverse of w^T, with more (w w^T)^-1 w, the solution
         in the least-squares sense.
-
-        Returns
-        -------
-        matrix of shape (n2, n1)
-        expression
 
         Raises
         ------

@@ -96,7 +96,7 @@ class Motion:
 
 @checked
 def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: ArrayLike | None = None) -> Motion:
-    """Affine motion (Ma 2005, (1), p. 63).
+    """Return the affine motion X' = A X + b (Ma 2005, (1), p. 63); given numbers are the values of its symbols.
 
     Parameters
     ----------
@@ -106,11 +106,6 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
         Coefficients in m/s; symbols b1, b2, b3 when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
-
-    Returns
-    -------
-    Motion
-        X' = A X + b; given numbers are the values of its symbols.
 
     Raises
     ------
@@ -144,7 +139,7 @@ def rigid(
     point_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
 ) -> Motion:
-    """Rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)).
+    """Return the rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)), with the parameters w1, w2, ... v_p3.
 
     The plus sign of [w]x makes w the negative of the camera's angular velocity in its own frame.
 
@@ -154,11 +149,6 @@ def rigid(
         w in rad/s, v_c and v_p in m/s; symbols when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
-
-    Returns
-    -------
-    Motion
-        With the parameters w1, w2, w3, v_c1, ... v_p3.
 
     Raises
     ------
@@ -195,7 +185,9 @@ def linear(
     states: int | None = None,
     times: ArrayLike | None = None,
 ) -> Motion:
-    """Linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
+    """Return the linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
+
+    Coefficients that are given as arrays and are 0 at all times stay out of its parameters.
 
     Parameters
     ----------
@@ -207,11 +199,6 @@ def linear(
         n; needed where neither array shows it.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
-
-    Returns
-    -------
-    Motion
-        Coefficients that are given as arrays and are 0 at all times stay out of its parameters.
 
     Raises
     ------

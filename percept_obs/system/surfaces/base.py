@@ -138,17 +138,12 @@ class ImagingSurface(OnePoint):
         return self.distance in POINT
 
     def project(self, points: ArrayLike) -> Array:
-        """Coordinates of points of space: their image and inverse distance.
+        """Return the image coordinates and then the inverse distance in 1/m of points of space, shape (..., n).
 
         Parameters
         ----------
         points : array of shape (..., 3)
             Points in metres, in the camera's frame.
-
-        Returns
-        -------
-        array of shape (..., n)
-            Image coordinates and then the inverse distance in 1/m.
 
         Raises
         ------
@@ -190,18 +185,15 @@ class ImagingSurface(OnePoint):
         return np.asarray(coordinates, dtype=float)[..., -1]
 
     def locate(self, coordinates: ArrayLike) -> Array:
-        """Points of space from their coordinates: the ray over the inverse distance.
+        """Return points of space in metres, shape (..., 3), from their coordinates: the ray over the inverse distance.
+
+        They are infinite in every coordinate where the inverse distance is not positive, for such a point is not in
+        front of the camera.
 
         Parameters
         ----------
         coordinates : array of shape (..., n)
             Image coordinates and then the inverse distance in 1/m.
-
-        Returns
-        -------
-        array of shape (..., 3)
-            Points in metres; infinite in every coordinate where the inverse distance is not positive,
-            for such a point is not in front of the camera.
 
         Raises
         ------
