@@ -179,7 +179,6 @@ def calls():
         (pixels.SignalToNoise, {"decibels": 60.0}),
         (pixels.SignalToNoise(60.0).sigma, {"pixels": [[100.0, 200.0]]}),
         (pixels.homography, {"reference": square, "images": square + 0.1}),
-        (pixels.apparent_size, {"images": square}),
         (po.Poses, {"time": poses.time, "position": poses.position, "orientation": poses.orientation}),
         (po.Quadratic, {"half_width": 0.1}),
         (po.Clock, {"zero": 5, "tick": 1e-3}),

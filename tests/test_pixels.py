@@ -8,7 +8,7 @@ from refusals import refuses
 from scipy.spatial.transform import Rotation
 
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise, apparent_size, homography
+from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise, homography
 
 small = st.floats(-0.3, 0.3)
 vectors = st.tuples(small, small, small)
@@ -117,11 +117,3 @@ test_points_that_give_no_homography_are_refused = refuses(
     (np.full((4, 2), np.nan), np.zeros((4, 2)), "not finite"),
     (np.column_stack([np.arange(4.0)] * 2), np.eye(4)[:, :2], "lie on a line"),
 )
-
-
-@given(st.floats(0.5, 5))
-def test_the_apparent_size_is_proportional_to_the_inverse_depth(depth):
-    points, *_ = patch(6, normal=(0, 0, 1.0))
-    further = points + np.array([0.4, -0.2, depth - 2.0])
-    ratio = apparent_size(seen(further)) / apparent_size(seen(points))
-    assert ratio == pytest.approx(2.0 / depth)

@@ -292,16 +292,13 @@ def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> 
 
 @checked
 def with_point(observer: Observer) -> Observer:
-    """Join observer and observed point to a system without inputs, with the state (x1, x2, observer's state).
+    """Return observer and observed point joined, with the state (x1, x2, observer's state).
+
+    Its equations need no samples, for the point's own rates take their place.
 
     Parameters
     ----------
     observer : Observer
-
-    Returns
-    -------
-    Observer
-        Its equations need no samples, for the point's own rates take their place.
 
     See Also
     --------

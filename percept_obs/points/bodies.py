@@ -68,12 +68,14 @@ def rigid_body(
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
-    """Form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), its first point and offsets from it.
+    """Return the form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), point and offsets from it.
 
     With the angular velocities w_c of the camera and w_b of the body and the velocities v_c of the camera and v_p of
     the body's first point, all in the world and written in the camera's axes::
 
         r' = -w_c x r + v_p - v_c,    d_k' = (w_b - w_c) x d_k,    X_1 = r,  X_k = r + d_k
+
+    The 3 p states are r_x, r_y, r_z, d2_x, ...
 
     Parameters
     ----------
@@ -86,11 +88,6 @@ functions of time, optional
         Times in seconds of sampled velocities.
     surface : ImagingSurface, optional
         The pinhole when left out.
-
-    Returns
-    -------
-    PointsForm
-        With 3 p states r_x, r_y, r_z, d2_x, ...
 
     Raises
     ------

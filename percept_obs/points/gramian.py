@@ -10,11 +10,11 @@ from types import MappingProxyType
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.directions import in_words, mainly
 from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm, points_form
+from percept_obs.points.information import transitions
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.recording import Recording
@@ -271,7 +271,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
         at = time[inside]
         shares = np.convolve(np.diff(at), [0.5, 0.5])  # of the trapezoidal rule
-        steps = _transitions(form, at)
+        steps = transitions(form, at)[:, :-1, :-1]
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
@@ -304,19 +304,11 @@ def _true_images(recording: Recording) -> Array:
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
 
 
-def _transitions(form: PointsForm, time: Array) -> Array:
-    """Transition matrices from each time to the next, shape (K - 1, n, n), by one step each."""
-    places = instants(time)
-    A, _ = form.coefficients(places)
-    A = by_step(np.broadcast_to(A, (len(places), *A.shape[1:])))
-    return step(np.eye(form.states), np.diff(time)[:, None, None], lambda instant, Phi: A[:, instant] @ Phi)
-
-
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
     """Integrals over all windows that begin at a sample."""
     check_window(recording, window, holds_samples=True)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
-    begins, matrices = window_integrals(time, information(used), _transitions(form, time), window)
+    begins, matrices = window_integrals(time, information(used), transitions(form, time)[:, :-1, :-1], window)
     states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
     return Gramian(form.names, time[begins], matrices, window, states=states)

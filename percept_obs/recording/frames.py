@@ -100,7 +100,7 @@ def _png(image: Any, number: int) -> bytes:
 
 @checked
 def render(recording: Recording, count: int = 60, size: int = 160, radius: float = 0.15) -> Frames:
-    """Draw a film of a recording with its truth: a ball around the point, which grows as it comes nearer.
+    """Return a film drawn of a recording with its truth: a ball around the point, which grows as it comes nearer.
 
     Parameters
     ----------
@@ -112,10 +112,6 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
         Side of a frame in pixels.
     radius : float
         Of the ball, in metres.
-
-    Returns
-    -------
-    Frames
 
     Raises
     ------

@@ -165,7 +165,7 @@ class Scenario(Scene):
 
 @checked
 def record(scenario: Scene, duration: float | None = None, camera: Camera | None = None, seed: Seed = 0) -> Recording:
-    """Simulate what a camera records of a scenario.
+    """Return the simulated recording of a scenario by a camera.
 
     Parameters
     ----------
@@ -176,10 +176,6 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         The scenario's own when left out, which has no noise.
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
-
-    Returns
-    -------
-    Recording
 
     Raises
     ------

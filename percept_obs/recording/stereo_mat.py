@@ -161,7 +161,7 @@ def read_stereo_mat(
     shortest: float = SHORTEST_TRACK,
     gap: float = LONGEST_GAP,
 ) -> StereoTracks:
-    """Read a MATLAB file of stereo tracks.
+    """Return the tracks in a MATLAB file of a stereo camera.
 
     Parameters
     ----------
@@ -173,10 +173,6 @@ def read_stereo_mat(
         Seconds that a track lasts at least.
     gap : float
         Seconds between two samples of a track at most.
-
-    Returns
-    -------
-    StereoTracks
 
     Raises
     ------

@@ -38,18 +38,13 @@ class DatasetUnavailable(ConnectionError):
 
 @checked
 def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
-    """Find the recording's file on this machine, or fetch it on first use.
+    """Return the recording's file on this machine, its SHA-256 checked; it is fetched on first use.
 
     Parameters
     ----------
     path : str or path, optional
         The file dataset3.mat or a folder that holds it; the environment variable PERCEPT_OBS_UTIAS when left out.
         Without either the file is fetched once from the laboratory's repository and kept in this user's cache.
-
-    Returns
-    -------
-    pathlib.Path
-        The file, its SHA-256 checked.
 
     Raises
     ------

@@ -30,17 +30,14 @@ JUDGEMENTS = MappingProxyType(
 
 @checked
 def claimed_interval(run: Run) -> tuple[Array, Array]:
-    """Ends of the interval of two claimed standard deviations around the estimate.
+    """Return ends of the interval of two claimed standard deviations around the estimate, of shape (K, n) each.
+
+    They are NaN where the run has diverged.
 
     Parameters
     ----------
     run : Run
         Of an observer that claims a covariance.
-
-    Returns
-    -------
-    low, high : arrays of shape (K, n)
-        NaN where the run has diverged.
 
     Raises
     ------
@@ -67,20 +64,16 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
 
 @checked
 def claimed_distance(run: Run) -> tuple[Array, Array]:
-    """Ends of the `claimed_interval` of the distance in metres.
+    """Return ends of the `claimed_interval` of the distance in metres, of shape (K,) each.
 
-    An interval of the inverse distance that reaches zero stands for distances without an upper end.
+    An interval of the inverse distance that reaches zero stands for distances without an upper end.  The high one is
+    infinite where the interval reaches zero, and both are where it is not positive at all; they are NaN where the run
+    has diverged.
 
     Parameters
     ----------
     run : Run
         Of an observer that claims a covariance.
-
-    Returns
-    -------
-    low, high : arrays of shape (K,)
-        `high` is infinite where the interval reaches zero, and both are where it is not positive at all; NaN where
-        the run has diverged.
 
     Raises
     ------
@@ -214,7 +207,7 @@ class Consistency:
 
 @checked
 def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
-    """Test whether a filter's innovations are as large as it claims.
+    """Return a test whether a filter's innovations are as large as it claims.
 
     It needs no truth, so it works on real data.  It cannot find errors that leave no trace in the innovations, such as
     a wrong scale.
@@ -229,10 +222,6 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
     confidence : float
         Probability of the two-sided intervals, between 0 and 1.
-
-    Returns
-    -------
-    Consistency
 
     Raises
     ------

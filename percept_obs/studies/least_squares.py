@@ -65,10 +65,11 @@ class LeastSquares:
 
 @checked
 def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Run:
-    """Least-squares position at the end of a window, from all samples in it.
+    """Return a run of least-squares positions at the end of a window, from all samples in it.
 
     The point of each sample lies on its ray: the cross product of the ray and the position is zero.  With the known
-    affine motion every position is affine in the one at the window's end, so that this is a linear problem.
+    affine motion every position is affine in the one at the window's end, so that this is a linear problem.  Estimates
+    are 0, so that they have no distance, where the window determines no point in front of the camera.
 
     Parameters
     ----------
@@ -76,11 +77,6 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
         With all image coordinates of its surface.
     window : float
         Seconds.
-
-    Returns
-    -------
-    Run
-        Its estimates are 0, so that they have no distance, where the window determines no point in front of the camera.
 
     Raises
     ------

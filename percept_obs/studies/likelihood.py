@@ -119,7 +119,7 @@ def tune_by_likelihood(
     follow: Follow,
     after: float = 0.0,
 ) -> Tuned:
-    """Choose a filter's gains by maximum likelihood of its innovations; no truth is needed.
+    """Return a filter with gains of maximum likelihood of its innovations; no truth is needed.
 
     A small claimed variance makes a large innovation unlikely, and a large one makes every innovation unlikely.  A gain
     that may be 0, such as a process noise, is 0 if the innovations do not clearly speak against it.  Choose on some
@@ -136,10 +136,6 @@ def tune_by_likelihood(
         Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
     after : float
         Seconds at the beginning of each recording whose innovations do not count.
-
-    Returns
-    -------
-    Tuned
 
     Raises
     ------

@@ -92,7 +92,7 @@ class TrustOverTime:
 
 @checked
 def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> TrustOverTime:
-    """Ask `Run.trust` at several times, each time with the samples up to then only.
+    """Return `Run.trust` at several times, each time with the samples up to then only.
 
     Parameters
     ----------
@@ -102,10 +102,6 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
         Relative, as for `Run.trust`.
     count : int
         Number of times, evenly spread from the first at which there are enough samples to the end.
-
-    Returns
-    -------
-    TrustOverTime
 
     Raises
     ------

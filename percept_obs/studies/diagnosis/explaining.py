@@ -51,7 +51,7 @@ class Explained:
 
 
 def explain(recording: Recording) -> Explained:
-    """Find the point, in front of the camera or infinitely far away, that explains all samples best.
+    """Return what the point, in front of the camera or infinitely far away, leaves that explains all samples best.
 
     The unknowns are its image coordinates and inverse distance at the middle sample.  Images do not change with the
     length of a ray, so that a point infinitely far away needs no other formula.
@@ -60,10 +60,6 @@ def explain(recording: Recording) -> Explained:
     ----------
     recording : Recording
         Of a single point.
-
-    Returns
-    -------
-    Explained
 
     See Also
     --------
