@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
-from lab_settings import FRONT, as_array, assert_follows_python
+from lab_settings import FRONT, as_array, assert_follows_python, runs
+from points_settings import run_of
 from sample_sizes import sampled
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.observer.lab import observer_lab, runs
-from percept_obs.labs.points.lab import run_of
+from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.structure.lab import structure_lab
 from percept_obs.system.surfaces import BehindCamera
 

@@ -3,13 +3,13 @@
 import json
 import warnings
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from javascript import run_script
 
 import percept_obs.labs
-from percept_obs.labs.observer.lab import runs
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, system_of
 from percept_obs.labs.shared.printed import file_of, unpacked
 from percept_obs.system.motion import affine
@@ -74,6 +74,16 @@ SCRIPTS = {"observer_lab": "run_settings.js", "structure_lab": "run_structure.js
 def run_in_node(node, lab, tasks):
     """Answers of the page's engine to each of the settings of a lab."""
     return run_script(node, FRONT / "tests" / SCRIPTS[lab.kind], {"model": whole_model(lab), "tasks": tasks})
+
+
+@lru_cache(maxsize=1)
+def _lab():
+    return percept_obs.labs.observer_lab()
+
+
+def runs(settings):
+    """Python's runs of settings of the package's own lab, by the observers' names."""
+    return _lab().runs(settings)
 
 
 def python_runs(settings):

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from percept_obs.labs.structure.lab import runs
+from percept_obs.labs import structure_lab
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.tracking.following import StepTooLong
 
@@ -35,6 +35,11 @@ OTHERS = {
 CASES = {**COROLLARIES, **OTHERS}
 
 
+@lru_cache(maxsize=1)
+def _lab():
+    return structure_lab()
+
+
 def structure_runs_of(settings):
     """Python's runs of settings, whether or not their steps are too long."""
     return _runs_of(json.dumps(settings))
@@ -45,7 +50,7 @@ def _runs_of(text):
     settings = json.loads(text)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StepTooLong)
-        return runs(settings)
+        return _lab().runs(settings)
 
 
 def assert_same_structure_runs(settings, told):

@@ -24,7 +24,7 @@ from percept_obs.compile.functions import executed, function_source
 from percept_obs.compile.integrator import EACH
 from percept_obs.compile.kernels import Table, solve
 from percept_obs.labs.observer.analysis import run_in_words
-from percept_obs.labs.observer.texts import observer_of
+from percept_obs.labs.observer.texts import BY_NAME, observer_on
 from percept_obs.observability.directions import mainly
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.observers import extended_kalman, linear_approximation
@@ -83,7 +83,7 @@ def test_sizes_that_differ_by_less_than_a_millionth_are_equal():
 
 
 def test_two_deviations_are_claimed_where_two_are_said():
-    observer = observer_of("pinhole", ("y1", "y2"), "extended_kalman")
+    observer = observer_on(BY_NAME["extended_kalman"], pinhole(), ("y1", "y2"))
     recording = record(scenarios.ma2005_eq35(), 1.0, Camera(0.05, Gaussian(0.01)))
     run = track(recording, observer, language="python")
     claim, _ = run_in_words((observer, ""), run, 1.0)
@@ -140,7 +140,7 @@ def test_a_hole_in_the_motion_counts_only_during_the_recording():
 
 def test_samples_without_noise_tell_where_the_point_is():
     recording = record(scenarios.ma2005_eq35(), 3.0, Camera(0.1))
-    run = track(recording, observer_of("pinhole", ("y1", "y2"), "extended_kalman"), language="python")
+    run = track(recording, observer_on(BY_NAME["extended_kalman"], pinhole(), ("y1", "y2")), language="python")
     np.testing.assert_allclose(run.trust().information.estimate, recording.truth[-1], rtol=1e-5)
 
 

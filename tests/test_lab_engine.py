@@ -14,11 +14,12 @@ from lab_settings import (
     python_runs,
     random_settings,
     run_in_node,
+    runs,
 )
 from sample_sizes import sampled
 from utias_folder import utias_folder
 
-from percept_obs.labs.observer.lab import observer_lab, runs
+from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS
 from percept_obs.labs.shared.printed import part
 from percept_obs.observability import windowed

@@ -5,11 +5,10 @@ import pytest
 from javascript import run_script
 from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import control, serious_violations
-from lab_settings import FRONT, NOISY, whole_model
+from lab_settings import FRONT, NOISY, runs, whole_model
 
 from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, scenarios
 from percept_obs.labs import observer_lab, structure_lab
-from percept_obs.labs.observer.lab import runs
 
 FOLLOWED, DIVERGED = 1, 2
 GAIN = "gains.identifier_based.gain"

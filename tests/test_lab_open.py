@@ -15,10 +15,8 @@ from test_points_lab import assert_same_run as assert_same_points
 from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
-from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
 from percept_obs.labs.shared.samples import MOST_SAMPLES
-from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
@@ -144,7 +142,7 @@ def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, nod
     tasks = [structure.check({**structure.settings, **change}) for change in changes]
     for settings, answer in zip(tasks, run_in_node(node, structure, tasks), strict=True):
         copied = copied_runs(answer, settings, cubic=cubic)
-        for name, run in structure_runs(settings, {"cubic": structure._user_observers["cubic"]}).items():
+        for name, run in structure.runs(settings).items():
             found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
             np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
             np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=1e-8, atol=1e-9)
@@ -183,7 +181,7 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     for settings in tasks:
         lab.write_down(settings)
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings)
+        run = lab.runs(settings)
         assert_same_points(answer, run)
         namespace = {}
         exec(answer["code"], namespace)
@@ -313,7 +311,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
     tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings, form)
+        run = lab.runs(settings)
         assert_same_points(answer, run)
         namespace = {"form": form}
         exec(answer["code"], namespace)
@@ -347,7 +345,7 @@ def test_of_points_a_motion_in_samples_agrees(node):
     changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
     tasks = [lab.check({**lab.settings, **change}) for change in changes]
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings, form)
+        run = lab.runs(settings)
         assert_same_points(answer, run)
         assert_same_gramian(answer, settings, run.recording)
         namespace = {"form": form}
@@ -440,7 +438,7 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
         tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
         for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
             copied = copied_runs(answer, settings, motion=given)
-            for name, run in structure_runs(settings, samples=lab._samples).items():
+            for name, run in lab.runs(settings).items():
                 assert_same_recording(answer, run.recording)
                 found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
                 np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)

@@ -1,11 +1,10 @@
 """The page's engine and Python agree over a second or less of a point; longer runs are compared where labs are."""
 
 import pytest
-from lab_settings import NOISY, run_in_node
+from lab_settings import NOISY, run_in_node, runs
 from test_lab_engine import assert_same_recording, assert_same_run
 
 from percept_obs.labs import observer_lab, structure_lab
-from percept_obs.labs.observer.lab import runs
 from percept_obs.observability import windowed
 
 pytestmark = pytest.mark.node

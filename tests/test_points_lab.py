@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 from lab_settings import as_array, run_in_node, whole_model
-from points_settings import CASES, random_settings
+from points_settings import CASES, random_settings, run_of
 from sample_sizes import sampled
 
-from percept_obs.labs.points.lab import points_lab, run_of
+from percept_obs.labs.points.lab import points_lab
 from percept_obs.labs.points.texts import MOST_POINTS, STATES, form_of, state_of
 from percept_obs.points.gramian import gramian
 from percept_obs.points.manoeuvre import Manoeuvre

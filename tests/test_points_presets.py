@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from javascript import run_script
 from lab_settings import FRONT
+from points_settings import recording_of, run_of
 
-from percept_obs.labs.points.lab import points_lab, recording_of, run_of
+from percept_obs.labs.points.lab import points_lab
 from percept_obs.points.gramian import gramian, linear_gramian
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]

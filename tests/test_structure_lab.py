@@ -16,7 +16,7 @@ from structure_settings import (
     structure_runs_of,
 )
 
-from percept_obs.labs.structure.lab import runs, structure_lab, unknowns_of
+from percept_obs.labs.structure.lab import structure_lab, unknowns_of
 from percept_obs.labs.structure.texts import general_form, key_of, refused
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.tracking.following import StepTooLong
@@ -230,7 +230,7 @@ def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
     assert limit["time"] == pytest.approx(34.4, abs=0.1)
     assert answers[1]["limits"] == []
     with pytest.warns(StepTooLong, match=r"from 34\.4 s on"):
-        (lost,) = runs(forgotten).values()
+        (lost,) = lab.runs(forgotten).values()
     assert np.abs(lost.error[lost.time > 55, 3]).max() > 100
     assert all(run.verdict(0.05).startswith("converged") for run in structure_runs_of(cured).values())
 

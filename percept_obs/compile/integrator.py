@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from percept_obs.compile.arrays import Array, Indices
 from percept_obs.validation import limit
@@ -95,6 +96,13 @@ def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> A
     for place, shares in zip(PLACES, COUPLING, strict=True):
         rates.append(rate(place, moved(shares)))
     return moved(WEIGHTS)
+
+
+def step_along(state: Array, times: ArrayLike, lengths: ArrayLike, rate: Callable[[Array, Array], Array]) -> Array:
+    """States after steps from times on; rate(times, states) is their rate."""
+    begun, h = np.asarray(times), np.asarray(lengths)
+    each = h.reshape(h.shape + (1,) * (state.ndim - h.ndim))
+    return step(state, each, lambda instant, moved: rate(begun + float(INSTANTS[instant]) * h, moved))
 
 
 def numbers() -> tuple[Array, Array, Indices]:

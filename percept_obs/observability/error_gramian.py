@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import INSTANTS, step
+from percept_obs.compile.integrator import step_along
 from percept_obs.observability.linearised import (
     System,
     flow_along,
@@ -173,10 +173,5 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
         count = max(1, int(np.ceil(h.max() / STEP - 1e-4)))
         length = np.repeat(h / count, 2 * n)
         for k in range(count):
-            start = np.repeat(time[at], 2 * n) + k * length
-
-            def moving(instant: int, state: Array, start: Array = start, length: Array = length) -> Array:
-                return rate(start + float(INSTANTS[instant]) * length, state)
-
-            states = step(states, length[:, None], moving)
+            states = step_along(states, np.repeat(time[at], 2 * n) + k * length, length, rate)
     return found

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
-from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step
+from percept_obs.compile.integrator import LONGEST_STEP, step_along
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
@@ -79,17 +79,16 @@ def linearised(
     # state, transition and spread are integrated together: x' = f, Phi' = F Phi, S' = F S + S F^T + Q
     whole = np.zeros((len(lengths), n, 2 * n + 1))
     whole[:, :, 0], whole[:, :, 1 : n + 1] = recording.truth[:-1], np.eye(n)
+
+    def moving(times: Array, whole: Array) -> Array:
+        values = rates(times, whole[:, :, 0])
+        F, Q = values[:, n:].reshape(-1, 2, n, n).swapaxes(0, 1)
+        turned = F @ whole[:, :, n + 1 :]
+        spread = turned + np.swapaxes(turned, 1, 2) + Q
+        return np.concatenate([values[:, :n, None], F @ whole[:, :, 1 : n + 1], spread], axis=2)
+
     for k in range(count):
-        begins = recording.time[:-1] + k * h
-
-        def moving(instant: int, whole: Array, begins: Array = begins) -> Array:
-            values = rates(begins + float(INSTANTS[instant]) * h, whole[:, :, 0])
-            F, Q = values[:, n:].reshape(-1, 2, n, n).swapaxes(0, 1)
-            turned = F @ whole[:, :, n + 1 :]
-            spread = turned + np.swapaxes(turned, 1, 2) + Q
-            return np.concatenate([values[:, :n, None], F @ whole[:, :, 1 : n + 1], spread], axis=2)
-
-        whole = step(whole, h[:, None, None], moving)
+        whole = step_along(whole, recording.time[:-1] + k * h, h, moving)
     seen = np.isfinite(outputs_of(form, recording))
     return Linearised(positions(form, form.measured), seen, whole[:, :, 1 : n + 1], whole[:, :, n + 1 :])
 

@@ -93,17 +93,17 @@ def _are_expressions(value: Any) -> bool:
     return all(map(_is_expression, entries))
 
 
-def _is_coefficient(value: Any) -> bool:
-    return are_numbers(value) or callable(value) or _are_expressions(value)
-
-
 def _is_integer(value: Any) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
 
 
 Entries = Annotated[Any, Kind("an array of real numbers or of sympy expressions", _are_expressions)]
 Coefficients = Annotated[
-    Any, Kind("an array of real numbers, a function of time, or an array of sympy expressions", _is_coefficient)
+    Any,
+    Kind(
+        "an array of real numbers, a function of time, or an array of sympy expressions",
+        lambda v: are_numbers(v) or callable(v) or _are_expressions(v),
+    ),
 ]
 """Coefficients of a motion."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,15 +13,7 @@ import traitlets
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
-from percept_obs.labs.observer.settings import (
-    HOLDS,
-    PICTURES,
-    SCENARIOS,
-    SCHEMA,
-    STANDARD,
-    as_settings,
-    schema_of,
-)
+from percept_obs.labs.observer.settings import HOLDS, PICTURES, SCENARIOS, SCHEMA, STANDARD, as_settings, schema_of
 from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION
 from percept_obs.labs.observer.tracks import (
     VARIES,
@@ -120,7 +111,8 @@ class ObserverLab(Lab):
         seen = [*given, *(s.surface for s in scenes.values()), *(_seen_on(n, r) for n, r in tracks.items())]
         self._registry, names = registry_of(seen, users, asked or STANDARD["observers"])
         if given:
-            settings = _shaped(given[0], names[0]) | settings
+            shape = numbers_of(given[0], names[0]) if isinstance(given[0], ImagingSurface) else {}
+            settings = shape | settings
             surface = names[0]
         on = dict(zip((*scenes, *tracks), names[len(given) :], strict=True))
         self._tables = {n: t for n, s in scenes.items() if not typed_text(s.motion) and (t := table_of(s))}
@@ -130,13 +122,15 @@ class ObserverLab(Lab):
         opening = str(self.schema["scenario"].read("scenario", scenario))
         fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
         chosen = {"observers": asked, "surface": surface}
+        standard = STANDARD | {name: self.schema[name].opening for name in ("gains", "switches")}
+        sampled = {n: {"track": table_for_the_page(motion)} for n, motion in self._tables.items()}
         super().__init__(
             "observer_lab",
             {**settings, **{name: value for name, value in chosen.items() if value is not None}},
-            {**STANDARD, **self._own_opening(), **fit, "scenario": opening},
-            {**STANDARD, **self._own_opening()},
+            {**standard, **fit, "scenario": opening},
+            standard,
             texts=self._registry.packed,
-            scenarios={n: {"title": s.name, **known[n], **self._sampled(n)} for n, s in scenes.items()},
+            scenarios={n: {"title": s.name, **known[n], **sampled.get(n, {})} for n, s in scenes.items()},
             recordings={
                 n: track_for_the_page(recording, tracks[n].motion.name, on[n], self._registry)
                 for n, recording in self._recordings.items()
@@ -155,16 +149,6 @@ class ObserverLab(Lab):
                 f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording"
             )
         self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
-
-    def _own_opening(self) -> Settings:
-        return {name: self.schema[name].opening for name in ("gains", "switches")}
-
-    def _sampled(self, name: str) -> Settings:
-        return {"track": table_for_the_page(self._tables[name])} if name in self._tables else {}
-
-    def run(self) -> dict[str, Run]:
-        """Runs of the same settings in Python, by the observers' names."""
-        return self.runs(self.settings)
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -241,7 +225,9 @@ class ObserverLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        recording, start, believed = self.recorded(settings), _start(settings), _believed(settings)
+        recording, chosen, other = self.recorded(settings), settings["start"], settings["believed"]
+        start = {"own": None, "zero": [0.0] * 3, "chosen": chosen["values"]}[chosen["mode"]]
+        believed = affine(other["A"], other["b"]) if other else None
         return {
             name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language="python")
             for name in settings["observers"]
@@ -267,16 +253,6 @@ class ObserverLab(Lab):
 observer_lab = ObserverLab
 
 
-def runs(settings: Settings) -> dict[str, Run]:
-    """Runs of settings of the package's own lab, by the observers' names."""
-    return _plain_lab().runs(settings)
-
-
-@lru_cache(maxsize=1)
-def _plain_lab() -> ObserverLab:
-    return ObserverLab()
-
-
 def _seen_on(name: str, recording: Recording) -> ImagingSurface:
     if not isinstance(recording.view, ImagingSurface):
         raise ValueError(
@@ -294,11 +270,6 @@ def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
             f"of its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
         )
     return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
-
-
-def _shaped(given: Any, name: str) -> Settings:
-    """The settings of a surface of the package that was given with numbers."""
-    return numbers_of(given, name) if isinstance(given, ImagingSurface) else {}
 
 
 def _numbers(settings: Settings) -> np.ndarray:
@@ -324,13 +295,3 @@ def _simulated(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> R
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])
     return record_while_seen(scenario, camera, settings["seed"])
-
-
-def _believed(settings: Settings) -> Motion | None:
-    """The motion that observers believe; None for the true one."""
-    return affine(settings["believed"]["A"], settings["believed"]["b"]) if settings["believed"] else None
-
-
-def _start(settings: Settings) -> list[float] | None:
-    """Estimates at the first sample, unless they are the observers' own."""
-    return {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]

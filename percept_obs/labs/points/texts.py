@@ -104,7 +104,7 @@ def _state_for_the_page(name: str) -> Texts:
     return {
         "coefficients": coefficients_for_the_page(name, velocities()),
         "width": len(form.layout.expressions),
-        "layouts": [_layout(form, extra, points) for points in range(1, MOST_POINTS + 1)],
+        "layouts": [_layout(form, 3 * points + extra, points) for points in range(1, MOST_POINTS + 1)],
     }
 
 
@@ -130,24 +130,19 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
         )
     if form.surface != SURFACE:
         raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")
-    layout = {**_arrays(form, n, form.points), "names": list(form.names)}
     return {
         "coefficients": function_source(given, expressions),
         "width": len(expressions),
-        "layouts": [*[None] * (form.points - 1), layout],
+        "layouts": [*[None] * (form.points - 1), _layout(form, n, form.points)],
         **({"samples": samples_for_the_page(motion)} if sampled else {}),
     }
 
 
-def _layout(form: PointsForm, extra: int, points: int) -> Texts:
-    """Positions of a state's coefficients when it has so many of the points."""
-    states = 3 * points + extra
-    return {**_arrays(form, states, points), "names": list(form.names[:states])}
-
-
-def _arrays(form: PointsForm, states: int, points: int) -> Texts:
+def _layout(form: PointsForm, states: int, points: int) -> Texts:
+    """Positions of a state's coefficients when it has so many of the points, and the states' names."""
     found = arrays(form, np.arange(states), np.arange(points))
-    return {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
+    plain = {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
+    return {**plain, "names": list(form.names[:states])}
 
 
 def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:

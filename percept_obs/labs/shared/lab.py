@@ -181,6 +181,14 @@ class Lab(anywidget.AnyWidget):
         if change["new"].strip() and len(change["new"]) <= MOST_READ:
             self._write(change["new"])
 
+    def run(self) -> Any:
+        """Runs of the present settings in Python, by the observers' names; of many points the run of all of them."""
+        return self.runs(self.settings)
+
+    def runs(self, settings: Settings) -> Any:
+        """Runs of settings, as `run` gives them."""
+        raise NotImplementedError
+
     def analyse(self) -> Settings:
         """Analysis of the present settings, which the page shows when the hand rests."""
         return {}

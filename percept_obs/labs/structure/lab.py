@@ -6,14 +6,13 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.common_settings import gains, offering, over
+from percept_obs.labs.shared.common_settings import gains, offering, over, own_gains
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
@@ -99,12 +98,12 @@ class StructureLab(Lab):
         settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
+        self._makers = {**ours, **self._user_observers}
         if asked is not None:
             settings["observers"] = asked
         self._added = _printed_with(self._user_observers)
         printed = self._part("")["observers"]
-        standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
-        standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
+        standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in own_gains(printed).items()}
         named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(
             SCHEMA
@@ -129,13 +128,19 @@ class StructureLab(Lab):
             mostSteps=MOST_STEPS,
         )
 
-    def run(self) -> dict[str, Run]:
-        """Runs of the same settings in Python, by the observers' names."""
-        return self.runs(self.settings)
-
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        return runs(settings, self._user_observers, self._samples)
+        unknowns = unknowns_of(settings, self._samples)
+        recording = _recorded(settings, unknowns, _used(settings, self._samples))
+        start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
+        observers = {
+            name: _made(self._makers[name], unknowns).with_gains(**settings["gains"][name])
+            for name in settings["observers"]
+        }
+        return {
+            name: track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
+            for name, observer in observers.items()
+        }
 
     def _part(self, place: str) -> Texts:
         return self._added.get(place) or part("structure_lab", place)
@@ -175,15 +180,12 @@ class StructureLab(Lab):
                 found = self.runs({**settings, "observers": followed}) if followed else {}
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
-        lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
+        titles = {name: OBSERVERS[name][0] if name in OBSERVERS else run.observer.name for name, run in found.items()}
+        lines = [line for name, run in found.items() for line in late_errors(titles[name], run)]
         return {"sentences": [*lines, *beyond]}
 
 
 structure_lab = StructureLab
-
-
-def _title(name: str, run: Run) -> str:
-    return OBSERVERS[name][0] if name in OBSERVERS else run.observer.name
 
 
 def _example(make: UserObserver) -> Observer:
@@ -246,28 +248,6 @@ def _made(make: Callable[[CanonicalForm], Observer], unknowns: StructureAndMotio
     return make(unknowns.form)
 
 
-def runs(
-    settings: Settings,
-    own: Mapping[str, UserObserver] = MappingProxyType({}),
-    samples: Motion | None = None,
-) -> dict[str, Run]:
-    """Runs of settings by the observers' names, with the user's observers and samples."""
-    unknowns = unknowns_of(settings, samples)
-    recording = _recorded(settings, unknowns, _used(settings, samples))
-    start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
-    found = {}
-    for name in settings["observers"]:
-        make = OBSERVERS[name][1] if name in OBSERVERS else own[name]
-        observer = _made(make, unknowns).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
-    return found
-
-
-def _swings(settings: Settings) -> bool:
-    swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
-    return bool(swings or settings["motion"].strip())
-
-
 def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     """The true motion: the samples, or else constant unless a velocity swings or is typed."""
     if samples:
@@ -278,7 +258,8 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
         rows = _velocities(settings, times)
         return typed.rows(times, rows) if typed else rows
 
-    if _swings(settings):
+    swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
+    if swings or typed:
         return replace(rigid(), signal=Signal(OverTime(known)))
     (still,) = known(np.zeros(1))
     with warnings.catch_warnings():
