@@ -278,7 +278,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     }
     server = Server(f"http://127.0.0.1:{free_port()}", secrets.token_hex(16), folder)
     command = [
-        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"),
+        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--expose-app-in-browser"),
         f"--ServerApp.port={server.url.rpartition(':')[2]}",
         "--ServerApp.port_retries=0",
         f"--IdentityProvider.token={server.token}",
@@ -324,8 +324,11 @@ def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, heigh
 
 
 def open_notebook(page, name: str) -> None:
-    """Show a notebook of the server's folder and wait for its kernel."""
-    page.goto(f"/lab/tree/{name}?reset")
+    """Show a notebook of the server's folder and wait for its kernel; in a page with JupyterLab it replaces others."""
+    if page.evaluate("Boolean(window.jupyterapp)"):
+        page.evaluate(OPEN_ALONE, name)
+    else:
+        page.goto(f"/lab/tree/{name}?reset")
     page.wait_for_selector(IDLE, timeout=60_000)
     # The page says idle too while it knows no kernel yet, and would ask for one; so ask the server.
     wait_until(lambda: kernel_is_ready(page, name), "the kernel to be ready")
@@ -362,6 +365,12 @@ def log_entries(page) -> str:
     return page.evaluate(LOG) or ""
 
 
+OPEN_ALONE = """async (path) => {
+    const { commands } = window.jupyterapp;
+    await commands.execute("docmanager:save-all");
+    await commands.execute("application:close-all");
+    await commands.execute("docmanager:open", { path, factory: "Notebook" });
+}"""
 IDLE = ".jp-Notebook-ExecutionIndicator[data-status=idle]"
 ALL_RAN = """() => {
     const prompts = [...document.querySelectorAll('.jp-CodeCell .jp-InputPrompt')];

@@ -217,6 +217,7 @@ def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
     imports, _, cell = OPEN.replace("observer_lab", case.lab).format(arguments=arguments).partition("lab = ")
     write_notebook(folder, "bench.ipynb", imports, f"lab = {cell}", "ready = True", BUSY)
     page.bring_to_front()
+    page.goto("about:blank")  # so that JupyterLab opens anew
     open_notebook(page, "bench.ipynb")
     page.locator(".jp-Cell").first.click()
     page.keyboard.press("Shift+Enter")
