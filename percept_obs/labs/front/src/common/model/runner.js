@@ -98,6 +98,22 @@ export class Runner {
   }
 }
 
+/** Rows of values of a printed function of columns and known numbers; `rowOf` says in which row these stand. */
+export function evaluated(evaluate, columns, { rows, width, varying }, size, rowOf = (k) => k) {
+  const outputs = columns.length;
+  const found = new Float64Array(size * columns[0].length);
+  const [x, out] = [new Float64Array(outputs + width), new Float64Array(size)];
+  x.set(rows.subarray(0, width), outputs);
+  for (let k = 0; k < columns[0].length; k++) {
+    for (let m = 0; m < outputs; m++) x[m] = columns[m][k];
+    const row = varying ? rowOf(k) * width : 0;
+    if (varying) for (let p = 0; p < width; p++) x[outputs + p] = rows[row + p];
+    evaluate(x, out);
+    for (let i = 0; i < size; i++) found[k * size + i] = out[i];
+  }
+  return found;
+}
+
 /**
  * The state at the first sample, from it, from what is known there, from the estimates that are asked for, and from
  * whether those of the outputs are the sample itself.

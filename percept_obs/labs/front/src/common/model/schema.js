@@ -39,16 +39,8 @@ const MAKE = {
     const [first] = entries;
     if (first.kind === "row") {
       const [{ step, low: least, high: most }] = first.entries;
-      return {
-        kind: "matrix",
-        label,
-        rows: entries.length,
-        columns: first.entries.length,
-        step,
-        least,
-        most,
-        ...words,
-      };
+      const columns = first.entries.length;
+      return { kind: "matrix", label, rows: entries.length, columns, step, least, most, ...words };
     }
     const called = (text, entry) => text?.replace("{}", entry.label) ?? entry.label;
     const named = (entry) => ({ name: called(words.name, entry), label: called(words.label, entry) });

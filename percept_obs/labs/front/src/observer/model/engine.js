@@ -3,7 +3,7 @@
 import { LONGEST_STEP } from "../../common/model/integrator.js";
 import { columnOf } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
-import { Runner } from "../../common/model/runner.js";
+import { evaluated, Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
 import { known, knownAt, lastSamples, spansOf, stepGrid } from "../../common/model/tables.js";
 import { boundOf, noBound, variancesOf } from "./bound.js";
@@ -102,19 +102,7 @@ export class Engine extends Runner {
     if (!functions.w) return { window, time: NONE, smallest: NONE, begun: { time: NONE, smallest: NONE } };
     const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
     const { motion, shape } = this.camera.motion(settings, functions);
-    const table = knownAt(motion, shape, time);
-    const parameters = table.width;
-    const size = hidden.length * measured.length;
-    const w = this.room("w", size * time.length);
-    const x = new Float64Array(measured.length + parameters);
-    const out = new Float64Array(size);
-    if (!table.varying) x.set(table.rows, measured.length);
-    for (let k = 0; k < time.length; k++) {
-      for (let m = 0; m < measured.length; m++) x[m] = columns[m][k];
-      if (table.varying) for (let p = 0; p < parameters; p++) x[measured.length + p] = table.rows[k * parameters + p];
-      functions.w(x, out);
-      for (let i = 0; i < size; i++) w[k * size + i] = out[i];
-    }
+    const w = evaluated(functions.w, columns, knownAt(motion, shape, time), hidden.length * measured.length);
     return { window, ...windowed(time, w, hidden.length, measured.length, window) };
   }
 

@@ -18,20 +18,14 @@ export const PRESETS = presetsOf([
     changes: { b: [0, 0, 0.8], duration: 12, window: 2 },
     acts: [
       {
-        changes: {
-          A: [[0, 0, 0.1], [0, 0, 0], [-0.1, 0, 0]],
-          X0: [-2, 0, 2],
-        },
+        changes: { A: [[0, 0, 0.1], [0, 0, 0], [-0.1, 0, 0]], X0: [-2, 0, 2] },
         answer:
           "For a moment only. While the image crosses the red circle, an instant tells almost nothing of the " +
           "distance. The seconds before and after do, and in between the observer goes on by its equations.",
       },
       {
         button: "Now stay there",
-        changes: {
-          A: [[0, 0, 0], [0, 0, 0], [0, 0, 0]],
-          X0: [0, 0, 2],
-        },
+        changes: { A: [[0, 0, 0], [0, 0, 0], [0, 0, 0]], X0: [0, 0, 2] },
         answer:
           "A point that stays on the focus of expansion stands still in the image, at any distance. So its distance " +
           "is never found. Look at the arrows: the near copy and the far copy do not move either.",

@@ -14,15 +14,13 @@ export function reasons(shown, model) {
   const found = leavingInWords(shown);
   const least = leastOf(shown.excitation);
   if (least) {
-    const over = `any ${readable(shown.excitation.window)} s`;
+    const size = `smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}`;
     found.push(
       least.value < UNEXCITED
         ? `Not excited: in the window that ends at ${readable(least.time)} s the image hardly moves with one ` +
-          `direction of ` +
-            `${hiddenNames.join(", ")} (smallest eigenvalue of ∫ w wᵀ: ${readable(least.value, 2)}).`
-        : `Excited: in ${over} the image moves enough to tell ${hiddenNames.join(" and ")} (smallest eigenvalue of ` +
-          `∫ w wᵀ: ` +
-            `${readable(least.value, 2)} or more).`,
+          `direction of ${hiddenNames.join(", ")} (${size}).`
+        : `Excited: in any ${readable(shown.excitation.window)} s the image moves enough to tell ` +
+          `${hiddenNames.join(" and ")} (${size} or more).`,
     );
   }
   if (measured.length < hiddenNames.length) {
@@ -52,15 +50,12 @@ export function reasons(shown, model) {
     );
   }
   if (settings.believed) found.push("The observers believe another motion than the true one.");
-  if (settings.noise.size > 0) {
-    found.push(noiseInWords(shown));
-  }
+  if (settings.noise.size > 0) found.push(noiseInWords(shown));
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
     found.push(
       "The stronger the shade of a place in the image, the less any unbiased observer can know of the distance of a " +
-      "point that is first seen there. " +
-        "Where there is no shade, the point comes behind the camera.",
+      "point that is first seen there. Where there is no shade, the point comes behind the camera.",
     );
   }
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
@@ -76,12 +71,9 @@ function noiseInWords({ shares }) {
   const added = shares && lateNoise(shares);
   if (!(added > 0))
     return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
-  return (
-    `Noise adds ${percent(added, 2)} to the error after ` +
-    `${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s (filled in its chart). Without noise the ` +
-    `error would follow the thin ` +
-    "dashed line. More gain lets that line fall faster, and lifts what noise adds."
-  );
+  const middle = readable(shares.time[Math.floor(shares.time.length / 2)], 3);
+  return `Noise adds ${percent(added, 2)} to the error after ${middle} s (filled in its chart). Without noise the ` +
+    "error would follow the thin dashed line. More gain lets that line fall faster, and lifts what noise adds.";
 }
 
 /** Sentence on the bound. */
@@ -101,10 +93,7 @@ function leastOf({ time, smallest }) {
 
 function nearestToFoe({ foe, truth, width, time }) {
   if (!foe || !truth?.length) return null;
-  let [least, at] = [Infinity, 0];
-  for (let k = 0; k < time.length; k++) {
-    const squared = (truth[k * width] - foe[0]) ** 2 + (truth[k * width + 1] - foe[1]) ** 2;
-    if (squared < least) [least, at] = [squared, k];
-  }
-  return { distance: Math.sqrt(least), time: time[at] };
+  const apart = time.map((_, k) => Math.hypot(truth[k * width] - foe[0], truth[k * width + 1] - foe[1]));
+  const distance = apart.reduce((least, value) => Math.min(least, value));
+  return { distance, time: time[apart.indexOf(distance)] };
 }

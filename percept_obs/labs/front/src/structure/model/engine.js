@@ -2,8 +2,8 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
-import { Runner } from "../../common/model/runner.js";
-import { EACH, instants, lastSamples, stepGrid } from "../../common/model/tables.js";
+import { evaluated, Runner } from "../../common/model/runner.js";
+import { column, EACH, instants, lastSamples, stepGrid } from "../../common/model/tables.js";
 import { StructureCamera } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { quantityOf } from "./quantities.js";
@@ -144,22 +144,10 @@ export class StructureEngine extends Runner {
   }
 
   /** Amplification of errors by recovering theta along the run, and the determinant that it divides by. */
-  guard({ time, outputs }, { index }, known, { guard }) {
+  guard({ outputs }, { index }, known, { guard }) {
     const last = [0, 1, 2].map((c) => lastSamples(columnOf(outputs, 3, c)));
-    const sizes = new Float64Array(time.length);
-    const determinants = new Float64Array(time.length);
-    const x = new Float64Array(3 + known.width);
-    const out = new Float64Array(2);
-    x.set(known.rows.subarray(0, known.width), 3);
-    for (let k = 0; k < time.length; k++) {
-      for (let m = 0; m < 3; m++) x[m] = last[m][k];
-      const row = EACH * index[k] * known.width;
-      if (known.varying) for (let p = 0; p < known.width; p++) x[3 + p] = known.rows[row + p];
-      guard(x, out);
-      sizes[k] = out[0];
-      determinants[k] = out[1];
-    }
-    return { sizes, determinants };
+    const found = evaluated(guard, last, known, 2, (k) => EACH * index[k]);
+    return { sizes: column(found, 2, 0), determinants: column(found, 2, 1) };
   }
 
   /** Where an observer's steps become too long for its fastest part: by its name, from when on. */
