@@ -88,7 +88,7 @@ export class Runner {
       order: this.order.indexOf(name),
       estimate,
       deviation: functions.variances ? readDeviations(functions, kernel, states, inputs, width) : null,
-      resets: timesOf(resets, grid),
+      resets: grid.filter((_, k) => resets[k]),
       gaps: spansOf(time.length, (k) => lacking[k]).map(({ first, last, key }) => [time[first], time[last], key]),
       gapReasons: kernel.gapReasons,
       divergedAt: diverged < 0 ? null : grid[diverged],
@@ -172,8 +172,4 @@ function readDeviations(functions, kernel, states, { index }, width) {
     for (let c = 0; c < width; c++) deviation[k * width + c] = Math.sqrt(Math.max(0, out[c]));
   }
   return deviation;
-}
-
-function timesOf(resets, grid) {
-  return grid.filter((_, k) => resets[k]);
 }

@@ -74,14 +74,14 @@ export function interpolate(places, times, values) {
 
 const fresh = (length) => new Float64Array(length);
 
-/** One column of a table of rows; `room` gives an array to put it into. */
-export function column(rows, width, which, room = fresh) {
-  const result = room(rows.length / width);
+/** One column of a table of rows. */
+export function column(rows, width, which) {
+  const result = new Float64Array(rows.length / width);
   for (let k = 0; k < result.length; k++) result[k] = rows[k * width + which];
   return result;
 }
 
-/** Each sample, or where it was lost (NaN) the last one before it. */
+/** Each sample, or where it was lost (NaN) the last one before it; `room` gives an array to put it into. */
 export function lastSamples(values, room = fresh) {
   const result = room(values.length);
   let last = NaN;

@@ -2,9 +2,7 @@
 
 import { errorOfOne, settlingTime } from "../../common/model/errors.js";
 import { argumentsAt, startState } from "../../common/model/runner.js";
-import { Engine } from "./engine.js";
-
-const NOWHERE = { foe: null, foeTowards: null, circle: null };
+import { Engine, NOWHERE } from "./engine.js";
 
 export class CellEngine extends Engine {
   /** @type {{of: any[], inputs: any}} what was laid out last, and of what */

@@ -16,6 +16,8 @@ import { divides, sharesOf, withoutNoise } from "./shares.js";
 const INFINITY = 1e6;
 const NEARLY = 1e-9;
 const NONE = new Float64Array(0);
+/** What settings have whose translation points nowhere in the image. */
+export const NOWHERE = { foe: null, foeTowards: null, circle: null };
 
 export class Engine extends Runner {
   constructor(model) {
@@ -108,12 +110,11 @@ export class Engine extends Runner {
 
   /** Where the translation points in the image, and where an instant tells too little. */
   geometry(settings, functions, form) {
-    const nowhere = { foe: null, foeTowards: null, circle: null };
-    if (varies(settings, this.model)) return nowhere;
+    if (varies(settings, this.model)) return NOWHERE;
     const foe = focusOf(settings, functions, this.model);
-    if (!foe) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
+    if (!foe) return { ...NOWHERE, foeTowards: towardsFoe(settings, functions) };
     const at = [...parametersOf(settings), settings.threshold];
-    return { ...nowhere, foe, circle: form.circle ? Array.from(functions.circle(at, [0, 0, 0])) : null };
+    return { ...NOWHERE, foe, circle: form.circle ? Array.from(functions.circle(at, [0, 0, 0])) : null };
   }
 }
 

@@ -3,7 +3,7 @@
 import { userDefined, durationOf, list, NOISES, script, trackings } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { isSampled, varies } from "./camera.js";
-import { isZero, valuesAtStart } from "./kernels.js";
+import { isZero } from "./kernels.js";
 
 const MAKERS = {
   ideal: ["integral_sliding_mode", ""],
@@ -58,7 +58,9 @@ function motionIn(settings, model) {
   if (isSampled(settings)) return ["# motion = rigid(...), the velocities that you gave to the lab"];
   if (isTyped(settings)) return motionThatIsTyped(settings, model);
   if (varies(settings)) return motionThatSwings(settings, model.phases);
-  const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(valuesAtStart(settings, which, model)));
+  // A swing whose rate is 0 stays where it begins.
+  const start = (which, value, k) => value + settings[`${which}_swing`][k] * Math.sin(model.phases[which][k]);
+  const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(settings[which].map((value, k) => start(which, value, k))));
   return [`motion = rigid(${list(settings.w)}, ${v_c}, ${v_p})`];
 }
 
