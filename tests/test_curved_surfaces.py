@@ -1,6 +1,5 @@
 """Roots keep their names on curved surfaces, and another surface shows the same point."""
 
-import time
 from functools import partial
 
 import numpy as np
@@ -40,11 +39,8 @@ ROUND = [[2.0, 0.3, 0.1], [0.3, 1.0, -0.2], [0.1, -0.2, 1.5]]
 
 
 @pytest.mark.parametrize("make", SYMBOLIC.values(), ids=SYMBOLIC)
-def test_every_surface_derives_at_once_to_a_short_rate(make):
-    begin = time.process_time()
-    rate = PerspectiveSystem(affine(), make()).rate
-    assert time.process_time() - begin < 0.5
-    assert sp.count_ops(rate) <= 200
+def test_every_surface_has_a_short_rate(make):
+    assert sp.count_ops(PerspectiveSystem(affine(), make()).rate) <= 200
 
 
 def test_the_unified_model_holds_the_pinhole_and_the_stereographic_sphere():

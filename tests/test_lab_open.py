@@ -77,6 +77,16 @@ def assert_same_recording(answer, recording):
         np.testing.assert_allclose(as_array(answer[name], expected.shape[1]), expected, rtol=1e-9, atol=1e-10)
 
 
+def assert_same_points_and_code(node, lab, tasks, form=None):
+    """The page, Python and the code that the page copies make the same runs of many points."""
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        run, names = lab.runs(settings), {"form": form}
+        assert_same_points(answer, run)
+        exec(answer["code"], names)
+        np.testing.assert_allclose(names["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+        yield settings, answer, run, names["run"]
+
+
 @pytest.fixture(scope="module")
 def lab():
     return observer_lab(observers=[cubic, watched, "extended_kalman"], surface=slanted, motion=MOTION, **CALM, **SHORT)
@@ -180,12 +190,7 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     assert tasks[2]["P"] == "P = 1 + t"
     for settings in tasks:
         lab.write_down(settings)
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = lab.runs(settings)
-        assert_same_points(answer, run)
-        namespace = {}
-        exec(answer["code"], namespace)
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    assert len([*assert_same_points_and_code(node, lab, tasks)]) == len(tasks)
 
 
 test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
@@ -310,12 +315,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     lab = points_lab(form, **OF_POINTS)
     assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
     tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = lab.runs(settings)
-        assert_same_points(answer, run)
-        namespace = {"form": form}
-        exec(answer["code"], namespace)
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    assert len([*assert_same_points_and_code(node, lab, tasks, form)]) == len(tasks)
     for brought, settings, reason in (
         (of_samples(STAMPS[1:]), {}, "from 0.013 to 0.3 s, but a run of the lab begins at 0 s"),
         (of_samples(STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
@@ -344,14 +344,9 @@ def test_of_points_a_motion_in_samples_agrees(node):
     assert lab.settings["duration"] == 2.4
     changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
     tasks = [lab.check({**lab.settings, **change}) for change in changes]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = lab.runs(settings)
-        assert_same_points(answer, run)
+    for settings, answer, run, copied in assert_same_points_and_code(node, lab, tasks, form):
         assert_same_gramian(answer, settings, run.recording)
-        namespace = {"form": form}
-        exec(answer["code"], namespace)
-        assert namespace["run"].verdict() == run.verdict() == answer["summary"]["verdict"]
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+        assert copied.verdict() == run.verdict() == answer["summary"]["verdict"]
     lab.summary = {"serial": 1}
     assert lab.analysis["sentences"]
 

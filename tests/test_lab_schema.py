@@ -27,13 +27,6 @@ from percept_obs.labs.shared.schema import (
 )
 
 LABS = {"observer_lab": observer_lab, "structure_lab": structure_lab, "points_lab": points_lab}
-HOSTILE = [
-    *(None, True, 5, -1, 1e9, float("nan"), float("inf"), 1 + 2j, "1", "", "x' = 1", b"1"),
-    *([], [None], [[]], [[1, 2], [3]], ["y1", "y1"], [1, 2, float("nan")], [True] * 3, ["1"] * 3, [[[0.0] * 3] * 3]),
-    *({}, {"kind": "pink"}, {"kind": None, "size": {}}, {1: 2}, {"mode": "own", "values": "abc"}, {"A": 1, "b": 2}),
-    *(np.zeros((2, 2)), np.full(3, np.nan), np.array(["a"]), np.array(3.0), sp.Symbol("x"), object(), {1, 2}, range(3)),
-    *({"identifier_based": 5}, {"identifier_based": {"gain": None}}, {"ideal": {"feedback": "1"}}, {"seed": "../.."}),
-]
 
 
 @pytest.fixture(scope="module")
@@ -45,32 +38,6 @@ def opened():
 @pytest.fixture(params=LABS)
 def lab(opened, request):
     return opened[request.param]
-
-
-def refusal_of(act):
-    """The ValueError that an act ends with, if any."""
-    try:
-        act()
-    except ValueError as error:
-        return error
-    return None
-
-
-def test_every_setting_takes_what_is_of_its_kind_and_nothing_else(lab):
-    before = lab.settings
-    for name in before:
-        for value in HOSTILE:
-            refusal = refusal_of(lambda changed={**before, name: value}: setattr(lab, "settings", changed))
-            if refusal is None:
-                assert json.loads(json.dumps(lab.settings, allow_nan=False)) == lab.settings
-                lab.settings = before
-                continue
-            assert isinstance(refusal, BadSettings)
-            assert name in ("kept", "points", "surface") or name in str(refusal)
-            assert any(
-                part in str(refusal) for part in ("it must", "there are", "cannot be used", "has no", "is needed")
-            )
-            assert lab.settings == before
 
 
 @pytest.mark.parametrize("whole", [None, 5, "settings", [], [("seed", 1)], {1: 2}, {"seed": 1, None: 2}])
@@ -127,16 +94,20 @@ def outside(kind, value):
             yield changed, reason
 
 
+ALIEN = (object(), 1j, b"1", {1, 2}, {1: 2}, range(3), sp.Symbol("x"))
+"""What no setting takes."""
+
+
 @pytest.mark.parametrize("name", [*LABS, "desk_lab"])
 def test_whatever_lies_outside_of_its_kind_is_refused_by_its_name_and_changes_nothing(opened, name):
     lab = opened[name]
     before, refused = lab.settings, 0
     for setting, kind in lab.schema.items():
-        for value, reason in outside(kind, before[setting]):
+        for value, reason in (*outside(kind, before[setting]), *((each, "") for each in ALIEN)):
             with pytest.raises(BadSettings, match=rf"{setting}.*{reason}"):
                 lab.settings = {**before, setting: value}
             refused += 1
-    assert refused > 2 * len(before)
+    assert refused > 9 * len(before)
     assert lab.settings == before
 
 

@@ -24,34 +24,6 @@ def test_the_gain_has_no_division(points):
     assert all(sp.cancel(entry) == 0 for entry in rest)
 
 
-@pytest.mark.slow
-def test_one_point_and_constant_coefficients_give_the_earlier_observer():
-    """p = 1, A, v and P constant: xhat' = A xhat + v + P^-1 C^T B^T (xi3 y - xi12), and (15) is A^T P + P A <= 0."""
-    observer = luenberger(generic(1, 3))
-    (C,), (y1, y2) = observer.form.C, observer.form.y
-    x_hat = sp.Matrix(observer.estimate)
-    xi, B = C * x_hat, sp.Matrix([[1, 0, -y1], [0, 1, -y2]])
-    earlier = observer.form.motion.A * x_hat + observer.form.motion.b
-    earlier += observer.inverse * C.T * B.T * sp.Matrix([y1 * xi[2] - xi[0], y2 * xi[2] - xi[1]])
-    assert (observer.flow - earlier).expand() == sp.zeros(3, 1)
-    draw = np.random.default_rng(0)
-    A, P = draw.normal(size=(3, 3)), np.diag([1.0, 2, 3])
-    run = track(record(moving_body()), luenberger(PointsForm(linear(A, np.ones(3)), np.eye(3)), P))
-    np.testing.assert_allclose(run.conditions().printed, np.linalg.eigvalsh(A.T @ P + P @ A)[-1])
-
-
-@pytest.mark.slow
-def test_points_of_their_own_do_not_disturb_each_other():
-    """Two independent points in one state: the error of each is that of its own observer."""
-    A, v = sp.Matrix(3, 3, sp.symbols("a:9", real=True)), sp.Matrix(sp.symbols("v:3", real=True))
-    C = np.hstack([np.eye(3), np.zeros((3, 3))]), np.hstack([np.zeros((3, 3)), np.eye(3)])
-    both = luenberger(PointsForm(linear(sp.diag(A, A), sp.Matrix([*v, *v])), C))
-    one = luenberger(PointsForm(linear(A, v), np.eye(3)))
-    block_diagonal = {both.inverse[i, j]: 0 for i in range(3) for j in range(3, 6)}
-    first = both.error_dynamics()[:3, :].subs(block_diagonal)
-    assert (first - one.error_dynamics()).expand() == sp.zeros(3, 1)
-
-
 def weights():
     return {
         "constant": (constant(2.0), True, True),
