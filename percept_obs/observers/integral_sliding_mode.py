@@ -224,10 +224,7 @@ def tolerable_amplification(
     [4.444, 0.444]
     """
     if not (noise > 0 and hidden > 0 and margin > 0 and margin * noise > 0 and 0 <= time < math.inf):
-        raise ValueError(
-            f"noise, hidden and margin must be positive and the time finite, from 0 on, not {noise}, {hidden}, "
-            f"{margin} and {time} s"
-        )
+        raise ValueError("noise, hidden and margin must be positive and the time finite, from 0 on")
     gains = observer.gain_values
     return hidden / (margin * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
 

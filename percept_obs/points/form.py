@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -88,6 +88,7 @@ class PointsForm:
     C: Entries
     surface: ImagingSurface = field(default_factory=pinhole)
     names: tuple[str, ...] = ()
+    judged: ClassVar[str] = JUDGED
 
     def __post_init__(self) -> None:
         n = self.motion.A.shape[0]
@@ -216,11 +217,6 @@ class PointsForm:
         distance = self.locate(states) @ self.surface_numbers[1]
         return np.divide(1, distance, out=np.full_like(distance, np.inf), where=distance != 0)
 
-    @property
-    def judged(self) -> str:
-        """Name of the estimated quantity."""
-        return JUDGED
-
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """Error of the worst point's position, relative to its distance, shape (K,); see `View`."""
         true, found = self.locate(truth), self.locate(estimate)
@@ -344,10 +340,7 @@ class PointsForm:
 def points_form(recording: Recording) -> PointsForm:
     """Return the form of a recording; raise ValueError if it does not show points of a state."""
     if not isinstance(recording.view, PointsForm):
-        raise ValueError(
-            f"this needs a recording of points of a state, but it shows the {recording.view.name}; record a "
-            "PointsScenario"
-        )
+        raise ValueError(f"this needs a recording of points of a state, but it shows the {recording.view.name}")
     return recording.view
 
 

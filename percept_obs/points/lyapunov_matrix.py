@@ -84,13 +84,7 @@ class LyapunovMatrix:
         return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
 
     def sized(self, states: int) -> LyapunovMatrix:
-        """Copy for a number of states, with matrices in place of numbers.
-
-        Raises
-        ------
-        ValueError
-            If a matrix has another shape, or is not symmetric, finite and positive (semi-)definite.
-        """
+        """Return a copy for some states, with matrices in place of numbers, which must be symmetric and definite."""
         if self.schedule is not None:
             rows = self.schedule.at(0.0) if callable(self.schedule.samples) else self.schedule.samples
             for k, row in enumerate(rows):
@@ -261,7 +255,4 @@ def _definite(matrix: Array, what: str, semi: bool = False) -> None:
         raise ValueError(f"{what} must be a finite symmetric matrix")
     least = float(np.linalg.eigvalsh(matrix)[0])
     if least < -1e-12 or (least <= 0 and not semi):
-        raise ValueError(
-            f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite, "
-            "for V = rho^T P rho is to measure the error"
-        )
+        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")

@@ -81,12 +81,8 @@ class PointsScenario(Scene):
     def coordinates(self, times: ArrayLike) -> Array:
         """States at times from 0 on that do not decrease, shape (K, n), as exact as those of a `Scenario`.
 
-        Raises
-        ------
-        LeavesEveryBound
-            If the state grows beyond all bounds before.
-        TooMuchWork
-            If there are too many times, or the motion is too fast.
+        It raises LeavesEveryBound if the state grows beyond all bounds before, and TooMuchWork if the motion is too
+        fast.
         """
         form, start = self.form, np.array(self.state)
         times = times_of(times, form.states)
@@ -104,9 +100,7 @@ class PointsScenario(Scene):
         bounded = np.isfinite(path).all(axis=1)
         if not bounded.all():
             when = times[np.argmin(bounded)]
-            raise LeavesEveryBound(
-                f"the state of {self.name!r} leaves every bound at {when:.4g} s; shorten the duration"
-            )
+            raise LeavesEveryBound(f"the state of {self.name!r} leaves every bound at {when:.4g} s; stop before")
         return path
 
 

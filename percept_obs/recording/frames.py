@@ -73,9 +73,7 @@ class Frames:
                 f"there are {len(images)} frames and times of shape {time.shape}; give each frame a time, increasing"
             )
         if extent.shape != (4,) or extent[0] == extent[1] or extent[2] == extent[3]:
-            raise ValueError(
-                f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge"
-            )
+            raise ValueError(f"the extent is {self.extent!r}; give y1 of left and right, y2 of lower and upper edge")
         vars(self).update(images=images, time=time, extent=tuple(extent.tolist()))
 
 

@@ -30,9 +30,7 @@ def times_of(times: ArrayLike, states: int) -> Array:
     """Return times of a path as an array; refuse them unless finite, from 0 on, not decreasing and not too many."""
     array = np.atleast_1d(np.asarray(times, dtype=float))
     if array.ndim != 1 or not array.size or not np.isfinite(array).all() or (np.diff(array, prepend=0) < 0).any():
-        raise ValueError(
-            "the times must be a list, not empty, of finite seconds from 0 on that do not decrease; sort them"
-        )
+        raise ValueError("the times must be a list, not empty, of finite seconds from 0 on that do not decrease")
     limit(len(array) * (states + 4), "numbers along the path", "ask for fewer times")
     return array
 

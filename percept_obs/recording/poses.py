@@ -132,9 +132,7 @@ class Poses:
             If there are too few poses for it.
         """
         if len(self.time) < derivative.fewest:
-            raise ValueError(
-                f"{len(self.time)} poses are too few for the derivative {derivative!r}; it needs {derivative.fewest}"
-            )
+            raise ValueError(f"{len(self.time)} poses are too few for {derivative!r}; it needs {derivative.fewest}")
         position, orientation, velocity, turning = derivative.of(self.time, self.position, self.orientation)
         smoothed = Poses(self.time, position, orientation)
         return CameraPath(self.time, position, smoothed.orientation, smoothed.rotation.inv().apply(velocity), turning)

@@ -64,13 +64,7 @@ class Clock:
         vars(self).update(zero=zero, tick=float(self.tick))
 
     def seconds(self, readings: list[str]) -> Array:
-        """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding.
-
-        Raises
-        ------
-        ValueError
-            If a reading is not a finite number.
-        """
+        """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding."""
         zero, found = Decimal(repr(self.zero)), []
         for row, text in enumerate(readings, 1):
             try:

@@ -111,9 +111,7 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     p = _homogeneous(images) @ np.swapaxes(to_images, -1, -2)
     m = np.broadcast_to(_homogeneous(reference) @ to_reference.T, p.shape)
     if np.linalg.svd(_equations(m, m), compute_uv=False)[..., 7].min(initial=np.inf) < 1e-9:
-        raise ValueError(
-            "the points of the reference picture do not determine a map; take four of which no three lie on a line"
-        )
+        raise ValueError("the points of the reference picture determine no map; take four, no three on a line")
     solution = np.linalg.svd(_equations(m, p))[2][..., -1, :]
     H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
     H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]

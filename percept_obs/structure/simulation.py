@@ -420,9 +420,7 @@ def linear_view(recording: Recording) -> Recording:
     """
     choice = recording.view
     if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
-        raise ValueError(
-            f"the linear view needs a recording of the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}"
-        )
+        raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,

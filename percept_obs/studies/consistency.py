@@ -251,9 +251,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
-        raise ValueError(
-            f"the run diverged at {run.diverged_at - run.time[0]:.3g} s; a filter that diverges is not consistent"
-        )
+        raise ValueError(f"the run diverged at {run.diverged_at - run.time[0]:.3g} s, so that it is not consistent")
     nis = run.nis
     counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
     there = int(counted.sum())

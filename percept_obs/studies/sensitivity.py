@@ -59,13 +59,7 @@ class Sensitivity:
     sizes: Array
 
     def change(self, **errors: float) -> Array:
-        """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n).
-
-        Raises
-        ------
-        ValueError
-            If a name is none of the `entries`.
-        """
+        """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n)."""
         if unknown := sorted(set(errors) - set(self.entries)):
             raise ValueError(f"the sensitivity has no entry {', '.join(unknown)}; it has {', '.join(self.entries)}")
         return np.asarray(self.derivatives @ [errors.get(name, 0.0) for name in self.entries])
@@ -207,10 +201,7 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
     """The entries' symbols."""
     there = {symbol.name: symbol for symbol in motion.parameters if symbol != TIME}
     if not there or motion.signal is None:
-        raise ValueError(
-            f"the {motion.name} motion has no entries with numbers that could be wrong; give its coefficients as "
-            "arrays or as functions of time"
-        )
+        raise ValueError(f"the {motion.name} motion has no entries with numbers that could be wrong; give it some")
     names = [*there] if entries is None else list(entries)
     unknown = [name for name in names if name not in there]
     if unknown or not names:

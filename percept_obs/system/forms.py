@@ -103,13 +103,7 @@ class PartitionedSystem:
         return tuple(symbol.name for symbol in self.x2)
 
     def canonical_form(self) -> CanonicalForm:
-        """Canonical form of the system, which most observers need.
-
-        Raises
-        ------
-        NotAffine
-            If the measured coordinates' rate is not affine in the hidden ones.
-        """
+        """Canonical form of the system, which most observers need; raises NotAffine if there is none."""
         if self.culprits:
             raise NotAffine(self.measured, self.culprits)
         n1, w = len(self.x1), self._weight

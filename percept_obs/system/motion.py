@@ -73,10 +73,7 @@ class Motion:
     def known(self, times: ArrayLike) -> Array:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
-        Raises
-        ------
-        ValueError
-            If the motion has symbols without numbers, or a time lies outside the known ones.
+        It raises ValueError if the motion has symbols without numbers, or a time lies outside the known ones.
         """
         if self.signal is None:
             if self.parameters:
@@ -250,9 +247,7 @@ def bound(
     if len(missing) == len(coefficients):
         return Motion(name, A, b, symbols)
     if missing:
-        raise ValueError(
-            f"a {name} motion takes all of its coefficients or none of them; give also {', '.join(missing)}"
-        )
+        raise ValueError(f"a {name} motion takes all of its coefficients or none; give also {', '.join(missing)}")
     if any(map(_has_symbols, values)):
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
