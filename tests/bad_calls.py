@@ -23,12 +23,7 @@ from camera_paths import write_stereo_mat
 import percept_obs as po
 from percept_obs import observers, points, structure
 from percept_obs.compile.equations import Equations
-from percept_obs.observability import (
-    empirical_gramian,
-    error_gramian,
-    instantaneous,
-    lie_ranks,
-)
+from percept_obs.observability import empirical_gramian, error_gramian, instantaneous, lie_ranks
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
 from percept_obs.points import gramian
 from percept_obs.points import scenarios as points_scenarios
@@ -167,10 +162,7 @@ def calls():
         (structure.ScaledDepthCamera, {"period": 0.01, "pixels": camera, "ratio": pixels.SignalToNoise(60.0)}),
         (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "angular_velocity": (0.0, 0.0, 0.1)}),
         (structure_scenarios.chwa2019_semigeneral, {"set_up": "simulation", "moves_at": 5.0}),
-        (
-            structure.seen_as,
-            {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0},
-        ),
+        (structure.seen_as, {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0}),
         (structure.linear_view, {"recording": pictures}),
         (PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480), "distortion": (0.1, 0, 0, 0)}),
         (camera.pixels, {"image": [[0.1, 0.2]]}),

@@ -270,10 +270,7 @@ class Found:
     about: str
 
 
-AS_FOUND = {
-    "dropped": ("missing", "replaced"),
-    "exponent": ("exponent", "letter"),
-}
+AS_FOUND = {"dropped": ("missing", "replaced"), "exponent": ("exponent", "letter")}
 """Kinds of mends that answer to a kind of slip, where there are others than of the same name."""
 
 

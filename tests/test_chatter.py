@@ -83,10 +83,7 @@ test_bad_input_is_refused = refuses(
     lambda call: call(),
     (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), []), "no steps"),
     (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), [0.0]), "step is 0.0; it must be positive"),
-    (
-        lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), [0.01], after=2),
-        "after is 2.* shorter than the recording",
-    ),
+    (lambda: chatter(record(EQ35, 1), sliding_mode(BOTH), [0.01], after=2), "after is 2.* shorter than the recording"),
     (lambda: effort(EQ35, sliding_mode(BOTH), 1, "Euler"), "none of RK45, LSODA, Radau"),
     (lambda: effort(EQ35, sliding_mode(BOTH), -1), "duration -1 s"),
     (lambda: effort(EQ35, sliding_mode(BOTH), 1, tolerance=float("nan")), "tolerance nan"),

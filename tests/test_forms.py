@@ -70,11 +70,7 @@ def test_a_partition_is_the_system_in_another_order(surface, names):
     assert {*divided.measured, *divided.hidden} == {s.name for s in system.coordinates}
     rates = dict(zip((*divided.x1, *divided.x2), divided.rate, strict=True))
     assert [rates[s] for s in system.coordinates] == list(system.rate)
-    assert (divided.parameters, divided.coordinates, divided.view) == (
-        system.parameters,
-        system.coordinates,
-        surface,
-    )
+    assert (divided.parameters, divided.coordinates, divided.view) == (system.parameters, system.coordinates, surface)
 
 
 def test_another_part_makes_another_rate():

@@ -100,7 +100,7 @@ def test_what_is_brought_opens_the_lab_with_its_gains_and_its_texts(lab):
     model = whole_model(lab)
     assert model["surfaces"]["slanted"]["outputs"] == [["y1", "y2"], ["y1"], ["y2"]]
     assert set(model["forms"]["slanted y1"]["observers"]) == {
-        *("cubic", "watched", "extended_kalman", "identifier_based"),
+        *("cubic", "watched", "extended_kalman", "identifier_based")
     }
     assert "open it with observers=" in model["forms"]["slanted y1"]["refused"]["sliding_mode"]
     assert "cubic" in model["forms"]["pinhole y1"]["observers"]

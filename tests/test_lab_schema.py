@@ -73,12 +73,7 @@ def outside(kind, value):
         Flag: lambda: [1],
         Row: lambda: [[*value, value[0]], [], 7],
         Several: lambda: [[], [kind.of.opening] * (kind.most + 1)],
-        Entries: lambda: [
-            7,
-            {"x" * (kind.longest + 1): ""},
-            dict.fromkeys(range(kind.most + 1)),
-            {"it": object()},
-        ],
+        Entries: lambda: [7, {"x" * (kind.longest + 1): ""}, dict.fromkeys(range(kind.most + 1)), {"it": object()}],
     }.get(type(kind), lambda: [7])()
     yield from ((each, "it must be ") for each in bad)
     if isinstance(kind, Number) and not kind.zero:

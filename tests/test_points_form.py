@@ -9,14 +9,7 @@ from refusals import refuses
 
 from percept_obs import PointsForm, affine, chained, linear, pinhole, plane, rigid, sphere
 from percept_obs.observability.directions import in_words, mainly
-from percept_obs.points import (
-    NotLinear,
-    UnseenDirection,
-    body_with_origin,
-    independent_points,
-    point_block,
-    rigid_body,
-)
+from percept_obs.points import NotLinear, UnseenDirection, body_with_origin, independent_points, point_block, rigid_body
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT
 

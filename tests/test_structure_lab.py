@@ -8,13 +8,7 @@ import sympy as sp
 from corollaries import corollary_of
 from javascript import run_script
 from lab_settings import FRONT, as_array, copied_runs, run_in_node, whole_model
-from structure_settings import (
-    CASES,
-    COROLLARIES,
-    EVERY,
-    assert_same_structure_runs,
-    structure_runs_of,
-)
+from structure_settings import CASES, COROLLARIES, EVERY, assert_same_structure_runs, structure_runs_of
 
 from percept_obs.labs.structure.lab import structure_lab, unknowns_of
 from percept_obs.labs.structure.texts import general_form, key_of, refused

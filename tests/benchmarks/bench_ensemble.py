@@ -22,18 +22,7 @@ import numpy as np
 from measured import exit_code, interleaved
 from other_packages import BATCH, contenders, together_of
 
-from percept_obs import (
-    Camera,
-    PerspectiveSystem,
-    Uniform,
-    affine,
-    ensemble,
-    ibo,
-    pinhole,
-    record,
-    scenarios,
-    track,
-)
+from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, record, scenarios, track
 from percept_obs.compile import solve
 from percept_obs.studies import chunks
 

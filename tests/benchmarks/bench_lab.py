@@ -97,11 +97,7 @@ def _places(count: int) -> dict[str, Any]:
 
 OBSERVER = {
     "three charts of two and three lines": {**THREE, "kept": {}},
-    "three charts of five and six lines": {
-        **THREE,
-        "observers": [*TWO, "extended_kalman"],
-        "kept": {"observers": TWO},
-    },
+    "three charts of five and six lines": {**THREE, "observers": [*TWO, "extended_kalman"], "kept": {"observers": TWO}},
     "thousands of resets": {**THREE, **NOISY, "observers": TWO},
     **{f"{name} alone, three charts": {**THREE, "observers": [name]} for name in BY_NAME},
 }

@@ -186,9 +186,6 @@ def contenders(work, folder):
     found = {"vectorised numpy": vectorised_numpy(work), "scipy, RK45": scipy_rk45(work)}
     if shutil.which("gcc"):
         found |= {"C, OpenMP SIMD": in_c(work, folder, BATCH, 1), "C, one lane": in_c(work, folder, 1, 16)}
-    others = {
-        "heyoka, Taylor series": ("heyoka", heyoka),
-        "diffrax, Dopri5": ("diffrax", diffrax),
-    }
+    others = {"heyoka, Taylor series": ("heyoka", heyoka), "diffrax, Dopri5": ("diffrax", diffrax)}
     found |= {name: make(work) for name, (module, make) in others.items() if find_spec(module)}
     return found, [module for module, _ in others.values() if not find_spec(module)]
