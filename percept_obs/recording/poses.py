@@ -67,16 +67,12 @@ class Poses:
         time, position, turns = (numbers(each, f"the poses' {name}") for name, each in vars(self).items())
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
-        shapes: dict[str, list[tuple[int, ...]]] = {
-            "time": [()],
-            "position": [(3,)],
-            "orientation": [(4,), (3, 3)],
-        }
-        for (name, expected), values in zip(shapes.items(), (time, position, turns), strict=True):
-            if values.shape not in [(len(time), *shape) for shape in expected]:
+        expected: dict[str, list[tuple[int, ...]]] = {"time": [()], "position": [(3,)], "orientation": [(4,), (3, 3)]}
+        for (name, shapes), values in zip(expected.items(), (time, position, turns), strict=True):
+            if values.shape not in [(len(time), *shape) for shape in shapes]:
                 raise ValueError(
                     f"the {name}s have the shape {values.shape}; expected {len(time)} rows, as the times have, of "
-                    f"shape {' or '.join(map(str, expected))}; a quaternion is x, y, z, w"
+                    f"shape {' or '.join(map(str, shapes))}; a quaternion is x, y, z, w"
                 )
             bad = ~np.isfinite(values.reshape(len(time), -1)).all(axis=1)
             if bad.any():
