@@ -74,7 +74,7 @@ def linearised(
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
     f = rate_of(form)
-    rates = _along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
+    rates = values_along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
     h = lengths / count
     # state, transition and spread are integrated together: x' = f, Phi' = F Phi, S' = F S + S F^T + Q
     whole = np.zeros((len(lengths), n, 2 * n + 1))
@@ -93,19 +93,14 @@ def linearised(
     return Linearised(positions(form, form.measured), seen, whole[:, :, 1 : n + 1], whole[:, :, n + 1 :])
 
 
-def flow_along(form: PartitionedSystem, recording: Recording) -> Rate:
-    """The rate, shape (T, n), as a function of times (T,) and coordinates (T, n), with a recording's known motion."""
-    return _along(form, recording, list(rate_of(form)))
-
-
 def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
     """The rate in the order of the form's coordinates."""
     by_name = dict(zip((*form.x1, *form.x2), form.rate, strict=True))
     return sp.ImmutableMatrix([by_name[symbol] for symbol in form.coordinates])
 
 
-def _along(form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]) -> Rate:
-    """Values of expressions, one a column, as a function of times and coordinates."""
+def values_along(form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]) -> Rate:
+    """Values of expressions, one a column, as a function of times (T,) and coordinates (T, n) in the known motion."""
     evaluate = vectorised((*form.coordinates, *form.parameters), expressions)
     surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
     return lambda times, states: np.stack(evaluate(*states.T, *recording.motion.known(times).T, *surface), axis=-1)

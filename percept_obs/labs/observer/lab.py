@@ -228,10 +228,12 @@ class ObserverLab(Lab):
         recording, chosen, other = self.recorded(settings), settings["start"], settings["believed"]
         start = {"own": None, "zero": [0.0] * 3, "chosen": chosen["values"]}[chosen["mode"]]
         believed = affine(other["A"], other["b"]) if other else None
-        return {
-            name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language="python")
-            for name in settings["observers"]
-        }
+        found = {}
+        for name in settings["observers"]:
+            observer, _ = self._chosen(settings, name)
+            tuned = observer.with_gains(**{gain.name: settings["gains"][name][gain.name] for gain in observer.gains})
+            found[name] = track(recording, tuned, start, settings["hold"], believed, language="python")
+        return found
 
     def recorded(self, settings: Settings) -> Recording:
         """Recording of the camera, as far as the point stays in front of it."""
@@ -243,11 +245,6 @@ class ObserverLab(Lab):
         """An observer with its default gains, and its switch."""
         way = str(settings["switches"].get(name, ""))
         return self._registry.observer(settings["surface"], settings["outputs"], name, way), way
-
-    def _tuned(self, settings: Settings, name: str) -> Observer:
-        """An observer with the gains of the settings."""
-        observer, values = self._chosen(settings, name)[0], settings["gains"][name]
-        return observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
 
 
 observer_lab = ObserverLab

@@ -20,7 +20,6 @@ from percept_obs.labs.observer.texts import (
     observer_on,
     surface_for_the_page,
 )
-from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.labs.shared.user_observers import (
@@ -73,10 +72,6 @@ class Registry:
     def observer(self, surface: str, outputs: Iterable[str], name: str, way: str = "") -> Observer:
         """An observer with its default gains."""
         return observer_on(self.observers[name], self.surfaces[surface], tuple(outputs), way)
-
-    def with_every_gain(self, name: str) -> Observer:
-        """An observer with the switch that has all gains."""
-        return with_all_gains(self.examples(name))
 
     def examples(self, name: str) -> dict[str, Observer]:
         """An observer with each of its switches, of the first form that it fits."""

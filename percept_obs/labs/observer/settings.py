@@ -8,6 +8,7 @@ import numpy as np
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over, own_gains
+from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
 from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -113,7 +114,7 @@ def schema_of(registry: Registry, scenarios_and_recordings: Mapping[str, Any]) -
             "scenario": Choice(STANDARD["scenario"], tuple(scenarios_and_recordings)),
             "surface": offering(SCHEMA["surface"], registry.surfaces),
             "observers": offering(SCHEMA["observers"], registry.observers),
-            "gains": gains(standard, registry.with_every_gain),
+            "gains": gains(standard, lambda name: with_all_gains(registry.examples(name))),
             "over": over(standard, MAPPED),
             "switches": Group(switches, partial=True),
         }

@@ -49,8 +49,8 @@ def kept_by_reads(function: F) -> F:
                 return value
         noted = _Noted(settings)
         value = function(noted, *others)
-        for name in noted.names:
-            settings[name]
+        if isinstance(settings, _Noted):
+            settings.names |= noted.names
         kept.append((noted, others, value))
         return value
 

@@ -21,7 +21,6 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.analysis import late_errors
 from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
@@ -42,7 +41,7 @@ from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, for_the_page
+from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, for_the_page
 from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
@@ -181,11 +180,29 @@ class StructureLab(Lab):
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
         titles = {name: OBSERVERS[name][0] if name in OBSERVERS else run.observer.name for name, run in found.items()}
-        lines = [line for name, run in found.items() for line in late_errors(titles[name], run)]
+        lines = [line for name, run in found.items() for line in _late_errors(titles[name], run)]
         return {"sentences": [*lines, *beyond]}
 
 
 structure_lab = StructureLab
+
+
+def _late_errors(title: str, run: Run) -> list[str]:
+    """Sentences on the errors of the unknown quantities over the last tenth of the run."""
+    unknowns = run.recording.view
+    assert isinstance(unknowns, StructureAndMotion)
+    late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
+    found, true = (unknowns.quantities(values[late, 3:]) for values in (run.estimate, run.truth))
+    lines = []
+    for name, values in found.items():
+        error = (values - true[name])[np.isfinite(values)]
+        unit = "1/m" if name == "d_s" else "m/s"
+        if len(error):
+            off = f"{error.mean():+.2g} {unit} on average and scatters by {error.std():.2g}"
+            lines.append(f"{title}, last tenth of the run: {name} is off by {off}.")
+        else:
+            lines.append(f"{title}, last tenth of the run: no estimate of {name}.")
+    return lines
 
 
 def _example(make: UserObserver) -> Observer:
