@@ -305,13 +305,7 @@ FOCUSED = """async () => {
 
 
 def moved_by_keyboard(page, first, moves=MappingProxyType(MOVES)):
-    """Names of the controls on which the Tab key comes by, beginning with the first; each was moved by its own keys.
-
-    Raises
-    ------
-    AssertionError
-        If one that can be seen and is enabled is left out, or one is not moved.
-    """
+    """Names of the controls on which the Tab key comes by, all that can be used, each moved by its own keys."""
     page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = false))")
     open_topics_by_keyboard(page)
     wanted = set(

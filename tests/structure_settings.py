@@ -54,14 +54,7 @@ def _runs_of(text):
 
 
 def assert_same_structure_runs(settings, told):
-    """The page's estimates are those of Python: to 1e-9 of 1 or their size, chattering ones over the first second.
-
-    Parameters
-    ----------
-    settings : dict
-    told : dict
-        For each observer its "estimate", a list of numbers in which None is not finite, and its "divergedAt".
-    """
+    """The page's estimates are those of Python: to 1e-9 of 1 or their size, chattering ones over the first second."""
     for name, run in structure_runs_of(settings).items():
         found = np.array([np.nan if v is None else v for v in told[name]["estimate"]], dtype=float)
         found = found.reshape(run.estimate.shape)

@@ -227,15 +227,6 @@ def test_outputs_that_leave_what_is_hidden_inseparable_are_refused():
         derivation_desk(surface="sphere", outputs=["y1"])
 
 
-def test_answers_carry_the_serial_of_their_settings():
-    desk = derivation_desk()
-    for serial in (3, 4):
-        typed = {"rate 1 X'": "a11 X"[: serial + 1]}
-        desk.set_state({"settings": {**desk.settings, "typed": typed}, "summary": {"serial": serial}})
-        assert desk.analysis["serial"] == serial
-        assert as_tree(desk.analysis["lines"][0]["markup"]) is not None
-
-
 def test_every_setting_opens_with_what_is_of_its_kind_and_is_in_the_docstring():
     for name, kind in SCHEMA.items():
         assert kind.read(name, derivation_desk().settings[name]) == kind.opening
