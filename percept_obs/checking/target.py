@@ -151,15 +151,7 @@ class Target:
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def read(self, mine: Any) -> list[Reading]:
-        """Return readings of text, sympy, or a list or a mapping of either.
-
-        Raises
-        ------
-        CannotRead
-            If a text is no formula of the target's letters.
-        ValueError
-            If it is something else, or has no finite value.
-        """
+        """Return readings of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
             found = read(mine, *self._known)
             return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]

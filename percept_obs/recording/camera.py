@@ -163,19 +163,7 @@ class Camera:
     def times(self, duration: float, each: int = 1) -> Array:
         """Return the times of the samples in seconds, from 0 on, shape (K,).
 
-        Parameters
-        ----------
-        duration : float
-            In seconds.
-        each : int
-            Numbers kept of a sample, for the limit of memory.
-
-        Raises
-        ------
-        ValueError
-            If the duration holds no two of them.
-        TooMuchWork
-            If it holds too many.
+        The duration holds at least one period, and not too many samples for `each` numbers in every one.
         """
         if not math.isfinite(duration):
             raise ValueError(f"a duration of {duration} s holds no two samples; it must be finite")
@@ -189,24 +177,9 @@ class Camera:
         return self.period * np.arange(int(np.floor(duration / self.period + 1e-9)) + 1, dtype=float)
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
-        """Return samples of a scene and the variance of their noise.
+        """Return samples of a scene, shape (K, ..., m), and the variance of their noise.
 
-        Parameters
-        ----------
-        scene : Scene
-        time : array of shape (K,)
-            Seconds.
-        truth : array of shape (K, n)
-            Coordinates of the scene's view.
-        generator : numpy Generator
-            Draws the noise and then the lost samples.
-
-        Returns
-        -------
-        outputs : array of shape (K, ..., m)
-            NaN where a point is not seen.
-        variance : float
-            Of the noise in each output.
+        The truth has the coordinates of its view at the times.  Noise is drawn first, then the lost samples.
         """
         exact = scene.view.outputs(truth)
         outputs = exact + self.noise.draw(generator, exact.shape)

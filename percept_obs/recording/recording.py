@@ -15,7 +15,7 @@ from percept_obs.compile import Array, Flags
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import warn_if_implausible
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
-from percept_obs.recording.track_table import fields_of_recordings
+from percept_obs.recording.track_table import fields_of_recordings, runs
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
@@ -161,7 +161,9 @@ class Recording:
             )
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
-            raise ValueError(f"the outputs are named {', '.join(self.names)}; there are {', '.join(known)}, each once")
+            raise ValueError(
+                f"{', '.join(self.names)} are no outputs; those of the {self.view.name} are {', '.join(known)}, each once"
+            )
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
             raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
@@ -273,10 +275,8 @@ class Recording:
             raise ValueError(f"the absence is {absence} s; it must be positive")
         found = []
         for point, seen in enumerate(self.seen.reshape(len(self.time), -1).T):
-            samples = np.flatnonzero(seen)
-            if len(samples):
-                runs = np.split(samples, np.flatnonzero(np.diff(self.time[samples]) > absence) + 1)
-                found += [Sighting(point, int(run[0]), int(run[-1])) for run in runs]
+            parts = runs(self.time, np.flatnonzero(seen), absence)
+            found += [Sighting(point, int(part[0]), int(part[-1])) for part in parts]
         return tuple(sorted(found, key=lambda sighting: (sighting.first, sighting.point)))
 
     @classmethod

@@ -126,13 +126,7 @@ class Scenario(Scene):
         return self.motion
 
     def coordinates(self, times: ArrayLike) -> Array:
-        """Return image coordinates and inverse distance of the point, shape (K, n).
-
-        Raises
-        ------
-        BehindCamera
-            If the point is not in front of the camera at one of the times.
-        """
+        """Return image coordinates and inverse distance of the point, which must stay in front, shape (K, n)."""
         times = times_of(times, len(POINT))
         points = self.points(times)
         try:

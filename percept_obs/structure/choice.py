@@ -156,17 +156,9 @@ class StructureAndMotion(OnePoint):
         return tuple(s for s in (*ROTATION, *CAMERA, *OBJECT) if s.name not in (*self.unknown, *self.zero))
 
     def known_motion(self, motion: Motion) -> Motion:
-        """Signals of the known parameters of a rigid motion.
+        """Signals of the known parameters of a motion from `rigid`, with numbers.
 
-        Parameters
-        ----------
-        motion : Motion
-            From `rigid`, with numbers; those of unknown quantities are not used and may be anything.
-
-        Raises
-        ------
-        ValueError
-            If the motion is not rigid, or a velocity that is said to be zero is not.
+        Those of unknown quantities are not used and may be anything; velocities that are said to be zero must be.
         """
         if motion.parameters != rigid().parameters:
             raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")

@@ -310,12 +310,7 @@ class ScaledDepthCamera(Camera):
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
 
-        Raises
-        ------
-        BehindCamera
-            If a point of the object does not stay in front of the camera.
-        ValueError
-            If it is not an object whose structure is sought, or a point is outside the first picture.
+        All points of the object must stay in front of the camera, and be inside the first picture.
         """
         if not isinstance(scene, StructureScenario):
             raise ValueError(f"a ScaledDepthCamera measures a StructureScenario, not {scene.name!r}; take a Camera")
