@@ -162,7 +162,7 @@ class Recording:
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
             raise ValueError(
-                f"{', '.join(self.names)} are no outputs; those of the {self.view.name} are {', '.join(known)}, each once"
+                f"those of the {self.view.name} are {', '.join(known)}, each once, not {', '.join(self.names)}"
             )
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
