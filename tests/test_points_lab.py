@@ -37,26 +37,18 @@ def runs(answers):
 @pytest.mark.slow
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
-def test_page_and_python_agree_to_1e_9(answers, runs, case):
+def test_page_python_and_the_copied_code_agree_to_1e_9(answers, runs, case):
     settings, answer = answers[case]
-    run = runs(case)
+    run, names = runs(case), {}
     assert_same_run(answer, run)
     assert_same_gramian(answer, settings, run.recording)
-
-
-@pytest.mark.slow
-@pytest.mark.node
-@pytest.mark.parametrize("case", CASES)
-def test_the_copied_code_makes_the_same_run(answers, runs, case):
-    _, answer = answers[case]
-    namespace = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of directions that are never seen, as the user is to see it
-        exec(answer["code"], namespace)
-    expected, copied = runs(case), namespace["run"]
-    assert copied.diverged_at == expected.diverged_at
-    if expected.diverged_at is None:
-        np.testing.assert_allclose(copied.state, expected.state, rtol=0, atol=1e-9)
+        exec(answer["code"], names)
+    copied = names["run"]
+    assert copied.diverged_at == run.diverged_at
+    if run.diverged_at is None:
+        np.testing.assert_allclose(copied.state, run.state, rtol=0, atol=1e-9)
 
 
 @pytest.mark.slow

@@ -35,8 +35,9 @@ def answers(lab, node):
 
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
-def test_the_page_computes_what_python_does(answers, case):
+def test_the_page_computes_what_python_does_and_the_choice_s_determinant(answers, case):
     assert_same(*answers[case])
+    assert_same_determinant(*answers[case])
 
 
 def assert_same(settings, answer):
@@ -55,12 +56,6 @@ def assert_same(settings, answer):
                 np.testing.assert_allclose(as_array(told["quantities"][quantity]), values, rtol=1e-6, atol=1e-9)
             far = np.where(np.isfinite(run.distance), run.distance, np.nan)
             np.testing.assert_allclose(as_array(told["range"]), far, rtol=1e-6)
-
-
-@pytest.mark.node
-@pytest.mark.parametrize("case", CASES)
-def test_the_determinant_is_the_choice_s(answers, case):
-    assert_same_determinant(*answers[case])
 
 
 def assert_same_determinant(settings, answer):

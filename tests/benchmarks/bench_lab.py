@@ -243,23 +243,30 @@ def measure_opening(page: Any, folder: Path) -> None:
         )
 
 
-def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
-    """Measure configurations with an idle kernel, and some with a busy one."""
+@contextmanager
+def in_jupyterlab() -> Any:
+    """A page of a JupyterLab of its own, and the folder of its notebooks."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
         with jupyterlab(*places[:2]) as server, lab_page(found_chromium(), server, places[2]) as page:
-            if opening:
-                measure_opening(page, places[0])
-            with reference_page(page.context) as reference:
-                for title, case in wanted.items():
-                    open_in_jupyterlab(page, places[0], case)
-                    handle = HANDLES[case.lab]
-                    measure(title, page, reference, handle)
-                    if title in BESIDE_A_BUSY_KERNEL:
-                        measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
+            yield page, places[0]
     finally:
         for place in places:
             shutil.rmtree(place, ignore_errors=True)
+
+
+def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
+    """Measure configurations with an idle kernel, and some with a busy one."""
+    with in_jupyterlab() as (page, folder):
+        if opening:
+            measure_opening(page, folder)
+        with reference_page(page.context) as reference:
+            for title, case in wanted.items():
+                open_in_jupyterlab(page, folder, case)
+                handle = HANDLES[case.lab]
+                measure(title, page, reference, handle)
+                if title in BESIDE_A_BUSY_KERNEL:
+                    measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
 
 
 def open_alone(context: Any, lab: Any) -> Any:
