@@ -161,9 +161,7 @@ class Recording:
             )
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
-            raise ValueError(
-                f"those of the {self.view.name} are {', '.join(known)}, each once, not {', '.join(self.names)}"
-            )
+            raise ValueError(f"the outputs are named {', '.join(self.names)}; there are {', '.join(known)}, each once")
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
             raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
