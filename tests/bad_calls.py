@@ -22,12 +22,8 @@ from camera_paths import write_stereo_mat
 
 import percept_obs as po
 from percept_obs import observers, points, structure
-from percept_obs.observability import (
-    empirical_gramian,
-    error_gramian,
-    instantaneous,
-    lie_ranks,
-)
+from percept_obs.compile.equations import Equations
+from percept_obs.observability import empirical_gramian, error_gramian, instantaneous, lie_ranks
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
 from percept_obs.points import gramian
 from percept_obs.points import scenarios as points_scenarios
@@ -110,6 +106,7 @@ def calls():
         (observer.initial_state, {"outputs": {"y1": 0.0, "y2": 0.0}, "start": {"y3": 1.0}}),
         (observer.lambdify, {"motion": motion, "measured": lambda t: (0.0, 0.0)}),
         (po.with_point, {"observer": observer}),
+        (Equations, {"state": (sp.Symbol("x"),), "flow": (1 - sp.Symbol("x"),)}),
         (ultimate_bound, {"observer": ismo, "disturbance": 0.5, "time": 1.0}),
         (tolerable_amplification, {"observer": ismo, "noise": 0.1, "hidden": 1.0, "time": 1.0, "margin": 10.0}),
         (po.Camera, {"period": 0.1, "noise": po.Uniform(0.1), "dropout": 0.1, "reach": 3.0}),
@@ -165,10 +162,7 @@ def calls():
         (structure.ScaledDepthCamera, {"period": 0.01, "pixels": camera, "ratio": pixels.SignalToNoise(60.0)}),
         (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "angular_velocity": (0.0, 0.0, 0.1)}),
         (structure_scenarios.chwa2019_semigeneral, {"set_up": "simulation", "moves_at": 5.0}),
-        (
-            structure.seen_as,
-            {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0},
-        ),
+        (structure.seen_as, {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0}),
         (structure.linear_view, {"recording": pictures}),
         (PixelCamera, {"focal": (720, 720), "centre": (320, 240), "size": (640, 480), "distortion": (0.1, 0, 0, 0)}),
         (camera.pixels, {"image": [[0.1, 0.2]]}),
@@ -177,7 +171,6 @@ def calls():
         (pixels.SignalToNoise, {"decibels": 60.0}),
         (pixels.SignalToNoise(60.0).sigma, {"pixels": [[100.0, 200.0]]}),
         (pixels.homography, {"reference": square, "images": square + 0.1}),
-        (pixels.apparent_size, {"images": square}),
         (po.Poses, {"time": poses.time, "position": poses.position, "orientation": poses.orientation}),
         (po.Quadratic, {"half_width": 0.1}),
         (po.Clock, {"zero": 5, "tick": 1e-3}),

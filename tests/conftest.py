@@ -43,11 +43,12 @@ def pytest_itemcollected(item):
 
 
 def pytest_collection_modifyitems(items):
-    """Files that take long first, for one at the end would keep a worker waiting: with a browser, many slow tests."""
+    """Files that take long first, or one would be late: those with a browser, the notebooks, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     browser = {item.path for item in items if item.get_closest_marker("browser")}
-    items.sort(key=lambda item: (item.path not in browser, -slow[item.path], -tests[item.path]))
+    rank = {path: (path not in browser, path.stem != "test_notebooks", -slow[path], -tests[path]) for path in tests}
+    items.sort(key=lambda item: rank[item.path])
 
 
 def pytest_collection_finish():

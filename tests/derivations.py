@@ -2,7 +2,6 @@
 
 import random
 import re
-import time
 from dataclasses import dataclass
 from functools import cache
 from itertools import islice
@@ -120,8 +119,9 @@ def _functions(formula, draw):
 
 def _powers(formula, draw):
     """Roots as quotients of other powers."""
-    is_root = {"query": lambda e: e.is_Pow and abs(e.exp) == sp.S.Half}
-    return formula.replace(is_root["query"], lambda e: e.base ** (3 * e.exp) / e.base ** (2 * e.exp))
+    return formula.replace(
+        lambda e: e.is_Pow and abs(e.exp) == sp.S.Half, lambda e: e.base ** (3 * e.exp) / e.base ** (2 * e.exp)
+    )
 
 
 def _renamed(formula, draw):
@@ -261,20 +261,16 @@ def _is_found(term, marked):
 
 @dataclass(frozen=True)
 class Found:
-    """Result of a review of a formula with slips, and its seconds."""
+    """Result of a review of a formula with slips."""
 
     refused: bool
     line: bool
     term: bool
     slip: bool
-    seconds: float
     about: str
 
 
-AS_FOUND = {
-    "dropped": ("missing", "replaced"),
-    "exponent": ("exponent", "letter"),
-}
+AS_FOUND = {"dropped": ("missing", "replaced"), "exponent": ("exponent", "letter")}
 """Kinds of mends that answer to a kind of slip, where there are others than of the same name."""
 
 
@@ -283,10 +279,8 @@ def reviewed(seed, slips, among):
     draw = random.Random(f"{slips} {seed}")
     case, row, made = drawn(draw, slips, among)
     mine = whole(case, row, made[-1].formula) if len(case.target.lines) > 1 else made[-1].formula
-    start = time.process_time()
     review = check(mine, case.target)
     str(review.hint(3))
-    seconds = time.process_time() - start
     wrong = [k for k, line in enumerate(review.lines) if line.verdict in (Verdict.WRONG, Verdict.CARRIED)]
     at_line = wrong == [row if len(case.target.lines) > 1 else 0]
     term = slip = False
@@ -304,7 +298,7 @@ def reviewed(seed, slips, among):
         term = all(terms)
         slip = len(kinds) == 1 and kinds[0] in AS_FOUND.get(made[0].slip.kind, (made[0].slip.kind,))
         about += f": {[(m.slip.kind, m.slip.before, m.slip.after) for m in made]}, found {kinds} in {marked}"
-    return Found(review.right is False, at_line, term, slip, seconds, about)
+    return Found(review.right is False, at_line, term, slip, about)
 
 
 def equivalent(seed, among):

@@ -74,8 +74,3 @@ def figures(count, clean):
     """Counts of the keys that are named first, by the mistake that was made."""
     found = {fault: Counter(named(fault, seed) for seed in range(count)) for fault in FAULTS}
     return found | {"nothing": Counter(named("nothing", 1000 + seed) for seed in range(clean))}
-
-
-if __name__ == "__main__":
-    for fault, names in figures(20, 100).items():
-        print(f"{fault}: named first in {names[fault] / names.total():.0%} of {names.total()}; {dict(names)}")

@@ -1,6 +1,5 @@
 """Runs that cannot be right, and good ones, on which the trust in estimates without a truth is measured."""
 
-import sys
 import warnings
 from dataclasses import replace
 from functools import cache
@@ -8,7 +7,6 @@ from functools import cache
 import numpy as np
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, Scenario, pinhole, record, rigid, track
-from percept_obs.observers import OBSERVERS
 from percept_obs.system.surfaces import BehindCamera
 
 FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
@@ -117,10 +115,3 @@ def flagged(make, kind, count):
             found.append(not trust.trusted)
         seed += 1
     return float(np.mean(found)) if found else np.nan, len(found)
-
-
-if __name__ == "__main__":
-    for make in OBSERVERS:
-        for kind in ("good", *WRONG):
-            share, count = flagged(make, kind, int(sys.argv[1]) if len(sys.argv) > 1 else 100)
-            print(f"{make.name}, {kind}: {share:.0%} of {count} flagged", flush=True)

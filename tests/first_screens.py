@@ -33,7 +33,8 @@ COUNTS = """() => {
     const { width, height } = first.body.getBoundingClientRect();
     const area = first.views.reduce((sum, { figure }) => {
         const box = figure.getBoundingClientRect(); return sum + box.width * box.height; }, 0);
-    return { controls: nodes.length, words: words([...said, ...own, ...drawn].join(" ")), share: area / (width * height) };
+    const counted = words([...said, ...own, ...drawn].join(" "));
+    return { controls: nodes.length, words: counted, share: area / (width * height) };
 }"""
 
 

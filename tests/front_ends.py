@@ -12,7 +12,10 @@ from lab_browser import assert_equals_python, control, drag_by_keys, drag_by_mou
 
 from percept_obs.labs import observer_lab
 
-LABS = ("from percept_obs.labs import observer_lab\nobserver_lab('ma2005_eq35', face='workbench')", "observer_lab(outputs=['y1'], face='workbench')")
+LABS = (
+    "from percept_obs.labs import observer_lab\nobserver_lab('ma2005_eq35', face='workbench')",
+    "observer_lab(outputs=['y1'], face='workbench')",
+)
 FOE = control("foe")
 
 SETTLED = """(count) => {

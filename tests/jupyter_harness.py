@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import importlib.util
+import multiprocessing
 import os
 import re
 import secrets
@@ -147,6 +148,56 @@ SETTLE = "import asyncio\nawait asyncio.sleep(0.3)  # what a callback put off ha
 JUDGE = "jupyter_harness.judge()"
 
 
+FORK = sys.platform == "linux"
+"""Kernels are forked from a process that has imported what notebooks import, which else takes them seconds each."""
+
+if FORK:
+    forks = multiprocessing.get_context("forkserver")
+    forks.set_forkserver_preload(["ipykernel.kernelapp", "matplotlib.pyplot", "numba", "pandas", "percept_obs.labs"])
+
+    class Kernel(forks.Process):
+        """A kernel in a forked process, which has the methods of `subprocess.Popen` that its manager calls."""
+
+        stdin = stdout = stderr = None
+
+        def __init__(self, connection: str, folder: str, environment: dict[str, str]) -> None:
+            super().__init__()
+            self.given = connection, folder, environment
+
+        def run(self) -> None:
+            from ipykernel.kernelapp import launch_new_instance
+
+            connection, folder, environment = self.given
+            os.environ.clear()
+            os.environ.update(environment, JPY_PARENT_PID=str(os.getppid()))  # with which it ends
+            os.chdir(folder)
+            launch_new_instance(argv=["-f", connection])
+
+        def poll(self) -> int | None:
+            return self.exitcode
+
+        def wait(self) -> int | None:
+            self.join()
+            return self.exitcode
+
+        def send_signal(self, number: int) -> None:
+            os.kill(self.pid, number)
+
+
+def fork_kernel(client) -> None:
+    """Let a client's kernel be a forked one."""
+    from jupyter_client.provisioning import LocalProvisioner
+
+    class Forked(LocalProvisioner):
+        async def launch_kernel(self, cmd, **options):
+            self.process = Kernel(client.km.connection_file, str(options["cwd"]), options["env"])
+            self.process.start()
+            return self.connection_info
+
+    manager = client.create_kernel_manager()
+    manager.provisioner = Forked(parent=manager, kernel_id="forked", kernel_spec=manager.kernel_spec)
+
+
 def execute(
     notebook: nbformat.NotebookNode, folder: Path, beside: Mapping[int, Sequence[str]] = MappingProxyType({})
 ) -> dict[str, dict]:
@@ -162,6 +213,8 @@ def execute(
     from nbclient import NotebookClient
 
     client = NotebookClient(notebook, kernel_name="python3", timeout=120, resources={"metadata": {"path": str(folder)}})
+    if FORK:
+        fork_kernel(client)
     with client.setup_kernel():
         _execute_beside(client, PRELUDE)
         for k, cell in enumerate(notebook.cells):
@@ -278,7 +331,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     }
     server = Server(f"http://127.0.0.1:{free_port()}", secrets.token_hex(16), folder)
     command = [
-        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"),
+        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--expose-app-in-browser"),
         f"--ServerApp.port={server.url.rpartition(':')[2]}",
         "--ServerApp.port_retries=0",
         f"--IdentityProvider.token={server.token}",
@@ -324,8 +377,11 @@ def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, heigh
 
 
 def open_notebook(page, name: str) -> None:
-    """Show a notebook of the server's folder and wait for its kernel."""
-    page.goto(f"/lab/tree/{name}?reset")
+    """Show a notebook of the server's folder and wait for its kernel; in a page with JupyterLab it replaces others."""
+    if page.evaluate("Boolean(window.jupyterapp)"):
+        page.evaluate(OPEN_ALONE, name)
+    else:
+        page.goto(f"/lab/tree/{name}?reset")
     page.wait_for_selector(IDLE, timeout=60_000)
     # The page says idle too while it knows no kernel yet, and would ask for one; so ask the server.
     wait_until(lambda: kernel_is_ready(page, name), "the kernel to be ready")
@@ -362,6 +418,12 @@ def log_entries(page) -> str:
     return page.evaluate(LOG) or ""
 
 
+OPEN_ALONE = """async (path) => {
+    const { commands } = window.jupyterapp;
+    await commands.execute("docmanager:save-all");
+    await commands.execute("application:close-all");
+    await commands.execute("docmanager:open", { path, factory: "Notebook" });
+}"""
 IDLE = ".jp-Notebook-ExecutionIndicator[data-status=idle]"
 ALL_RAN = """() => {
     const prompts = [...document.querySelectorAll('.jp-CodeCell .jp-InputPrompt')];

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from conftest import missing
 from jupyter_harness import open_notebook, run_all
-from lab_settings import FRONT, as_array, assert_follows_python
+from lab_settings import FRONT, as_array, assert_follows_python, runs
+from points_settings import run_of
 from sample_sizes import sampled
 from structure_settings import assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.observer.lab import observer_lab, runs
-from percept_obs.labs.points.lab import run_of
+from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.structure.lab import structure_lab
 from percept_obs.system.surfaces import BehindCamera
 
@@ -306,13 +306,7 @@ FOCUSED = """async () => {
 
 
 def moved_by_keyboard(page, first, moves=MappingProxyType(MOVES)):
-    """Names of the controls on which the Tab key comes by, beginning with the first; each was moved by its own keys.
-
-    Raises
-    ------
-    AssertionError
-        If one that can be seen and is enabled is left out, or one is not moved.
-    """
+    """Names of the controls on which the Tab key comes by, all that can be used, each moved by its own keys."""
     page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = false))")
     open_topics_by_keyboard(page)
     wanted = set(

@@ -3,13 +3,13 @@
 import json
 import warnings
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from javascript import run_script
 
 import percept_obs.labs
-from percept_obs.labs.observer.lab import runs
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SURFACES, WAYS, key_of, system_of
 from percept_obs.labs.shared.printed import file_of, unpacked
 from percept_obs.system.motion import affine
@@ -76,6 +76,16 @@ def run_in_node(node, lab, tasks):
     return run_script(node, FRONT / "tests" / SCRIPTS[lab.kind], {"model": whole_model(lab), "tasks": tasks})
 
 
+@lru_cache(maxsize=1)
+def _lab():
+    return percept_obs.labs.observer_lab("ma2005_eq35")
+
+
+def runs(settings):
+    """Python's runs of settings of the package's own lab, by the observers' names."""
+    return _lab().runs(settings)
+
+
 def python_runs(settings):
     """Python's runs of settings, chattering or not."""
     with warnings.catch_warnings():
@@ -108,13 +118,8 @@ def assert_follows_python(settings, told, tolerance=1e-8):
     two languages need not share.  How much it does is seen in Python alone, by moving the samples by 1e-12: page and
     Python may differ by the tolerance, relative to 1 or the value, and by as much as that; and once Python's own runs
     have parted by 1e-4, nothing is left to compare but whether they diverge.  Over the first second they may differ
-    by 1e-6 and no more.
-
-    Parameters
-    ----------
-    settings : dict
-    told : dict
-        For each observer its "estimate", a list of numbers in which None is not finite, and its time "divergedAt".
+    by 1e-6 and no more.  What is told is for each observer its "estimate", with None for what is not finite, and
+    "divergedAt".
     """
     believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
     start = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]

@@ -53,12 +53,7 @@ MISTAKES = {
         ],
     },
     "04_all_observers": {
-        "spring": [
-            "s^2 + H s - Lambda b1^2",
-            "s^2 - H s + Lambda b1^2",
-            "s^2 + H s + Lambda b1",
-            "s^2 + Lambda b1^2",
-        ],
+        "spring": ["s^2 + H s - Lambda b1^2", "s^2 - H s + Lambda b1^2", "s^2 + H s + Lambda b1", "s^2 + Lambda b1^2"],
         "same-numbers": ["b", "c", "d"],
         "from-the-sample": [
             {"measured_gain": 5, "hidden_gain": 10},  # the gains it comes with
@@ -139,12 +134,7 @@ MISTAKES = {
         "best": [(0, 0, 1), (1, 0, 0), (0.4, 0.2, 1), (-0.2, 0.4, 0)],
     },
     "12_the_limit": {
-        "linear": [
-            "e3' = -b3 y3 e3",
-            "e3' = 2 b3 y3 e3",
-            "e3' = -2 b3 y3^2 e3",
-            "e3' = -b3 y3^2",
-        ],
+        "linear": ["e3' = -b3 y3 e3", "e3' = 2 b3 y3 e3", "e3' = -2 b3 y3^2 e3", "e3' = -b3 y3^2"],
         "half": ["a", "b", "d"],
         "wait": [2, 5, 7, 10],
     },

@@ -1,7 +1,10 @@
 """Settings of the lab of many points that its tests try, and the page's engine run on them in Node.js."""
 
+from functools import lru_cache
+
 import numpy as np
 
+from percept_obs.labs import points_lab
 from percept_obs.labs.points.settings import SCHEMA, WEIGHTS
 from percept_obs.labs.points.texts import STATES
 
@@ -42,6 +45,21 @@ CASES = {
     "short steps": {"period": 0.03, "step": 0.004, "duration": 5.0, "window": 2.0},
     "a window as long as the run": {"duration": 5.0, "window": 50.0},
 }
+
+
+@lru_cache(maxsize=1)
+def _lab():
+    return points_lab()
+
+
+def run_of(settings):
+    """Python's run of settings in the package's own lab."""
+    return _lab().runs(settings)
+
+
+def recording_of(settings):
+    """Python's recording of settings."""
+    return _lab().recorded(settings)
 
 
 def random_settings(seed):

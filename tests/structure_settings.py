@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from percept_obs.labs.structure.lab import runs
+from percept_obs.labs import structure_lab
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.tracking.following import StepTooLong
 
@@ -35,6 +35,11 @@ OTHERS = {
 CASES = {**COROLLARIES, **OTHERS}
 
 
+@lru_cache(maxsize=1)
+def _lab():
+    return structure_lab()
+
+
 def structure_runs_of(settings):
     """Python's runs of settings, whether or not their steps are too long."""
     return _runs_of(json.dumps(settings))
@@ -45,18 +50,11 @@ def _runs_of(text):
     settings = json.loads(text)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StepTooLong)
-        return runs(settings)
+        return _lab().runs(settings)
 
 
 def assert_same_structure_runs(settings, told):
-    """The page's estimates are those of Python: to 1e-9 of 1 or their size, chattering ones over the first second.
-
-    Parameters
-    ----------
-    settings : dict
-    told : dict
-        For each observer its "estimate", a list of numbers in which None is not finite, and its "divergedAt".
-    """
+    """The page's estimates are those of Python: to 1e-9 of 1 or their size, chattering ones over the first second."""
     for name, run in structure_runs_of(settings).items():
         found = np.array([np.nan if v is None else v for v in told[name]["estimate"]], dtype=float)
         found = found.reshape(run.estimate.shape)

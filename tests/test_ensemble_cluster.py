@@ -15,7 +15,6 @@ from percept_obs import ensemble, ibo, scenarios
 from percept_obs.cli import main
 from percept_obs.studies import chunks
 
-distributed = pytest.importorskip("distributed")
 xr = pytest.importorskip("xarray")
 
 EQ35 = scenarios.ma2005_eq35()
@@ -48,6 +47,7 @@ def alone():
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_killed_worker_costs_time_only(alone, tmp_path):
+    distributed = pytest.importorskip("distributed")
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": tmp_path}
     with distributed.LocalCluster(**cluster) as two, distributed.Client(two) as client:
         pids, killed = list(client.run(os.getpid).values()), []

@@ -4,44 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 from examples import AFFINE, BOTH, NOISY, ON_SPHERE, ONE, ZERO
-from pykalman import KalmanFilter
-from scipy.linalg import expm
 
 from percept_obs import Camera, Gaussian, ekf, record, scenarios, track
-from percept_obs.compile import Table, solve
-from percept_obs.system.forms import partition
 
 EQ35 = scenarios.ma2005_eq35()
-
-
-@pytest.mark.slow
-def test_on_a_linear_system_it_is_the_kalman_filter():
-    """Against pykalman, given the exact discretisation of the same continuous system."""
-    x, v = sp.symbols("x v", real=True)
-    k, c = 0.7, 0.2
-    form = partition((x, v), sp.ImmutableMatrix([v, -k * x - c * v]), ["x"], ())
-    observer = ekf(form, noise_variance=0.01, measured_variance=2.0, hidden_variance=3.0)
-    period, count = 0.1, 200
-    samples = np.random.default_rng(1).normal(0, 1, count)
-    reference = KalmanFilter(
-        transition_matrices=expm(period * np.array([[0, 1], [-k, -c]])),
-        observation_matrices=[[1.0, 0.0]],
-        transition_covariance=np.zeros((2, 2)),
-        observation_covariance=[[0.01]],
-        initial_state_mean=[0.0, 0.0],
-        initial_state_covariance=np.diag([2.0, 3.0]),
-    )
-    means, covariances = reference.filter(samples)
-    expected = np.hstack([means, covariances[:, *np.triu_indices(2)]])
-
-    fine = 100
-    arriving = np.full(((count - 1) * fine + 1, 1), np.nan)
-    arriving[::fine, 0] = samples
-    steps = len(arriving) - 1
-    table = Table(np.full(steps, period / fine), np.zeros((steps, 3, 1)), np.zeros((1, 0)), arriving)
-    start = [0.0, 0.0, 2.0, 0.0, 3.0]
-    trace = solve(observer.equations, start, table, [gain.value for gain in observer.gains], "numba")
-    np.testing.assert_allclose(trace.states[::fine], expected, atol=1e-10)
 
 
 @pytest.mark.slow

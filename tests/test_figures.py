@@ -67,6 +67,10 @@ def without_truth():
     return track(replace(both.recording, truth=None), both.observer, ZERO)
 
 
+def of_y1(recording):
+    return replace(recording, outputs=recording.outputs[:, :1], names=("y1",))
+
+
 MAKERS = {
     "(35), both outputs": lambda: track(
         record(scenarios.ma2005_eq35(), camera=NOISY, seed=1), ibo(form("y1", "y2")), ZERO
@@ -144,6 +148,8 @@ def test_signals_draws_samples_truth_and_estimate_of_every_coordinate(runs, name
     figure = figures.signals(run)
     coordinates = [symbol.name for symbol in run.recording.view.coordinates]
     assert len(figure.axes) == len(coordinates) + 1
+    letter = {"chained": "Y", "plane": "l", "three outputs": "l"}.get(name, "Z")
+    assert figure.axes[-2].get_ylabel() == f"$y_{{{len(coordinates)}}} = 1/{letter}$ (1/m)"
     for column, (coordinate, ax) in enumerate(zip(coordinates, figure.axes, strict=False)):
         np.testing.assert_array_equal(line(ax, "estimate"), [run.time, run.estimate[:, column]])
         if coordinate in run.observer.form.measured:
@@ -389,7 +395,7 @@ def test_without_a_focus_of_expansion_the_figure_says_so(translation):
 def test_with_one_output_the_line_without_w_is_drawn():
     motion = affine([[0, 0.4, 0], [0, 0, 0.1], [0, 0.2, 0]], (0.6, 0.1, 0.3))
     recording = record(Scenario("blind", motion, (5, 0.5, 3), 2, pinhole()), camera=COARSE)
-    run = track(replace(recording, outputs=recording.outputs[:, :1], names=("y1",)), ibo(form("y1")))
+    run = track(of_y1(recording), ibo(form("y1")))
     figure = figures.image_plane(run)
     np.testing.assert_allclose(line(figure.axes[0], "$w = 0$")[0], [2, 2])
     assert "w vanishes at y1 = 2" in figure.text
@@ -434,11 +440,6 @@ def test_the_scene_has_the_viewing_ray_to_the_end_and_the_closest_approach(runs)
     np.testing.assert_array_equal(places(ax, "camera")[:, 0], ZERO)
     assert places(ax, "camera")[0].max() > 0  # it opens along Z
     assert f"within {np.linalg.norm(run.recording.points, axis=1).min():.3g} m" in figure.text
-
-
-def test_the_scene_of_a_recording_has_no_estimate(runs):
-    figure = figures.scene(runs("chained").recording)
-    assert "estimate" not in [line.get_label() for line in figure.axes[0].lines]
 
 
 def test_the_scene_has_one_scale(runs):
@@ -508,6 +509,7 @@ def test_compare_takes_runs_with_and_without_noise(runs):
 def test_distance_is_in_metres_with_gaps_behind_the_camera(runs, name):
     run = runs(name)
     figure = figures.distance(run, labels=["estimate"])
+    assert len(figure.axes) == 1 + (run.recording.truth is not None)
     (drawn,) = (curve for curve in figure.axes[0].lines if curve.get_label().startswith("estimate"))
     values = drawn.get_ydata()
     seen = run.estimate[:, -1] > 0
@@ -529,10 +531,6 @@ def test_another_measurement_of_the_distance_is_drawn_and_may_be_the_reference(r
     np.testing.assert_allclose(faint(figure.axes[1])[0], np.where(np.isfinite(relative), relative, np.nan))
     assert "By the stereo it is from 2 to 5 m" in figure.text
     assert f"median relative error is {np.median(relative[len(stereo) // 2 :]):.2g} %" in figure.text
-
-
-def test_without_any_reference_there_is_one_row(runs):
-    assert len(figures.distance(runs("without truth")).axes) == 1
 
 
 # ---- excitation
@@ -557,17 +555,13 @@ def replaced(one, smallest):
     return replace(one, matrices=smallest[:, None, None] * np.eye(one.matrices.shape[1]))
 
 
-def test_round_off_is_clipped_and_counted(runs):
-    one = windowed(form("y1"), runs("(35), both outputs").recording)
-    figure = figures.excitation(replaced(one, smallest=np.where(one.time > 70, -1e-20, one.smallest)))
-    assert figure.axes[0].lines[0].get_ydata().min() == 1e-16
-    assert f"{(one.time > 70).sum()} values below 1e-16" in figure.text
-    paint(figure)
-
-
-def test_unknown_windows_are_gaps_and_counted(runs):
+def test_round_off_is_clipped_and_unknown_windows_are_gaps_and_both_are_counted(runs):
     one = windowed(form("y1"), runs("(35), both outputs").recording)
     late = one.time > 70
+    figure = figures.excitation(replaced(one, smallest=np.where(late, -1e-20, one.smallest)))
+    assert figure.axes[0].lines[0].get_ydata().min() == 1e-16
+    assert f"{late.sum()} values below 1e-16" in figure.text
+    paint(figure)
     figure = figures.excitation(replaced(one, smallest=np.where(late, np.nan, one.smallest)))
     np.testing.assert_array_equal(np.isnan(figure.axes[0].lines[0].get_ydata()), late)
     assert f"Unknown: {late.sum()} of {len(late)} windows" in figure.text
@@ -631,7 +625,11 @@ def test_each_figure_has_a_text_and_labels_with_units_and_draws_on_given_axes(na
     assert [t for ax in figure.axes if (t := ax.get_xlabel())] + [
         t for ax in figure.axes if (t := ax.get_ylabel())
     ] == LABELS[name]
-    assert f'<img alt="{html.escape(figure.text)}"' in figure._repr_html_()
+    shown = figure._repr_html_()
+    assert f'<img alt="{html.escape(figure.text)}"' in shown
+    assert "data:image/png;base64,iVBOR" in shown
+    assert "max-width: 100%" in shown
+    assert figure.text in repr(figure)
     assert figure.text.endswith(".")
     parameters = inspect.signature(getattr(figures, name)).parameters
     if "axes" in parameters:
@@ -650,24 +648,7 @@ def test_each_figure_has_a_text_and_labels_with_units_and_draws_on_given_axes(na
     assert plt.get_fignums() == known
 
 
-@pytest.mark.parametrize(("name", "letter"), [("dropouts", "Z"), ("chained", "Y"), ("plane", "l")])
-def test_the_label_of_the_inverse_distance_has_the_letter_of_the_surface(runs, name, letter):
-    assert figures.signals(runs(name)).axes[2].get_ylabel() == f"$y_{{3}} = 1/{letter}$ (1/m)"
-
-
 # ---- pictures
-
-
-def test_in_jupyter_a_figure_is_a_picture_with_alternative_text(runs):
-    figure = figures.image_plane(runs("(35), both outputs"))
-    shown = figure._repr_html_()
-    (alternative,) = re.findall(r'<img alt="([^"]*)"', shown)
-    assert "|w| &lt; 0.1" in alternative
-    assert html.unescape(alternative) == figure.text
-    assert "was outside 10 % until 79 s" in alternative
-    assert "max-width: 100%" in shown
-    assert "data:image/png;base64,iVBOR" in shown
-    assert figure.text in repr(figure)
 
 
 def test_pyplots_axes_are_shown_once(runs):
@@ -704,6 +685,7 @@ def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
         (lambda run: figures.image_plane(run("three outputs")), "has 3 image coordinates"),
         (lambda run: figures.image_plane(run("diverged, without truth").recording, -1), "threshold is -1"),
         (lambda run: figures.image_plane("run"), "a Run or a Recording is needed"),
+        (lambda run: figures.image_plane(of_y1(run("without truth").recording)), "only y1 was recorded"),
         (lambda run: figures.scene(run("without truth").recording), "no truth"),
         (lambda run: figures.scene(run("plane"), far=1), "more than 1"),
         (lambda run: figures.scene(run("plane"), ax=MatplotlibFigure().add_subplot()), "flat"),
@@ -724,12 +706,6 @@ def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
 def test_bad_input_is_refused_in_words(runs, draw, complaint):
     with pytest.raises(ValueError, match=re.escape(complaint)):
         draw(runs)
-
-
-def test_an_image_of_one_output_alone_is_refused(runs):
-    recording = runs("without truth").recording
-    with pytest.raises(ValueError, match="only y1 was recorded"):
-        figures.image_plane(replace(recording, outputs=recording.outputs[:, :1], names=("y1",)))
 
 
 def test_an_axis_around_what_stays_shows_what_comes_near_it():

@@ -78,22 +78,35 @@ def test_no_label_covers_another_or_is_cut(name, size, browser):
                 page.evaluate("() => [...window.perceptObsLabs][0].first.again()")
 
 
+PLAYED = "() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }"
+AT_THE_END = "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+NOW = "() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }"
+
+
 @pytest.mark.parametrize("name", LABS)
 def test_it_plays_once_by_itself_and_not_where_less_motion_is_asked_for(name, browser):
     with first_screen(browser, LABS[name]()) as page:
         page.wait_for_function("() => [...window.perceptObsLabs][0].first.playing")
-        page.wait_for_function("() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }")
-        assert page.evaluate("() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }")
+        page.wait_for_function(
+            "() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }"
+        )
+        assert page.evaluate(
+            "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+        )
     with first_screen(browser, LABS[name](), reduced_motion="reduce") as page:
         page.wait_for_function("() => ![...window.perceptObsLabs][0].first.secret")
-        assert page.evaluate("() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }")
+        assert page.evaluate(
+            "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+        )
 
 
 @pytest.mark.parametrize("name", LABS)
 def test_the_workbench_is_one_press_away_and_back_with_the_same_settings_and_time(name, browser):
     with first_screen(browser, LABS[name]()) as page:
         at_the_end(page)
-        before = page.evaluate("() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }")
+        before = page.evaluate(
+            "() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }"
+        )
         page.click(control("workbench"))
         page.wait_for_function(DRAWN)
         assert page.locator(".stage").is_visible()
@@ -101,7 +114,7 @@ def test_the_workbench_is_one_press_away_and_back_with_the_same_settings_and_tim
         page.click(control("first screen"))
         page.wait_for_function(DRAWN)
         assert page.locator(".first-screen").is_visible()
-        after = page.evaluate("() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }")
+        after = page.evaluate(NOW)
         assert after == before
 
 

@@ -38,14 +38,6 @@ def test_what_may_be_measured_can_be_asked():
     assert ON_SPHERE.partition("y1").culprits == ("y2", "y3")
 
 
-def test_one_output_of_the_pinhole():
-    a12, a32, b1, b3, y1 = sp.symbols("a12 a32 b1 b3 y1", real=True)
-    assert ONE.w == sp.Matrix([a12 - a32 * y1, b1 - b3 * y1])
-    assert ONE.hidden == ("y2", "y3")
-    assert OTHER.hidden == ("y1", "y3")
-    assert BOTH.w.shape == (1, 2)
-
-
 def test_a_sphere_needs_both_outputs():
     assert ON_SPHERE.measure("y1", "y2").hidden == ("y3",)
     advice = r"not affine in y2, y3; measure y2 as well, or .* extended_kalman\(system.partition\('y1'\)\)"
@@ -78,11 +70,7 @@ def test_a_partition_is_the_system_in_another_order(surface, names):
     assert {*divided.measured, *divided.hidden} == {s.name for s in system.coordinates}
     rates = dict(zip((*divided.x1, *divided.x2), divided.rate, strict=True))
     assert [rates[s] for s in system.coordinates] == list(system.rate)
-    assert (divided.parameters, divided.coordinates, divided.view) == (
-        system.parameters,
-        system.coordinates,
-        surface,
-    )
+    assert (divided.parameters, divided.coordinates, divided.view) == (system.parameters, system.coordinates, surface)
 
 
 def test_another_part_makes_another_rate():

@@ -46,7 +46,7 @@ def test_what_is_no_film_is_refused_with_the_reason(tmp_path, monkeypatch):
     for images, time, extent, reason in (
         ([RAMP], [0.0, 1.0], EXTENT, "there are 1 frames and times of shape"),
         ([RAMP, RAMP], [1.0, 1.0], EXTENT, "give each frame a time, increasing"),
-        ([RAMP], [0.0], (0, 0, 1, 2), "give y1 of the left and right"),
+        ([RAMP], [0.0], (0, 0, 1, 2), "give y1 of left and right"),
         ([np.zeros(3)], [0.0], EXTENT, r"frame 1 has the shape \(3,\)"),
         ([other], [0.0], EXTENT, "is no PNG file; convert it"),
         (tmp_path / "nowhere", [0.0], EXTENT, "holds no .png files"),

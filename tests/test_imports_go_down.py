@@ -1,6 +1,7 @@
 """Imports go down only, front ends load when a lab opens, and sympy becomes code in one place."""
 
 import ast
+import re
 import subprocess
 import sys
 from functools import cache
@@ -72,23 +73,12 @@ def imports_inside(package, module):
             yield target if target in known else ".".join(parts[1:-1])
 
 
-def sympy_names(path):
-    """Every dotted name under sympy that a file imports or reaches through an imported sympy."""
-    tree = tree_of(path)
-    aliases = {}
-    for statement in ast.walk(tree):
-        if isinstance(statement, ast.Import):
-            for alias in statement.names:
-                if alias.name.split(".")[0] == "sympy":
-                    yield alias.name
-                    aliases[alias.asname or "sympy"] = alias.name if alias.asname else "sympy"
-        elif isinstance(statement, ast.ImportFrom) and (statement.module or "").split(".")[0] == "sympy":
-            yield from (f"{statement.module}.{alias.name}" for alias in statement.names)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute):
-            root, _, rest = ast.unparse(node).partition(".")
-            if root in aliases:
-                yield f"{aliases[root]}.{rest}"
+def sympy_names(package, module):
+    """Every dotted name under sympy that a module imports, or reaches through an imported sympy."""
+    text = modules(package)[module].read_text(encoding="utf-8")
+    aliases = "|".join(["sympy", *re.findall(r"^import sympy as (\w+)", text, re.MULTILINE)])
+    yield from (name for name in imports(package, module) if name.split(".")[0] == "sympy")
+    yield from (f"sympy.{name}" for name in re.findall(rf"\b(?:{aliases})\.([\w.]+)", text))
 
 
 def upward(package):
@@ -127,8 +117,8 @@ def widgets_outside_labs(package):
 
 
 def code_outside_compile(package):
-    for module, path in modules(package).items():
-        for name in sympy_names(path):
+    for module in modules(package):
+        for name in sympy_names(package, module):
             if CODE & set(name.split(".")) and module.split(".")[0] != "compile":
                 yield f"{module} must not use {name}: only compile may"
 

@@ -1,14 +1,14 @@
-"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where none may be; none grows."""
+"""A heavy picture never blocks the hand: labs compute in a worker, or in the page where a policy allows none."""
 
 import json
 import re
 
 import pytest
-from lab_alone import DRAWN, stated_policy
+from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import UNFOLD, assert_equals_python, control, rested, state
 from sample_sizes import sampled
 
-from percept_obs.labs import observer_lab, points_lab, structure_lab
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -207,3 +207,20 @@ def test_the_policy_that_readme_states_says_nothing_of_workers():
     """They come under `script-src` then, which has blob:."""
     assert "worker-src" not in stated_policy()
     assert re.search(r"script-src [^;]*blob:", stated_policy())
+
+
+@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab, derivation_desk])
+def test_a_lab_works_under_the_policy_that_readme_states(browser, make):
+    page = opened(browser, make())
+    page.wait_for_function(DRAWN)
+    assert page.locator("canvas").count() + page.locator(".sheet input").count() > 2
+    assert page.evaluate("window.refused") == []
+    page.close()
+
+
+def test_a_policy_that_forbids_blobs_is_named_in_the_lab(browser):
+    page = opened(browser, observer_lab(), stated_policy().replace(" blob:", ""))
+    page.wait_for_function("() => window.refused.length")
+    page.locator(".problem:not([hidden])").first.wait_for()
+    assert "must allow scripts from blob:" in page.locator(".problem:not([hidden])").first.inner_text()
+    page.close()

@@ -124,16 +124,6 @@ def test_axes_hold_still_while_the_hand_is_down_and_the_foe_stays_where_it_is_le
     assert page.evaluate(SPAN) == [0, 8]
 
 
-def test_a_depth_that_grows_far_shows_its_beginning(show):
-    growing = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]]
-    page = show(observer_lab(A=growing, b=[0.1, 0.0, 0.1], pictures=["distance"]))
-    page.click(control("zoom whole"))
-    ((low, high, log),) = page.evaluate(SCALES)
-    assert log
-    assert low <= 2.5
-    assert high > 1e6
-
-
 def test_the_bound_and_its_map_are_chosen_by_keys_and_told_in_words(show):
     page = show(observer_lab(noise=BIAS["noise"], duration=20.0))
     page.click("summary:has-text('Charts')")

@@ -41,8 +41,7 @@ def test_the_extended_kalman_filter_in_matrices_is_the_observer(form):
         c = sp.ImmutableMatrix(sp.eye(size)[:, j])
         R = sp.ImmutableMatrix([[gains["noise_variance"]]])
         rows = kalman_equations(
-            *(estimate, P, rate.jacobian(list(estimate)), rate, c, sp.ImmutableMatrix([[y]])),
-            *(doubt, R),
+            *(estimate, P, rate.jacobian(list(estimate)), rate, c, sp.ImmutableMatrix([[y]])), *(doubt, R)
         )
         k, e, s = (sp.MatrixSymbol(n, *shape) for n, shape in (("k", (size, 1)), ("e", (1, 1)), ("s", (1, 1))))
         found = {e: sp.ImmutableMatrix(rows["e"]), s: sp.ImmutableMatrix(rows["s"])}

@@ -1,13 +1,16 @@
 """Labs in JupyterLab: they follow the hand, tell the kernel, outlive it, and stand side by side."""
 
+import shutil
+
 import pytest
-from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
+from jupyter_harness import LOG, NOTEBOOKS, jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
 from lab_browser import (
     OPEN,
     UNFOLD,
     assert_equals_python,
     assert_python_has,
     assert_structure_is_python,
+    centre,
     control,
     drag_by_mouse,
     end_kernel,
@@ -20,6 +23,7 @@ from lab_browser import (
 )
 from test_desk import RIGHT
 from test_lab_layout import WALK
+from test_notebooks import FAILING
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -183,3 +187,51 @@ def test_the_kernel_answers_what_is_typed_at_the_desk(browser_page, folder):
     rested(page)
     assert_python_has(folder, {"typed": {"rate 6 y1'": RIGHT}})
     assert log_entries(page) == ""
+
+
+def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, folder):
+    page = browser_page
+    shutil.copy(NOTEBOOKS / "00_start.ipynb", folder)
+    open_notebook(page, "00_start.ipynb")
+    run_all(page)
+    rested(page)
+    opening = state(page)
+    assert "after 1.91 s" in opening["verdicts"][0]
+
+    page.click(control("topic point"))
+    page.select_option(control("scenario"), "ma2005_eq36")
+    rested(page)
+    assert "after 2.42 s" in state(page)["verdicts"][0]
+    page.locator(control("foe")).scroll_into_view_if_needed()
+    x, y = centre(page, control("foe"))
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 60, y, steps=5)
+    page.mouse.up()
+    rested(page)
+    moved = state(page)
+    assert moved["settings"]["b"][0] < opening["settings"]["b"][0]
+    assert_equals_python(moved)
+
+    page.click(control("reset"))
+    page.check(control("outputs y1"))
+    rested(page)
+    assert "after 11.9 s" in state(page)["verdicts"][0]
+
+    page.click(control("reset"))
+    page.fill(control("identifier_based gain number"), "30")
+    page.fill(control("noise size number"), "0.01")
+    rested(page)
+    assert "ends at 12 %, outside 10 %" in state(page)["verdicts"][0]
+    assert log_entries(page) == ""
+
+
+def test_an_error_in_a_callback_reaches_the_log_console(browser_page, folder):
+    page = browser_page
+    write_notebook(folder, "failing.ipynb", FAILING + "slider")
+    open_notebook(page, "failing.ipynb")
+    run_all(page)
+    handle = page.locator(".noUi-handle")
+    handle.focus()
+    handle.press("ArrowRight")
+    page.wait_for_function(LOG)

@@ -162,6 +162,13 @@ def test_every_control_is_reached_and_moved_by_keyboard(browser, kind):
     page.close()
 
 
+def test_a_number_stands_in_the_topic_that_its_setting_names(fresh, kind):
+    placed = {name: setting.topic for name, setting in MAKE[kind].schema.items() if setting.topic}
+    assert len(placed) > 3
+    for name, topic in placed.items():
+        assert fresh.locator(f".topic.{topic} {control(name)}").count(), f"{name} is not in the topic {topic}"
+
+
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python, kind):
     opening, wanted = state(fresh), usable(fresh)
     assert wanted - used_at_random(fresh, 11, wanted, EVENTS, MOST_SAMPLES[kind]) == set()

@@ -5,11 +5,9 @@ import pytest
 from javascript import run_script
 from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import control, serious_violations
-from lab_settings import FRONT, NOISY, whole_model
+from lab_settings import FRONT, NOISY, runs, whole_model
 
-from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, scenarios
 from percept_obs.labs import observer_lab, structure_lab
-from percept_obs.labs.observer.lab import runs
 
 FOLLOWED, DIVERGED = 1, 2
 GAIN = "gains.identifier_based.gain"
@@ -47,7 +45,10 @@ def of_pairs(node):
         shared = {"noise": NOISY, "seed": 3, "duration": 10.0, "dropout": 0.1}
         settings = observer_lab(**{**shared, **changes, "over": {"observer": observer, **changes["over"]}}).settings
         tasks.append({"settings": settings, "shares": somewhere(rng)})
-    return {p: {**t, **f} for p, t, f in zip(PAIRS, tasks, in_the_page(node, observer_lab("ma2005_eq35"), tasks), strict=True)}
+    return {
+        p: {**t, **f}
+        for p, t, f in zip(PAIRS, tasks, in_the_page(node, observer_lab("ma2005_eq35"), tasks), strict=True)
+    }
 
 
 @pytest.mark.node
@@ -67,25 +68,6 @@ def test_100_random_places_are_what_python_tracks(of_pairs, pair):
             assert float(cell["error"]) == pytest.approx(outcome.final, rel=1e-9, nan_ok=True)
     assert followed > PLACES / 2
     assert len({cell["settling"] for cell in found["cells"]}) > 3
-
-
-@pytest.mark.node
-@pytest.mark.slow
-def test_an_ensemble_computes_the_same_map(of_pairs):
-    import xarray as xr
-
-    cells = of_pairs["gain and noise"]["cells"]
-    gains, noises = (
-        xr.DataArray(list(column), dims="place") for column in zip(*(c["place"] for c in cells), strict=True)
-    )
-    observer = ibo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"))
-    camera = Camera(noise=Uniform(0.01), dropout=0.1)
-    over = {"gain": gains, "noise": noises}
-    found = ensemble(scenarios.ma2005_eq35(), observer, over, seeds=[3], duration=10.0, camera=camera)
-    settling = np.array([float(cell["settling"]) for cell in cells])
-    settling[settling > 9.0] = np.inf  # an ensemble counts what stays inside for less than a tenth as not converged
-    np.testing.assert_allclose(settling, found.settling_time.values.ravel(), rtol=1e-9)
-    np.testing.assert_allclose([float(c["error"]) for c in cells], found.judged.values.ravel(), rtol=1e-9)
 
 
 FILLED = "() => [...window.perceptObsLabs][0].planes[2].sweep.whole"
@@ -154,7 +136,7 @@ def test_a_map_is_shown_pointed_at_gone_to_and_undone_by_keys_and_by_hand(browse
 @pytest.mark.browser
 @pytest.mark.slow
 @pytest.mark.parametrize("where", ["worker", "page"])
-def test_a_map_follows_the_hand_beside_the_page_and_in_it(browser, where):
+def test_a_map_follows_the_hand_and_the_cursor_beside_the_page_and_in_it(browser, where):
     policy = None if where == "worker" else f"{stated_policy()}; worker-src 'none'"
     lab = structure_lab(duration=1.0, period=0.02, step=0.02, over={"shows": "settling"})
     page = page_of(browser, lab, policy=policy)
@@ -172,6 +154,11 @@ def test_a_map_follows_the_hand_beside_the_page_and_in_it(browser, where):
     }""")
     assert found > 3
     page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.present")
+    page.focus(PLACE)
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d').startsWith('M')")
+    page.keyboard.press("Escape")
+    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d') === ''")
     page.close()
 
 
@@ -219,18 +206,4 @@ def test_the_run_at_the_pointer_is_drawn_as_python_tracks_it(browser):
     page.wait_for_function(DRAWN)
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"])
     assert page.evaluate(f"{AIMED}.wanted") is None, "a chart that is not shown asks for nothing"
-    page.close()
-
-
-@pytest.mark.browser
-@pytest.mark.slow
-def test_the_run_at_the_cursor_is_drawn_without_a_worker(browser):
-    lab = structure_lab(duration=1.0, period=0.02, step=0.02, over={"shows": "settling"})
-    page = page_of(browser, lab, policy=f"{stated_policy()}; worker-src 'none'")
-    page.wait_for_function("() => [...window.perceptObsLabs][0].planes[2].sweep.found")
-    page.focus(PLACE)
-    page.keyboard.press("ArrowUp")
-    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d').startsWith('M')")
-    page.keyboard.press("Escape")
-    page.wait_for_function(f"() => document.querySelector('{TRACE}').getAttribute('d') === ''")
     page.close()

@@ -118,18 +118,6 @@ def test_keys_step_pause_and_leap_to_the_ends(page):
     assert page.evaluate("window.runs") == 0
 
 
-def test_play_stops_at_the_end_and_begins_again(page):
-    page.focus(control("cursor"))
-    page.keyboard.press("End")
-    page.keyboard.press("ArrowLeft")
-    page.select_option(control("speed"), "8")
-    page.click(control("play"))
-    page.wait_for_function("() => { const [l] = window.perceptObsLabs; return l.state.cursor === l.span.high; }")
-    page.wait_for_function("() => ![...window.perceptObsLabs][0].view.playing()")
-    page.click(control("play"))
-    page.wait_for_function("() => { const [l] = window.perceptObsLabs; return l.state.cursor < l.span.high / 2; }")
-
-
 def test_with_reduced_motion_nothing_moves_by_itself(browser):
     page = opened(browser, observer_lab("ma2005_eq35"), reduced_motion="reduce")
     page.wait_for_function(DRAWN)

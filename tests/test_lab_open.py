@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from hostile_messages import TYPED
 from lab_settings import as_array, copied_runs, run_in_node, whole_model
+from refusals import refuses
 from test_lab_engine import assert_same_run
 from test_points_lab import assert_same_gramian
 from test_points_lab import assert_same_run as assert_same_points
@@ -14,10 +15,8 @@ from test_points_lab import assert_same_run as assert_same_points
 from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
-from percept_obs.labs.points.lab import run_of as run_of_points
 from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
 from percept_obs.labs.shared.samples import MOST_SAMPLES
-from percept_obs.labs.structure.lab import runs as structure_runs
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Derived, family
@@ -78,6 +77,16 @@ def assert_same_recording(answer, recording):
         np.testing.assert_allclose(as_array(answer[name], expected.shape[1]), expected, rtol=1e-9, atol=1e-10)
 
 
+def assert_same_points_and_code(node, lab, tasks, form=None):
+    """The page, Python and the code that the page copies make the same runs of many points."""
+    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
+        run, names = lab.runs(settings), {"form": form}
+        assert_same_points(answer, run)
+        exec(answer["code"], names)
+        np.testing.assert_allclose(names["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+        yield settings, answer, run, names["run"]
+
+
 @pytest.fixture(scope="module")
 def lab():
     return observer_lab(observers=[cubic, watched, "extended_kalman"], surface=slanted, motion=MOTION, **CALM, **SHORT)
@@ -91,7 +100,7 @@ def test_what_is_brought_opens_the_lab_with_its_gains_and_its_texts(lab):
     model = whole_model(lab)
     assert model["surfaces"]["slanted"]["outputs"] == [["y1", "y2"], ["y1"], ["y2"]]
     assert set(model["forms"]["slanted y1"]["observers"]) == {
-        *("cubic", "watched", "extended_kalman", "identifier_based"),
+        *("cubic", "watched", "extended_kalman", "identifier_based")
     }
     assert "open it with observers=" in model["forms"]["slanted y1"]["refused"]["sliding_mode"]
     assert "cubic" in model["forms"]["pinhole y1"]["observers"]
@@ -143,7 +152,7 @@ def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, nod
     tasks = [structure.check({**structure.settings, **change}) for change in changes]
     for settings, answer in zip(tasks, run_in_node(node, structure, tasks), strict=True):
         copied = copied_runs(answer, settings, cubic=cubic)
-        for name, run in structure_runs(settings, {"cubic": structure._user_observers["cubic"]}).items():
+        for name, run in structure.runs(settings).items():
             found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
             np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
             np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=1e-8, atol=1e-9)
@@ -181,44 +190,34 @@ def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
     assert tasks[2]["P"] == "P = 1 + t"
     for settings in tasks:
         lab.write_down(settings)
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings)
-        assert_same_points(answer, run)
-        namespace = {}
-        exec(answer["code"], namespace)
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    assert len([*assert_same_points_and_code(node, lab, tasks)]) == len(tasks)
 
 
-@pytest.mark.parametrize(
-    ("make", "settings", "reason"),
-    [
-        (
-            observer_lab,
-            {"motion": "a12 = 0.3 foo(t)"},
-            r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
-        ),
-        (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
-        (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
-        (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
-        (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
-        (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
-        (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
-        (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
-        (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
-        (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
-        (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
-        (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
-        (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
-        (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
-        (points_lab, {"P": "[[1, t, 0], [t, 1, 0], [0, 0, 1]]"}, r"it must be a number or a diagonal \[a, b, c\]"),
-        (points_lab, {"P": "1; P = 2"}, "P gives an expression, P; it must be one expression"),
-        (points_lab, {"P": "P = 1; P = 2"}, "P gives P, P; it must be one expression"),
-        (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
-    ],
+test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
+    lambda make, settings: make(**settings),
+    (
+        observer_lab,
+        {"motion": "a12 = 0.3 foo(t)"},
+        r'"foo" is no letter here; there are .*\n.*a12 = 0.3 foo\(t\)\n +\^',
+    ),
+    (observer_lab, {"motion": "b = [1, 2]"}, r"b has the shape \(2, 1\); expected \(3, 1\)"),
+    (observer_lab, {"motion": "b1 = 1; b = [1, 2, 3]"}, "b1 is given twice"),
+    (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
+    (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, "b1 is inf at 1 s"),
+    (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
+    (observer_lab, {"motion": "b1 = asin(t)"}, "cannot be printed alike in Python and JavaScript"),
+    (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
+    (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
+    (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
+    (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
+    (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
+    (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
+    (points_lab, {"P": "[[1, t, 0], [t, 1, 0], [0, 0, 1]]"}, r"it must be a number or a diagonal \[a, b, c\]"),
+    (points_lab, {"P": "1; P = 2"}, "P gives an expression, P; it must be one expression"),
+    (points_lab, {"P": "P = 1; P = 2"}, "P gives P, P; it must be one expression"),
+    (points_lab, {"weight": "riccati", "P0": "1 + t"}, "P0 has t in it"),
 )
-def test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run(make, settings, reason):
-    with pytest.raises(ValueError, match=reason):
-        make(**settings)
 
 
 TIMES = np.array([0.0, 0.133, 0.4, 0.71])
@@ -316,12 +315,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     lab = points_lab(form, **OF_POINTS)
     assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
     tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings, form)
-        assert_same_points(answer, run)
-        namespace = {"form": form}
-        exec(answer["code"], namespace)
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+    assert len([*assert_same_points_and_code(node, lab, tasks, form)]) == len(tasks)
     for brought, settings, reason in (
         (of_samples(STAMPS[1:]), {}, "from 0.013 to 0.3 s, but a run of the lab begins at 0 s"),
         (of_samples(STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
@@ -350,14 +344,9 @@ def test_of_points_a_motion_in_samples_agrees(node):
     assert lab.settings["duration"] == 2.4
     changes = ({}, {"period": 0.05, "hold": "exact"}, {"weight": "riccati", "size": 0.02, "duration": 2.0})
     tasks = [lab.check({**lab.settings, **change}) for change in changes]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of_points(settings, form)
-        assert_same_points(answer, run)
+    for settings, answer, run, copied in assert_same_points_and_code(node, lab, tasks, form):
         assert_same_gramian(answer, settings, run.recording)
-        namespace = {"form": form}
-        exec(answer["code"], namespace)
-        assert namespace["run"].verdict() == run.verdict() == answer["summary"]["verdict"]
-        np.testing.assert_allclose(namespace["run"].estimate, run.estimate, rtol=1e-8, atol=1e-9)
+        assert copied.verdict() == run.verdict() == answer["summary"]["verdict"]
     lab.summary = {"serial": 1}
     assert lab.analysis["sentences"]
 
@@ -444,7 +433,7 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
         tasks = [lab.settings, *(lab.check({**lab.settings, **change}) for change in changes)]
         for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
             copied = copied_runs(answer, settings, motion=given)
-            for name, run in structure_runs(settings, samples=lab._samples).items():
+            for name, run in lab.runs(settings).items():
                 assert_same_recording(answer, run.recording)
                 found = as_array(answer["runs"][name]["estimate"], run.estimate.shape[1])
                 np.testing.assert_allclose(found, run.estimate, rtol=1e-9, atol=1e-9)
@@ -476,24 +465,19 @@ BROKEN = np.where(MEASURED > 0.2, np.nan, MEASURED)
 MANY = np.arange(MOST_SAMPLES + 1) / 100
 
 
-@pytest.mark.parametrize(
-    ("bring", "settings", "reason"),
-    [
-        (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
-        (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
-        (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
-        (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
-        (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
-        (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
-        (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
-        (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
-        (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
-        (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
-        (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
-        (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
-        (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
-    ],
+test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do = refuses(
+    lambda bring, settings: structure_lab(bring(), **settings),
+    (lambda: velocities(BROKEN), {}, "camera_velocity .* is not finite; remove or repair the NaN"),
+    (lambda: velocities(MEASURED[:, :2]), {}, r"has shape \(5, 2\); expected \(3,\) or \(5, 3\)"),
+    (lambda: velocities(MEASURED[:4]), {}, r"has shape \(4, 3\); expected \(3,\) or \(5, 3\)"),
+    (lambda: velocities(times=STAMPS[[0, 2, 1, 3, 4]]), {}, "times go from 0.1 to 0.013 s; sort the samples"),
+    (lambda: velocities(MEASURED[:1], STAMPS[:1]), {}, "has one sample, at 0 s; bring two at least"),
+    (lambda: velocities(MEASURED[:0], STAMPS[:0]), {}, "times of the motion are empty; give one for each"),
+    (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
+    (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
+    (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
+    (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
+    (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
+    (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
+    (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
 )
-def test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do(bring, settings, reason):
-    with pytest.raises(ValueError, match=reason):
-        structure_lab(bring(), **settings)

@@ -1,13 +1,8 @@
 """A motion is typed in the page: Python reads it, the page follows; a bad one, or no Python, is told in a sentence."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-from lab_alone import DRAWN, following, opened
+from lab_alone import DRAWN, following
 from lab_browser import control, painted
 from test_lab_open import CALM, MOTION, cubic, slanted
 
@@ -90,34 +85,3 @@ def test_frames_stand_behind_the_track_of_ones_own_recording(show, tmp_path):
     kept = "() => [...[...window.perceptObsLabs][0].planes[0].film.ready.keys()].map((key) => key.split(' ').at(-1))"
     page.evaluate("() => [...window.perceptObsLabs][0].point(3.9)")
     page.wait_for_function(f"() => ({kept})().includes('7')")
-
-
-MAKING = """
-import time
-import test_lab_open as brought
-from percept_obs.labs import observer_lab
-begun = time.process_time()
-observer_lab(observers=[brought.cubic], surface=brought.slanted(), motion=brought.MOTION)
-print(time.process_time() - begun)
-"""
-
-
-@pytest.mark.skipif(not os.environ.get("ALL_SAMPLES"), reason="a bar of speed, for the nightly run")
-def test_an_observer_a_surface_and_a_motion_of_ones_own_are_on_screen_in_three_seconds(browser):
-    """In seconds of a processor, so that it holds however busy the machine is."""
-    tests = Path(__file__).parent
-    paths = os.environ | {"PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
-    found = subprocess.run([sys.executable, "-c", MAKING], check=True, capture_output=True, text=True, env=paths)
-    making = float(found.stdout)
-    page = opened(browser, observer_lab(observers=[cubic], surface=slanted(), motion=MOTION))
-    session = page.context.new_cdp_session(page)
-    session.send("Performance.enable", {"timeDomain": "threadTicks"})
-    page.reload()
-    page.wait_for_function(DRAWN)
-    metrics = {each["name"]: each["value"] for each in session.send("Performance.getMetrics")["metrics"]}
-    drawing = metrics["TaskDuration"]
-    assert page.evaluate("[...window.perceptObsLabs][0].shown.runs[0].name") == "cubic"
-    page.close()
-    assert drawing > 0
-    assert making + drawing < 3, (making, drawing)
-    print(f"{making:.2f} s in Python, {drawing:.2f} s in the page")

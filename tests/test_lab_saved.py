@@ -92,12 +92,26 @@ def from_disk(browser, tmp_path):
     return opened
 
 
+ON_PAPER = """() => {
+    const root = document.querySelector(".percept-lab");
+    const seen = (which) => [...root.querySelectorAll(which)].filter((node) => node.checkVisibility()).length;
+    const pressed = "button:not(.line-name), input, select, summary";
+    return { pressed: seen(pressed), pictures: seen("canvas"), verdicts: seen(".verdicts li") };
+}"""
+
+
 @pytest.mark.parametrize("make", LABS)
-def test_a_page_of_its_own_is_small_and_asks_for_nothing(make, from_disk, tmp_path):
+def test_a_page_of_its_own_is_small_asks_for_nothing_and_is_printed_without_controls(make, from_disk, tmp_path):
     page, asked = from_disk(make())
     assert asked == []
     assert (tmp_path / "lab.html").stat().st_size < 400_000
     assert page.locator(".silence").is_hidden()
+    page.emulate_media(media="print")
+    found = page.evaluate(ON_PAPER)
+    assert found["pressed"] == 0
+    assert found["pictures"] > 2
+    assert found["verdicts"] >= 1
+    assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))) <= 2
     page.close()
 
 
@@ -107,14 +121,6 @@ def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
     page.wait_for_function("() => [...window.perceptObsLabs][0].latest.beside")
     page.wait_for_function(DRAWN)
     assert asked == []
-    page.close()
-
-
-def test_its_curves_are_those_of_python(from_disk):
-    page, _ = from_disk(
-        observer_lab(outputs=["y1"], observers=["identifier_based", "de_luca"], noise={"kind": "uniform", "size": 0.01})
-    )
-    assert_equals_python(state(page))
     page.close()
 
 
@@ -128,24 +134,3 @@ def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
 def test_the_desk_says_why_it_cannot_be_saved(tmp_path):
     with pytest.raises(ValueError, match="reads formulas in Python"):
         derivation_desk().save(tmp_path / "desk.html")
-
-
-ON_PAPER = """() => {
-    const root = document.querySelector(".percept-lab");
-    const seen = (which) => [...root.querySelectorAll(which)].filter((node) => node.checkVisibility()).length;
-    const pressed = "button:not(.line-name), input, select, summary";
-    return { pressed: seen(pressed), pictures: seen("canvas"), verdicts: seen(".verdicts li") };
-}"""
-
-
-@pytest.mark.parametrize("make", LABS)
-def test_it_is_printed_as_pictures_and_words_without_controls(make, from_disk):
-    page, _ = from_disk(make())
-    page.emulate_media(media="print")
-    found = page.evaluate(ON_PAPER)
-    assert found["pressed"] == 0
-    assert found["pictures"] > 2
-    assert found["verdicts"] >= 1
-    pages = re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))
-    assert len(pages) <= 2
-    page.close()

@@ -5,7 +5,7 @@ import pytest
 from lab_settings import KEYS, whole_model
 from utias_folder import utias_folder
 
-from percept_obs import Camera, Recording, Scenario, Uniform, affine, ibo, record, scenarios, track
+from percept_obs import Camera, Recording, Scenario, affine, ibo, record, scenarios, track
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.settings import PICTURES
 from percept_obs.labs.observer.texts import BY_NAME, SURFACES, WAYS, form_of, key_of, system_of
@@ -19,13 +19,6 @@ NOISY = {"kind": "uniform", "size": 0.01}
 @pytest.fixture(scope="module")
 def lab():
     return observer_lab("ma2005_eq35")
-
-
-def test_a_run_is_what_record_and_track_give(lab):
-    lab.settings = {**lab.settings, "noise": NOISY, "seed": 3, "outputs": ["y1"], "period": 0.02}
-    recording = record(scenarios.ma2005_eq35(), camera=Camera(0.02, Uniform(0.01)), seed=3)
-    expected = track(recording, ibo(PerspectiveSystem(affine(), pinhole()).measure("y1")))
-    np.testing.assert_allclose(lab.run()["identifier_based"].estimate, expected.estimate, rtol=0, atol=1e-12)
 
 
 @pytest.mark.slow

@@ -1,16 +1,10 @@
-"""The pages' engines and Python agree over a second or less of every lab; longer runs are compared where labs are."""
+"""The page's engine and Python agree over a second or less of a point; longer runs are compared where labs are."""
 
 import pytest
-from lab_settings import NOISY, run_in_node
-from structure_settings import GAUSSIAN, SWINGING, TURNED
+from lab_settings import NOISY, run_in_node, runs
 from test_lab_engine import assert_same_recording, assert_same_run
-from test_points_lab import assert_same_gramian
-from test_points_lab import assert_same_run as assert_same_points
-from test_structure_lab import assert_same, assert_same_determinant
 
-from percept_obs.labs import observer_lab, points_lab, structure_lab
-from percept_obs.labs.observer.lab import runs
-from percept_obs.labs.points.lab import run_of
+from percept_obs.labs import observer_lab, structure_lab
 from percept_obs.observability import windowed
 
 pytestmark = pytest.mark.node
@@ -45,39 +39,3 @@ def test_a_single_sample_is_told(node):
     for lab in (observer_lab("ma2005_eq35"), structure_lab()):
         (answer,) = run_in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
         assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]
-
-
-@pytest.mark.slow
-def test_of_structure(node):
-    lab = structure_lab()
-    tasks = [
-        lab.check({"duration": 0.2, "period": 0.004, "step": 0.002, **task})
-        for task in (
-            {"observers": ["ideal", "identifier_based"], **SWINGING, "hold": "exact", "start": "own"},
-            {"noise": GAUSSIAN, "bias": 1e-4, "drift": 1e-5, "seed": 3, "hold": "zero", "w": TURNED},
-            {"v_c": [-0.22, -0.23, 1.5], "unknown": ["d_s", "v_p1"], "duration": 0.1},
-            {"unknown": ["v_c1", "v_p2"], "earlier": True, "w": TURNED, **SWINGING},
-        )
-    ]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        assert_same(settings, answer)
-        assert_same_determinant(settings, answer)
-
-
-@pytest.mark.slow
-def test_of_points(node):
-    lab = points_lab()
-    short = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
-    tasks = [
-        lab.check({**short, **task})
-        for task in (
-            {"weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4], None], "noise": NOISY, "hold": "zero"},
-            {"state": "independent", "dropout": 0.2, "hold": "first", "seed": 4, "step": 0.04},
-            {"state": "origin", "spin": 0.7, "weight": "lyapunov", "size": 2.0, "decrease": 0.02, "start": "error"},
-            {"weight": "scheduled", "size": 0.3, "final": 3.0, "view": 0.6, "velocity": [0.2, -0.1, 0.3]},
-        )
-    ]
-    for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
-        run = run_of(settings)
-        assert_same_points(answer, run)
-        assert_same_gramian(answer, settings, run.recording)

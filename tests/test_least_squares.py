@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 from examples import NOISY, SURFACES
-from utias_folder import utias_folder
 
 from percept_obs import Camera, Recording, Scenario, affine, pinhole, record, rigid, scenarios
-from percept_obs.recording.utias import load_utias
 from percept_obs.studies.least_squares import moving_window_least_squares
 
 
@@ -75,21 +73,3 @@ def test_one_output_is_refused():
         moving_window_least_squares(one)
     with pytest.raises(ValueError, match="no truth"):
         moving_window_least_squares(Recording(whole.time, whole.outputs, ("y1", "y2"), pinhole(), whole.motion)).truth  # noqa: B018
-
-
-@pytest.fixture(scope="module")
-def two_seconds():
-    """Estimates on every real track, with windows of two seconds."""
-    return [moving_window_least_squares(recording, 2.0) for recording in load_utias(utias_folder())]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("reference", "bound"), [("truth", 0.05), ("stereo", 0.06)])
-def test_two_seconds_of_the_real_tracks(two_seconds, reference, bound):
-    """All windows of all tracks."""
-    errors = []
-    for found in two_seconds:
-        true = 1 / found.truth[:, 2] if reference == "truth" else found.recording.distances["stereo"]
-        whole = found.time - found.time[0] >= 1.95
-        errors.append(np.abs(found.distance / true - 1)[whole])
-    assert np.median(np.concatenate(errors)) <= bound

@@ -5,9 +5,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from examples import AFFINE, BOTH, NOISE, NOISY, ONE, ZERO
-from scipy.integrate import solve_ivp
 
-from percept_obs import Camera, ibo, record, scenarios, smo, track, windowed, with_point
+from percept_obs import Camera, ibo, record, scenarios, smo, track, windowed
 
 EQ35, EQ36 = scenarios.ma2005_eq35(), scenarios.ma2005_eq36()
 FROM_SAMPLE = None
@@ -48,6 +47,7 @@ def test_closest_to_the_focus_of_expansion():
 def test_excitation_of_one_output():
     assert windowed(ONE, clean(EQ35), 10).least == pytest.approx(0.035, abs=5e-4)
     assert windowed(ONE, clean(EQ36), 10).least < 1e-10
+    assert windowed(BOTH, clean(EQ35), 10).least > 1
 
 
 @pytest.mark.parametrize("observer", [ibo, smo], ids=["identifier-based", "sliding mode"])
@@ -58,21 +58,6 @@ def test_both_outputs_converge(observer, scenario):
         assert run.settling_time(0.05, "y3") < 6
         if scenario is EQ35:
             assert 3.3e-3 < run.rms(20, 80) < 4.1e-3
-
-
-@pytest.mark.parametrize("observer", [ibo, smo], ids=["identifier-based", "sliding mode"])
-def test_one_output_does_not_converge_on_eq35(observer):
-    for seed in range(5):
-        run = track(record(EQ35, camera=NOISY, seed=seed), observer(ONE), ZERO)
-        assert np.isinf(run.settling_time(0.05, "y3"))
-        assert len(run.resets) > 0
-
-
-@pytest.mark.parametrize("observer", [ibo, smo], ids=["identifier-based", "sliding mode"])
-def test_one_output_converges_on_eq36(observer):
-    for seed in range(5):
-        run = track(record(EQ36, camera=NOISY, seed=seed), observer(ONE), ZERO)
-        assert run.settling_time(0.05, "y3") < 5
 
 
 def test_a_smaller_gain_converges_with_one_output():
@@ -140,20 +125,3 @@ def test_what_the_hold_alone_does():
     assert 0.03 < shift[0.01] < 0.06
     assert 0.003 < shift[0.001] < 0.006
     assert shift[0.01] < shift[0.02] < 0.5
-
-
-def test_the_compiled_run_against_a_reference():
-    """RK4 at 10 ms with the exact signal: within 2e-7 of a 1e-12 reference; half the step, a sixteenth of the error."""
-    together = with_point(ibo(ONE))
-    start = [*clean(EQ35).truth[0], *ZERO]
-    times = np.linspace(0, 80, 801)
-    reference = (
-        solve_ivp(together.lambdify(EQ35.motion), (0, 80), start, "DOP853", times, rtol=1e-12, atol=1e-13).y[3:].T
-    )
-    error = {}
-    for step in (0.01, 0.005):
-        recording = record(EQ35, camera=Camera(0.1))
-        run = track(recording, ibo(ONE), ZERO, hold="exact", step=step)
-        error[step] = np.abs(run.state - reference).max()
-    assert error[0.01] < 2e-7
-    assert 14 < error[0.01] / error[0.005] < 18

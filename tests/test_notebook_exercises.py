@@ -7,7 +7,6 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from jupyter_harness import NOTEBOOKS
 from mistakes import MISTAKES
-from nbformat.v4 import new_code_cell, new_notebook
 from notebook_exercises import answer_name, names_read, source, tagged, trials
 from test_notebooks import read
 from traitlets.config import Config
@@ -84,9 +83,10 @@ def test_students_copies_hold_no_solution(notebook):
     ],
 )
 def test_a_trial_can_fail(check, error, message):
-    solution = new_code_cell("mine = 5", id="gain", metadata={"tags": ["solution"]})
-    notebook = new_notebook(cells=[solution, new_code_cell(f"from percept_obs.exercises import reach\n{check}")])
+    cell = {"cell_type": "code", "id": "gain", "metadata": {"tags": ["solution"]}, "source": "mine = 5"}
+    checked = cell | {"metadata": {}, "source": f"from percept_obs.exercises import reach\n{check}"}
+    notebook = {"cells": [cell, checked]}
     shell = InteractiveShell(config=Config({"HistoryManager": {"enabled": False}}))
     with pytest.raises(error, match=message) if error else nullcontext():
-        for program in (*(cell.source for cell in notebook.cells), *trials(notebook, {"gain": [3, 7, 12]})[1]):
+        for program in (cell["source"], checked["source"], *trials(notebook, {"gain": [3, 7, 12]})[1]):
             shell.run_cell(program, store_history=True).raise_error()

@@ -1,25 +1,17 @@
-"""Each notebook runs top to bottom, survives every control, pins a number, names its pictures; JupyterLab shows it."""
+"""Each notebook runs top to bottom, survives every control, pins a number, and names its pictures."""
 
 import ast
 import json
 import re
-import shutil
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from jupyter_harness import (
-    LOG,
     NOTEBOOKS,
     execute,
-    jupyterlab,
-    lab_page,
-    log_entries,
-    open_notebook,
-    run_all,
     silent_pictures,
 )
-from lab_browser import assert_equals_python, centre, control, rested, state, write_notebook
 from mistakes import MISTAKES
 from notebook_exercises import trials
 from utias_folder import utias_folder
@@ -192,15 +184,6 @@ def test_a_widget_without_a_text_is_found(state, complaints):
     assert silent_pictures({"cells": []}, {"an id": state}) == complaints
 
 
-@pytest.fixture
-def page(chromium, tmp_path):
-    """JupyterLab on the notebooks, in a browser."""
-    folder, home, profile = (tmp_path / name for name in ("notebooks", "home", "profile"))
-    shutil.copytree(NOTEBOOKS, folder)
-    with jupyterlab(folder, home) as server, lab_page(chromium, server, profile) as page:
-        yield page
-
-
 NOISE, STRONG = {"kind": "uniform", "size": 0.01}, {"identifier_based": {"gain": 30}}
 
 
@@ -219,52 +202,3 @@ NOISE, STRONG = {"kind": "uniform", "size": 0.01}, {"identifier_based": {"gain":
 def test_what_the_first_notebook_answers_is_so(changes, seconds):
     (run,) = observer_lab(**changes).run().values()
     assert run.settling_time() == pytest.approx(seconds, abs=0.05)
-
-
-@pytest.mark.slow
-@pytest.mark.browser
-def test_the_first_notebook_does_its_experiments_in_jupyterlab(page):
-    open_notebook(page, "00_start.ipynb")
-    run_all(page)
-    rested(page)
-    opening = state(page)
-    assert "after 1.91 s" in opening["verdicts"][0]
-
-    page.click(control("topic point"))
-    page.select_option(control("scenario"), "ma2005_eq36")
-    rested(page)
-    assert "after 2.42 s" in state(page)["verdicts"][0]
-    page.locator(control("foe")).scroll_into_view_if_needed()
-    x, y = centre(page, control("foe"))
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x - 60, y, steps=5)
-    page.mouse.up()
-    rested(page)
-    moved = state(page)
-    assert moved["settings"]["b"][0] < opening["settings"]["b"][0]
-    assert_equals_python(moved)
-
-    page.click(control("reset"))
-    page.check(control("outputs y1"))
-    rested(page)
-    assert "after 11.9 s" in state(page)["verdicts"][0]
-
-    page.click(control("reset"))
-    page.fill(control("identifier_based gain number"), "30")
-    page.fill(control("noise size number"), "0.01")
-    rested(page)
-    assert "ends at 12 %, outside 10 %" in state(page)["verdicts"][0]
-    assert log_entries(page) == ""
-
-
-@pytest.mark.slow
-@pytest.mark.browser
-def test_an_error_in_a_callback_reaches_the_log_console(page, tmp_path):
-    write_notebook(tmp_path / "notebooks", "failing.ipynb", FAILING + "slider")
-    open_notebook(page, "failing.ipynb")
-    run_all(page)
-    handle = page.locator(".noUi-handle")
-    handle.focus()
-    handle.press("ArrowRight")
-    page.wait_for_function(LOG)

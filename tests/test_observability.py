@@ -10,17 +10,13 @@ from percept_obs import (
     ImagingSurface,
     PerspectiveSystem,
     Recording,
-    Scenario,
     StructureAndMotion,
     affine,
-    ibo,
     instantaneous,
-    pinhole,
     plane,
     record,
     scenarios,
     sphere,
-    track,
     windowed,
 )
 from percept_obs.system.surfaces import POINT
@@ -65,29 +61,6 @@ def test_where_no_circle_can_be_the_places_where_w_vanishes_are_not_sought():
     found = instantaneous(PerspectiveSystem(affine(), own).measure("y1", "y2"))
     assert found.growth is None
     assert "zero_set" not in vars(found)
-
-
-def test_a_counter_example_to_the_printed_condition():
-    """Ma 2005, (20), equals 2 here, and yet the direction (0, 1, -1) of the state is never seen."""
-    A = np.zeros((3, 3))
-    A[0, 1] = 1
-    motion = affine(A, [1, 0, 0])
-    recording = record(Scenario("counter-example", motion, (0, 1, 2), 8, pinhole()))
-    values = motion.values
-    assert float(sum(entry**2 for entry in ONE.w).subs(values)) == 2
-    run = track(recording, ibo(ONE), (0, 0, 0.2))
-    difference = run.error[:, 1] - run.error[:, 2]
-    np.testing.assert_allclose(difference, 0.2, atol=1e-9)
-    np.testing.assert_allclose(run.error[-1, 1] + run.error[-1, 2], 0, atol=1e-3)
-    assert windowed(ONE, recording, 5).least == pytest.approx(0, abs=1e-9)
-
-
-def test_the_window_gathers_what_an_instant_lacks():
-    recording = record(scenarios.ma2005_eq35())
-    found = windowed(ONE, recording, 10)
-    assert found.time[0] == 10
-    assert found.least == found.smallest.min() > 0.03
-    assert windowed(BOTH, recording, 10).least > 1
 
 
 def test_lost_samples_are_interpolated_where_there_is_no_truth():

@@ -28,24 +28,6 @@ def test_rate_against_a_finite_difference(motion, surface):
     np.testing.assert_allclose(np.stack(rate, axis=-1), (ahead - behind) / (2 * step), rtol=1e-6, atol=1e-8)
 
 
-def test_the_plane_equals_a_direct_derivation():
-    t = sp.Symbol("t")
-    motion, surface = affine(), plane()
-    path = [sp.Function(name)(t) for name in "XYZ"]
-    velocity = motion.A * sp.Matrix(path) + motion.b
-    y = [e.subs(dict(zip((X, Y, Z), path, strict=True))) for e in (*surface.image, 1 / surface.distance)]
-    direct = [e.diff(t).subs({p.diff(t): v for p, v in zip(path, velocity, strict=True)}) for e in y]
-    inverse = surface.inverse_distance
-    on_ray = {p: m / inverse for p, m in zip(path, surface.ray, strict=True)}
-    derived = PerspectiveSystem(motion, surface).rate
-    assert all(sp.cancel(sp.together(a.subs(on_ray) - b)) == 0 for a, b in zip(direct, derived, strict=True))
-
-
-def test_the_plane_facing_the_camera_is_the_pinhole():
-    facing = dict(zip(sp.symbols("n1:4", real=True), (0, 0, 1), strict=True))
-    assert PerspectiveSystem(affine(), plane()).rate.subs(facing).expand() == AFFINE.rate
-
-
 def test_the_jacobian_against_a_finite_difference():
     at = sp.Matrix([sp.Rational(1, 3), sp.Rational(-1, 5), sp.Rational(2, 5)])
     point = dict(zip(AFFINE.coordinates, at, strict=True))
@@ -63,11 +45,6 @@ def test_on_the_focus_of_expansion_translation_alone_does_not_move_the_image():
         at_focus = dict(zip(surface.image_coordinates, system.foe, strict=True))
         image_rate = system.rate[: len(surface.image)]
         assert all(sp.cancel(sp.together(entry.subs(at_focus))) == 0 for entry in image_rate)
-
-
-def test_the_focus_of_expansion_of_the_pinhole():
-    b1, b2, b3 = sp.symbols("b1:4", real=True)
-    assert list(AFFINE.foe) == [b1 / b3, b2 / b3]
 
 
 def test_the_derivation_ends_at_the_rate_and_shows_every_part():

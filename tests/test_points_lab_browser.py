@@ -68,19 +68,6 @@ def test_a_point_is_hidden_for_a_while(fresh):
     assert state(fresh)["drawn"] == before["drawn"]
 
 
-def test_another_p_is_chosen(fresh):
-    estimates = [state(fresh)["runs"]["points"]]
-    for kind in ("scheduled", "lyapunov", "riccati"):
-        fresh.locator(control("weight")).select_option(kind)
-        fresh.locator(control("size number")).fill("0.05")
-        rested(fresh)
-        shown = state(fresh)
-        assert shown["settings"]["weight"] == kind
-        assert shown["runs"]["points"] not in estimates
-        assert_points_are_python(shown, 1e-7)  # the page moves the points by steps, and a small P is stiff
-        estimates.append(shown["runs"]["points"])
-
-
 def test_p_is_typed_as_a_diagonal_and_what_does_not_fit_is_said(fresh):
     def typed(name, text):
         fresh.locator(control(name)).fill(text)
@@ -123,23 +110,6 @@ def test_the_motion_is_changed_and_what_is_lost_is_said(fresh):
     shown = state(fresh)
     assert "3 directions are not seen: o_x - d1_x" in shown["words"]
     assert_points_are_python(shown)
-
-
-def test_a_preset_asks_shows_keeps_and_leads_back(fresh):
-    fresh.locator(control("seed number")).fill("7")
-    rested(fresh)
-    before = state(fresh)
-    fresh.locator(control("preset riccati")).click()
-    assert "follows a Riccati equation" in fresh.locator(".question").inner_text()
-    assert state(fresh)["settings"] == {**points_lab().settings, "hold": "exact"}
-    fresh.locator(control("act riccati 0")).click()
-    rested(fresh)
-    shown = state(fresh)
-    assert "relative error of the points' positions stays within 10 % after 1" in shown["words"]
-    assert shown["drawn"]["error"][0]["name"] == "kept error"
-    fresh.locator(control("way back")).click()
-    rested(fresh)
-    assert state(fresh) == before
 
 
 def test_a_handle_is_pressed_whose_point_goes_with_the_next_picture(fresh):

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from javascript import run_script
 from lab_settings import FRONT
+from points_settings import recording_of, run_of
 
-from percept_obs.labs.points.lab import points_lab, recording_of, run_of
+from percept_obs.labs.points.lab import points_lab
 from percept_obs.points.gramian import gramian, linear_gramian
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
@@ -15,7 +16,7 @@ pytestmark = [pytest.mark.node, pytest.mark.slow]
 def acts(node, always_compiled):
     """The settings of every act, as Python accepts them."""
     lab = points_lab()
-    found = run_script(node, FRONT / "tests/points_presets.js", lab.model["standard"])
+    found = run_script(node, FRONT / "tests/presets.js", {"lab": "points", "standard": lab.model["standard"]})
     return {name: [lab.check(settings) for settings in several] for name, several in found.items()}
 
 

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from refusals import refuses
 from scipy.integrate import solve_ivp
 
 from percept_obs import (
@@ -281,17 +282,12 @@ def test_what_makes_no_sense_is_refused(arguments, message):
         track(whole, luenberger(whole.view), **arguments)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ((0.0,), "depth is 0.0; it must be positive"),
-        ((np.inf,), "depth is inf; it must be positive and finite"),
-        ((1.0, -1.0), "absence is -1.0; it must be positive"),
-    ],
+test_a_first_sight_that_makes_no_sense_is_refused = refuses(
+    lambda arguments: FirstSight(*arguments),
+    ((0.0,), "depth is 0.0; it must be positive"),
+    ((np.inf,), "depth is inf; it must be positive and finite"),
+    ((1.0, -1.0), "absence is -1.0; it must be positive"),
 )
-def test_a_first_sight_that_makes_no_sense_is_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        FirstSight(*arguments)
 
 
 def test_what_does_not_fit_is_refused():
@@ -309,38 +305,38 @@ def test_what_does_not_fit_is_refused():
         track(whole, luenberger(whole.view, lambda t: 0.0))
 
 
-def test_wrong_recordings_are_refused():
-    form = rigid_body(1, [0, 0, 0.1])
-    time, outputs = np.arange(3.0), np.zeros((3, 1, 2))
-    seen = {"names": ("y1", "y2"), "view": form, "motion": form.motion}
-    for arguments, message in (
-        ({"time": [0.0, 0.0, 1.0]}, "increase strictly"),
-        ({"time": [0.0, np.nan, 1.0]}, "finite"),
-        ({"outputs": np.zeros((3, 2, 2))}, r"shape \(3, 2, 2\); expected \(3, 1, 2\)"),
-        ({"outputs": np.full((3, 1, 2), np.inf)}, "finite, or NaN"),
-        ({"truth": np.zeros((3, 2))}, r"truth has shape \(3, 2\)"),
-        ({"distances": {"stereo": np.zeros((3, 1))}}, "must be positive numbers or NaN"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            Recording(**({"time": time, "outputs": outputs} | seen | arguments))
-    half = outputs.copy()
+OF_ONE = rigid_body(1, [0, 0, 0.1])
+IMAGES = {"time": np.arange(3.0), "outputs": np.zeros((3, 1, 2)), "names": ("y1", "y2"), "view": OF_ONE}
+IMAGES |= {"motion": OF_ONE.motion}
+
+test_wrong_recordings_are_refused = refuses(
+    lambda arguments: Recording(**IMAGES | arguments).without(0, 1, 1),
+    ({"time": [0.0, 0.0, 1.0]}, "increase strictly"),
+    ({"time": [0.0, np.nan, 1.0]}, "finite"),
+    ({"outputs": np.zeros((3, 2, 2))}, r"shape \(3, 2, 2\); expected \(3, 1, 2\)"),
+    ({"outputs": np.full((3, 1, 2), np.inf)}, "finite, or NaN"),
+    ({"truth": np.zeros((3, 2))}, r"truth has shape \(3, 2\)"),
+    ({"distances": {"stereo": np.zeros((3, 1))}}, "must be positive numbers or NaN"),
+    ({}, "no point 1; there are 0 to 0"),
+)
+
+
+def test_half_an_image_is_none():
+    half = IMAGES["outputs"].copy()
     half[1, 0, 0] = np.nan
-    assert not Recording(time, half, **seen).seen[1, 0]
-    with pytest.raises(ValueError, match="no point 1; there are 0 to 0"):
-        Recording(time, outputs, **seen).without(0, 1, 1)
+    assert not Recording(**IMAGES | {"outputs": half}).seen[1, 0]
 
 
-def test_wrong_scenarios_are_refused():
-    form = rigid_body(1, [0, 0, 0.1])
-    for state, duration, message in (
-        ([0.0, 1.0], 1.0, "3 finite numbers: r_x, r_y, r_z"),
-        ([0.0, 0, 1], 0, "duration is 0"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            PointsScenario("wrong", form, state, duration)
-    for duration in (0.001, -1.0):
-        with pytest.raises(ValueError, match="record longer"):
-            record(PointsScenario("fine", form, [0.0, 0, 1], 1.0), duration)
+test_wrong_scenarios_are_refused = refuses(
+    lambda state, duration, asked: record(PointsScenario("wrong", OF_ONE, state, duration), asked),
+    ([0.0, 1.0], 1.0, None, "3 finite numbers: r_x, r_y, r_z"),
+    ([0.0, 0, 1], 0, None, "duration is 0"),
+    ([0.0, 0, 1], 1.0, 0.001, "record longer"),
+    ([0.0, 0, 1], 1.0, -1.0, "record longer"),
+)
+
+
+def test_a_state_that_leaves_every_bound_is_refused():
     explosive = PointsScenario("explosive", PointsForm(linear(50 * np.eye(3), np.ones(3)), np.eye(3)), [1, 1, 1], 20.0)
     with pytest.raises(LeavesEveryBound, match="leaves every bound at"):
         record(explosive)

@@ -142,7 +142,7 @@ def test_which_derivative_suits_which_noise():
             {"orientations": np.zeros((3, 3))},
             r"orientations have the shape \(3, 3\); expected 3 rows, .* \(4,\) or \(3, 3\)",
         ),
-        ({"derivative": Quadratic(0.1)}, r"3 poses are too few for the derivative Quadratic\(half_width=0.1\)"),
+        ({"derivative": Quadratic(0.1)}, r"3 poses are too few for Quadratic\(half_width=0.1\)"),
     ],
 )
 def test_what_are_no_poses_is_refused(changes, message):

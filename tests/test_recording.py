@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from examples import NOISE, NOISY, SURFACES
+from examples import NOISE, NOISY
+from refusals import refuses
 from scipy.linalg import expm
 
 from percept_obs import (
@@ -40,22 +41,6 @@ def test_the_truth_is_the_matrix_exponential():
     recording = record(scenario, 80, Camera(period=0.5))
     exact = [(expm(together * t) @ [*scenario.position, 1])[:3] for t in recording.time]
     np.testing.assert_allclose(recording.points, exact, rtol=1e-9)
-
-
-def test_a_function_of_time_moves_the_point():
-    turning = rigid(lambda t: [0, 0, 0.3], lambda t: [np.cos(t), 0, 0], [0, 0, 0])
-    still_camera = rigid([0, 0, 0.3], [0, 0, 0], [0, 0, 0])
-    scenarios_ = [Scenario("s", m, (1, 0, 2), 2, pinhole()) for m in (turning, still_camera)]
-    moved, rotated = (s.points([0.0, 2.0])[-1] for s in scenarios_)
-    np.testing.assert_allclose(rotated, [np.cos(0.6), np.sin(0.6), 2], atol=1e-9)
-    assert np.linalg.norm(moved - rotated) > 0.1
-
-
-@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
-def test_every_surface_sees_the_same_point(surface):
-    recording = record(scenarios.ma2005_eq35(surface), 2)
-    np.testing.assert_allclose(recording.points, record(scenarios.ma2005_eq35(), 2).points, rtol=1e-9)
-    assert recording.names == tuple(str(s) for s in surface.image_coordinates)
 
 
 def test_the_exact_signal_continues_the_samples():
@@ -129,73 +114,55 @@ def test_from_csv(tmp_path):
     assert recording.points is None
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"time": [], "outputs": np.zeros((0, 2))}, "at least two samples"),
-        ({"time": [0.0, 0.1]}, "outputs of shape"),
-        ({"outputs": OUTPUTS[:, :1]}, "one column for each of the names, y1, y2"),
-        ({"time": [0.0, 0.3, 0.1]}, "row 2"),
-        ({"time": [0.0, 0.1, 0.1]}, "sort the rows and remove repeated ones"),
-        ({"time": [0.0, np.nan, 0.1]}, "finite"),
-        ({"names": ("y1", "z")}, "those of the pinhole are y1, y2"),
-        ({"names": ("y1", "y1")}, "each once"),
-        ({"outputs": [[0, 1], [np.inf, 1], [1, 1]]}, "outputs are finite"),
-        ({"truth": np.zeros((2, 3))}, "the truth has shape"),
-        ({"truth": [[0, 0, 1], [0, 0, np.inf], [0, 0, 1]]}, "finite"),
-        ({"distances": {"stereo": [1, 2]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
-        ({"distances": {"stereo": [1, 2, -1]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
-        ({"motion": affine()}, "no values for a11"),
-    ],
+test_what_is_no_recording_is_refused = refuses(
+    lambda changes: make(**changes),
+    ({"time": [], "outputs": np.zeros((0, 2))}, "at least two samples"),
+    ({"time": [0.0, 0.1]}, "outputs of shape"),
+    ({"outputs": OUTPUTS[:, :1]}, "one column for each of the names, y1, y2"),
+    ({"time": [0.0, 0.3, 0.1]}, "row 2"),
+    ({"time": [0.0, 0.1, 0.1]}, "sort the rows and remove repeated ones"),
+    ({"time": [0.0, np.nan, 0.1]}, "finite"),
+    ({"names": ("y1", "z")}, "are named y1, z; there are y1, y2, each once"),
+    ({"names": ("y1", "y1")}, "each once"),
+    ({"outputs": [[0, 1], [np.inf, 1], [1, 1]]}, "outputs are finite"),
+    ({"truth": np.zeros((2, 3))}, "the truth has shape"),
+    ({"truth": [[0, 0, 1], [0, 0, np.inf], [0, 0, 1]]}, "finite"),
+    ({"distances": {"stereo": [1, 2]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
+    ({"distances": {"stereo": [1, 2, -1]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
+    ({"motion": affine()}, "no values for a11"),
+    ({"motion": rigid(np.zeros((2, 3)), np.zeros(3), np.zeros(3), times=[0, 0.2])}, r"known from 0 to 0\.2 s"),
 )
-def test_what_is_no_recording_is_refused(changes, message):
-    with pytest.raises(ValueError, match=message):
-        make(**changes)
 
 
-def test_a_truth_behind_the_camera_is_refused():
-    with pytest.raises(BehindCamera, match=r"-0.5 at 0.1 s"):
-        make(truth=[[0, 0, 1], [0, 0, -0.5], [0, 0, 1]])
+AWAY, RUNAWAY = affine(np.zeros((3, 3)), [0, 0, -1]), affine(1000 * np.eye(3), [0, 0, 0])
 
-
-def test_a_motion_that_is_not_known_long_enough_is_refused():
-    with pytest.raises(ValueError, match=r"known from 0 to 0\.2 s"):
-        make(motion=rigid(np.zeros((2, 3)), np.zeros(3), np.zeros(3), times=[0, 0.2]))
-
-
-def test_a_point_that_passes_behind_the_camera_is_refused_with_its_time():
-    away = affine(np.zeros((3, 3)), [0, 0, -1])
-    with pytest.raises(BehindCamera, match=r"at 2 s, the point .* has the distance -0.1"):
-        record(Scenario("passing", away, (0, 0, 1.9), 5, pinhole()), camera=Camera(period=0.5))
-    with pytest.raises(BehindCamera):
-        Scenario("behind", away, (0, 0, -2), 5, pinhole())
-
-
-def test_a_point_that_leaves_every_bound_is_refused():
-    runaway = affine(1000 * np.eye(3), [0, 0, 0])
-    with pytest.raises(BehindCamera, match="leaves every bound"):
-        record(Scenario("runaway", runaway, (0, 0, 2), 5, pinhole()))
-
-
-@pytest.mark.parametrize(
-    ("build", "message"),
-    [
-        (lambda: Camera(period=0), "must be positive"),
-        (lambda: Camera(period=np.nan), "must be positive"),
-        (lambda: Camera(dropout=1), "probability"),
-        (lambda: Uniform(-1), "bound"),
-        (lambda: Gaussian(np.inf), "sigma"),
-        (lambda: Scenario("s", STILL, (1, 2), 1, pinhole()), "expected 3 finite numbers: X, Y, Z"),
-        (lambda: Scenario("s", STILL, (1, 2, 3), 0, pinhole()), "duration"),
-        (lambda: record(scenarios.ma2005_eq35(), 0), "holds no two samples"),
-        (lambda: record(scenarios.ma2005_eq35(), 0.005), "holds no two samples"),
-        (lambda: record(scenarios.ma2005_eq35(), np.nan), "holds no two samples"),
-        (lambda: record(Scenario("s", affine(), (1, 2, 3), 1, chained())), "no values"),
-    ],
+test_what_no_camera_sees_is_refused_with_its_time = refuses(
+    lambda call: call(),
+    (lambda: make(truth=[[0, 0, 1], [0, 0, -0.5], [0, 0, 1]]), r"-0.5 at 0.1 s"),
+    (
+        lambda: record(Scenario("passing", AWAY, (0, 0, 1.9), 5, pinhole()), camera=Camera(period=0.5)),
+        r"at 2 s, the point .* has the distance -0.1",
+    ),
+    (lambda: Scenario("behind", AWAY, (0, 0, -2), 5, pinhole()), "distance"),
+    (lambda: record(Scenario("runaway", RUNAWAY, (0, 0, 2), 5, pinhole())), "leaves every bound"),
+    error=BehindCamera,
 )
-def test_settings_that_make_no_sense_are_refused(build, message):
-    with pytest.raises(ValueError, match=message):
-        build()
+
+
+test_settings_that_make_no_sense_are_refused = refuses(
+    lambda build: build(),
+    (lambda: Camera(period=0), "must be positive"),
+    (lambda: Camera(period=np.nan), "must be positive"),
+    (lambda: Camera(dropout=1), "probability"),
+    (lambda: Uniform(-1), "bound"),
+    (lambda: Gaussian(np.inf), "sigma"),
+    (lambda: Scenario("s", STILL, (1, 2), 1, pinhole()), "expected 3 finite numbers: X, Y, Z"),
+    (lambda: Scenario("s", STILL, (1, 2, 3), 0, pinhole()), "duration"),
+    (lambda: record(scenarios.ma2005_eq35(), 0), "holds no two samples"),
+    (lambda: record(scenarios.ma2005_eq35(), 0.005), "holds no two samples"),
+    (lambda: record(scenarios.ma2005_eq35(), np.nan), "holds no two samples"),
+    (lambda: record(Scenario("s", affine(), (1, 2, 3), 1, chained())), "no values"),
+)
 
 
 def test_the_grid_of_steps():

@@ -25,11 +25,7 @@ def in_euroc(text):
     [
         (GOOD, "", "is no table of text .*expected rows such as"),
         (GOOD, "# only comments\n", "is no table of text"),
-        (
-            "1 0 0 0 0 0 0 1",
-            "1 nan 0 0 0 0 0 1",
-            "'nan' in row 2 of the column '(tx|p_x)'; write",
-        ),
+        ("1 0 0 0 0 0 0 1", "1 nan 0 0 0 0 0 1", "'nan' in row 2 of the column '(tx|p_x)'; write"),
         ("1 0 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "'inf' in row 2 of the column '(tx|p_x)'; write"),
         ("1 0 0 0 0 0 0 1", "1 left 0 0 0 0 0 1", "'left' in row 2 of the column '(tx|p_x)'; write"),
         ("1 0 0 0 0 0 0 1", "when 0 0 0 0 0 0 1", "column 'timestamp': row 2 has the time 'when'; every row needs"),

@@ -8,15 +8,9 @@ import sympy as sp
 from corollaries import corollary_of
 from javascript import run_script
 from lab_settings import FRONT, as_array, copied_runs, run_in_node, whole_model
-from structure_settings import (
-    CASES,
-    COROLLARIES,
-    EVERY,
-    assert_same_structure_runs,
-    structure_runs_of,
-)
+from structure_settings import CASES, COROLLARIES, EVERY, assert_same_structure_runs, structure_runs_of
 
-from percept_obs.labs.structure.lab import runs, structure_lab, unknowns_of
+from percept_obs.labs.structure.lab import structure_lab, unknowns_of
 from percept_obs.labs.structure.texts import general_form, key_of, refused
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.tracking.following import StepTooLong
@@ -41,8 +35,9 @@ def answers(lab, node):
 
 @pytest.mark.node
 @pytest.mark.parametrize("case", CASES)
-def test_the_page_computes_what_python_does(answers, case):
+def test_the_page_computes_what_python_does_and_the_choice_s_determinant(answers, case):
     assert_same(*answers[case])
+    assert_same_determinant(*answers[case])
 
 
 def assert_same(settings, answer):
@@ -61,12 +56,6 @@ def assert_same(settings, answer):
                 np.testing.assert_allclose(as_array(told["quantities"][quantity]), values, rtol=1e-6, atol=1e-9)
             far = np.where(np.isfinite(run.distance), run.distance, np.nan)
             np.testing.assert_allclose(as_array(told["range"]), far, rtol=1e-6)
-
-
-@pytest.mark.node
-@pytest.mark.parametrize("case", CASES)
-def test_the_determinant_is_the_choice_s(answers, case):
-    assert_same_determinant(*answers[case])
 
 
 def assert_same_determinant(settings, answer):
@@ -159,7 +148,7 @@ def test_each_corollary_is_one_click_and_converges(case):
 @pytest.fixture(scope="module")
 def acts(lab, node):
     """The settings of every act of every preset, as Python accepts them."""
-    acts = run_script(node, FRONT / "tests/structure_presets.js", lab.model["standard"])
+    acts = run_script(node, FRONT / "tests/presets.js", {"lab": "structure", "standard": lab.model["standard"]})
     return {name: [lab.check(act) for act in found] for name, found in acts.items()}
 
 
@@ -230,7 +219,7 @@ def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
     assert limit["time"] == pytest.approx(34.4, abs=0.1)
     assert answers[1]["limits"] == []
     with pytest.warns(StepTooLong, match=r"from 34\.4 s on"):
-        (lost,) = runs(forgotten).values()
+        (lost,) = lab.runs(forgotten).values()
     assert np.abs(lost.error[lost.time > 55, 3]).max() > 100
     assert all(run.verdict(0.05).startswith("converged") for run in structure_runs_of(cured).values())
 

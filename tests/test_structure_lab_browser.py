@@ -72,32 +72,6 @@ def test_the_determinant_has_its_formula_and_its_number(fresh):
     assert twice == pytest.approx(2 * value, rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("ideal feedback", "40"), ("noise size", "0.00001"), ("v_c2", "0.3"), ("period", "0.01")]
-)
-def test_a_number_changes_curves_and_words(fresh, name, value):
-    before = state(fresh)
-    fresh.fill(control(f"{name} number"), value)
-    rested(fresh)
-    after = state(fresh)
-    assert after["runs"] != before["runs"]
-    assert after["labels"] != before["labels"]
-    assert_structure_is_python(after)
-
-
-def test_several_observers_stand_side_by_side(fresh):
-    for name in ("layer", "extended_kalman", "identifier_based"):
-        fresh.check(control(f"observer {name}"))
-    for name in ("image", "depth", "innovation", "range"):
-        fresh.check(control(f"picture {name}"))
-    fresh.click(control("keep"))
-    rested(fresh)
-    shown = state(fresh)
-    assert len(shown["runs"]) == 4
-    assert "one gain for all unknowns" in fresh.inner_text(".why")
-    assert_structure_is_python(shown)
-
-
 def test_the_limit_of_the_layer_is_told_with_its_remedy(fresh):
     fresh.click(control("preset limit"))
     assert "What will happen" in fresh.inner_text(".question")

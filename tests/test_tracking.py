@@ -24,7 +24,6 @@ from percept_obs import (
     smo,
     track,
 )
-from percept_obs.validation import WrongKind
 
 RECORDING = record(scenarios.ma2005_eq35(), 5)
 
@@ -104,11 +103,6 @@ def test_a_lost_first_sample_is_refused_where_it_is_measured():
 def test_a_point_must_be_seen_all_the_time():
     with pytest.raises(DoesNotFit, match="leave longest_hold out"):
         track(RECORDING, ibo(BOTH), longest_hold=1.0)
-
-
-def test_what_is_no_observer_is_refused():
-    with pytest.raises(WrongKind, match=r"expected an observer of a form: call it: identifier_based\(form\)"):
-        track(RECORDING, ibo)
 
 
 def test_where_the_truth_is_not_known_nothing_is_judged():

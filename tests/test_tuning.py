@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, ZERO
+from refusals import refuses
 
 from percept_obs import record, scenarios, track
 from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, integral_sliding_mode, range_identification
@@ -84,17 +85,14 @@ def test_where_there_is_no_estimate_all_recordings_are_behind(family, batch, lab
     assert lines["behind"].tolist() == ["0", "2"][-len(lines) :]
 
 
-@pytest.mark.parametrize(
-    ("choosing", "reporting", "candidates", "message"),
-    [
-        ([], REPORTING, GAINS, "0 recordings to choose on"),
-        (CHOOSING, [], GAINS, "0 to report on"),
-        (CHOOSING, CHOOSING[:1], GAINS, "in both halves"),
-        (CHOOSING, REPORTING, {}, "at least one candidate"),
-        (CHOOSING, REPORTING, {de_luca: ()}, "at least one candidate"),
-        (CHOOSING, REPORTING, {de_luca: ({"hidden_gain": -1},)}, "out of range"),
-    ],
+test_choices_that_are_none_are_refused = refuses(
+    lambda choosing, reporting, candidates: choose_and_report(
+        choosing, reporting, AFFINE.measure("y1", "y2"), follow, candidates
+    ),
+    ([], REPORTING, GAINS, "0 recordings to choose on"),
+    (CHOOSING, [], GAINS, "0 to report on"),
+    (CHOOSING, CHOOSING[:1], GAINS, "in both halves"),
+    (CHOOSING, REPORTING, {}, "at least one candidate"),
+    (CHOOSING, REPORTING, {de_luca: ()}, "at least one candidate"),
+    (CHOOSING, REPORTING, {de_luca: ({"hidden_gain": -1},)}, "out of range"),
 )
-def test_choices_that_are_none_are_refused(choosing, reporting, candidates, message):
-    with pytest.raises(ValueError, match=message):
-        choose_and_report(choosing, reporting, AFFINE.measure("y1", "y2"), follow, candidates)

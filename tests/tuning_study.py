@@ -1,6 +1,5 @@
 """Filters tuned by the likelihood of their innovations, and by their errors: errors and honesty of both."""
 
-import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -93,19 +92,4 @@ def by_hand():
     return RIGID, *halves(make)
 
 
-def utias():
-    """The real recording, half of its tracks to choose on."""
-    from percept_obs.recording.utias import load_utias
-
-    tracks = load_utias()
-    depths = np.concatenate([1 / track.truth[:, 2] for track in tracks])
-    return RIGID, tracks[::2], tracks[1::2], {"y3": float(1 / (2 * np.median(depths)))}
-
-
 SCENARIOS = (near_ma, far_away, by_hand)
-
-if __name__ == "__main__":
-    for scenario in (*SCENARIOS, *([utias] if os.environ.get("PERCEPT_OBS_UTIAS") else [])):
-        likely, by_error, tuned = both_ways(*scenario())
-        print(f"{scenario.__name__} by likelihood: {likely}; at the edge: {', '.join(tuned.at_edge) or 'none'}")
-        print(f"{scenario.__name__} by error:      {by_error}; ratio of errors {likely.error / by_error.error:.2f}")

@@ -83,19 +83,12 @@ def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> It
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Return True if two expressions are the same function of their letters, which are matched by name.
+    """Return True if two expressions are the same function of their letters by name; None if it cannot be told.
 
     Rational functions of moderate size are compared exactly, as quotients of polynomials.  Others are compared at
     random points with sixty digits: a "no" is certain, and a "yes" means that all of `POINTS` values agree to forty.
     Functions with kinks are only the same if their arguments are.
 
-    Returns
-    -------
-    bool, or None
-        None if it cannot be told.
-
-    Examples
-    --------
     >>> x = sp.Symbol("x", real=True)
     >>> same((x + 1) ** 2, x**2 + 2 * x + 1), same(sp.sin(2 * x), 2 * sp.sin(x)), same(x * sp.sign(x), abs(x))
     (True, False, True)
@@ -162,12 +155,8 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
     alone += [g for g in second if not any(proportional(f, g) for f in first)]
     if not alone:
         return True
-    return False if any(map(_takes_both_signs, alone)) else None
-
-
-def _takes_both_signs(polynomial: sp.Expr) -> bool:
-    found = [point(polynomial) for point in points(polynomial)]
-    return min(found) < 0 < max(found)
+    values = ([point(polynomial) for point in points(polynomial)] for polynomial in alone)
+    return False if any(min(found) < 0 < max(found) for found in values) else None
 
 
 def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | None:
@@ -200,10 +189,7 @@ def size(e: sp.Basic) -> int:
     if e.is_Add:
         return sum(map(size, e.args))
     if e.is_Mul:
-        product = 1
-        for factor in e.args:
-            product *= size(factor)
-        return product
+        return prod(map(size, e.args))
     return size(e.base) ** abs(int(e.exp)) if e.is_Pow and e.exp.is_Integer else 1
 
 

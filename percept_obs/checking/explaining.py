@@ -29,17 +29,10 @@ class Difference:
 
 @dataclass(frozen=True)
 class Explanation:
-    """An explanation of a wrong line.
+    """Slips that mend a wrong line, and the steps of the derivation in which they can have happened.
 
-    Parameters
-    ----------
-    slips : tuple of Slip
-        Changes that mend the formula, one or two; "missing" has nothing before, and "throughout" concerns all terms.
-    differences : tuple of Difference
-    wrong : tuple of int
-        Numbers of my terms that hold a product with a wrong coefficient.
-    steps : tuple of str
-        Steps of the derivation in which it can have happened.
+    A slip "missing" has nothing before, and "throughout" concerns all terms; `wrong` numbers my terms that hold a
+    product with a wrong coefficient.
     """
 
     slips: tuple[Slip, ...] = ()
@@ -49,16 +42,9 @@ class Explanation:
 
 
 def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Explanation:
-    """Explain a wrong line.
+    """Explain a wrong line, a row of the target.
 
-    Parameters
-    ----------
-    mine : expression
-    row : int
-        Which line of the target it should be.
-    target : Target
-    right : mapping of rows to expressions
-        The lines that are right, so that a step is not blamed that would have spoiled them as well.
+    No step is blamed that would have spoiled the lines that are right as well.
     """
     line = target.lines[row]
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + SECONDS)

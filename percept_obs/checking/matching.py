@@ -32,16 +32,9 @@ TRANSPOSED = "your matrix is the transpose of the one asked for"
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A line and its verdict.
+    """My line, the target's row that it should be, and its verdict.
 
-    Parameters
-    ----------
-    row : int
-        Which line of the target it should be.
-    mine : expression
-    verdict : Verdict
-    note : str
-        Which convention, which earlier line was wrong, or what is wrong with all lines.
+    The note says which convention, which earlier line was wrong, or what is wrong with all lines.
     """
 
     row: int

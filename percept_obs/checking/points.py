@@ -39,17 +39,10 @@ def _random(seed: int, name: str) -> tuple[int, int]:
 
 
 class Point:
-    """A point at which expressions have real or complex values; letters get theirs by their names.
+    """Point at which expressions have real or complex values; letters get theirs by their names and the seed.
 
-    Parameters
-    ----------
-    seed : int
-        The same seed is the same point.
-    exact : bool
-        Whether to compute with sixty digits rather than with floats.
-    opaque : bool
-        Whether integrals, derivatives and functions with kinks get random values as well: equal ones for equal
-        arguments.
+    If exact, it computes with sixty digits rather than with floats.  If opaque, integrals, derivatives and functions
+    with kinks get random values as well: equal ones for equal arguments.
     """
 
     def __init__(self, seed: int, exact: bool = False, opaque: bool = False) -> None:

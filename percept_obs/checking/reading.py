@@ -77,14 +77,7 @@ class CannotRead(ValueError):
 
 @dataclass(frozen=True)
 class Reading:
-    """One line that was read.
-
-    Parameters
-    ----------
-    name : str
-        Left side in letters and digits, such as "y1dot"; empty if there is none.
-    formula : sympy expression, matrix or relation
-    """
+    """Line that was read: its left side in letters and digits, such as "y1dot", or empty, and its formula."""
 
     name: str
     formula: sp.Basic
@@ -93,31 +86,12 @@ class Reading:
 def read(
     text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), functions: Functions | None = None
 ) -> list[Reading]:
-    """Read the lines of a text.
+    """Read the lines of a text, typed as "y1' = a13 + (a11 - a33) y1 + ..." or LaTeX as sympy prints it.
 
-    Parameters
-    ----------
-    text : str
-        As typed, "y1' = a13 + (a11 - a33) y1 + ...", or LaTeX as sympy prints it.  A line that defines a new letter,
-        "q = a31 y1 + a32 y2 + a33", is not returned; the letter has this meaning from there on.
-    letters : mapping of names without underscores to symbols
-        Symbols of matrices as well; the inverse of one is ``P^-1``.
-    labels : iterable of str
-        Names that may stand on the left besides letters.
-    functions : mapping of names to functions, optional
-        Functions besides the usual ones, of numbers or matrices: ``norm(e1)``, ``inner(e1, e2)``.
+    A line that defines a new letter, "q = a31 y1 + a32 y2 + a33", is not returned; the letter has this meaning from
+    there on.  Letters are named without underscores, matrices among them (the inverse of one is ``P^-1``); labels may
+    stand on the left besides them, and functions besides the usual ones are of numbers or matrices: ``norm(e1)``.
 
-    Returns
-    -------
-    list of Reading
-
-    Raises
-    ------
-    CannotRead
-        If the text is no formula of these letters; it says where, and what is allowed.
-
-    Examples
-    --------
     >>> x, y = sp.symbols("x y1")
     >>> read("y1' = 2x(x - 3/4)^2", {"x": x, "y1": y}, ["y1dot"])
     [Reading(name='y1dot', formula=2*x*(x - 3/4)**2)]
@@ -132,13 +106,7 @@ def read(
 
 
 def words_of(text: str, letters: Mapping[str, Any] | None = None, labels: Iterable[str] = ()) -> list[Token]:
-    """Return the tokens of a text as `read` understands them, also where it is no formula; the last is "END".
-
-    Raises
-    ------
-    CannotRead
-        If a character has no meaning, or the text is too long.
-    """
+    """Return the tokens of a text as `read` understands them, also where it is no formula; the last is "END"."""
     return _Reader(text, letters or {}, labels, {}).words(strict=False)
 
 

@@ -64,13 +64,7 @@ class Review:
         return None if Verdict.CANNOT_TELL in verdicts else True
 
     def hint(self, number: int) -> Review:
-        """Return the review with a hint: 1 which line, 2 which term, 3 which slip and in which step.
-
-        Raises
-        ------
-        ValueError
-            If the number is not 1, 2 or 3.
-        """
+        """Return the review with a hint: 1 which line, 2 which term, 3 which slip and in which step."""
         if number not in (1, 2, 3):
             raise ValueError(f"there is no hint {number!r}; there are 1 (which line), 2 (which term), 3 (which slip)")
         return replace(self, hints=number)

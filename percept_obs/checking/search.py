@@ -26,17 +26,7 @@ THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
 
 @dataclass(frozen=True)
 class Search:
-    """A search for changes that mend one line.
-
-    Parameters
-    ----------
-    mine : expression
-    line : Line
-        The true line.
-    letters : set of symbols
-    until : float
-        The time on the clock at which it ends.
-    """
+    """Search for changes that mend one line, until a time on the clock."""
 
     mine: sp.Expr
     line: Line
@@ -87,14 +77,12 @@ class Search:
                 if before is not None and after is not None:
                     named = replace(slip, path=(*start, *slip.path), term=slip.term if slip.path else term)
                     found.append((after - before, named))
-        return found + [(v, _missing(term)) for term in self.true_terms if (v := self.values(term)) is not None]
-
-    @cached_property
-    def true_terms(self) -> tuple[sp.Expr, ...]:
-        """Terms of the true formula, also multiplied out."""
         whole = self.line.formula
         expanded = sp.expand(whole) if small(whole) else whole
-        return tuple(dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))))
+        for term in dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))):
+            if (added := self.values(term)) is not None:
+                found.append((added, Slip("missing", sp.S.Zero, term, (), term, term)))
+        return found
 
     def mends(self, added: Values, slip: Slip) -> bool:
         """Return True if a slip, which adds these values, makes the line right."""
@@ -138,11 +126,11 @@ class Search:
                 yield _named(replace(slip, path=path))
             elif _rounded(ratio) in self.ratios:
                 right, wrong = self.ratios[_rounded(ratio)]
-                kind = (
-                    "left-out factor"
-                    if 1 in (abs(right), wrong)
-                    else ("letter" if family(abs_letter(right)) == family(wrong) else "other letter")
-                )
+                letter = -right if right.could_extract_minus_sign() else right
+                if 1 in (letter, wrong):
+                    kind = "left-out factor"
+                else:
+                    kind = "letter" if family(letter) == family(wrong) else "other letter"
                 yield Slip(kind, wrong, right, path, node, put(self.mine, path, node * right / wrong))
 
     def in_its_place(self) -> Iterator[Slip]:
@@ -305,10 +293,6 @@ def _rounded(values: Values) -> tuple[float, ...]:
     return tuple(np.round(values, 7) + 0.0)
 
 
-def _missing(term: sp.Expr) -> Slip:
-    return Slip("missing", sp.S.Zero, term, (), term, term)
-
-
 def _named(slip: Slip) -> Slip:
     """Rename a mend: a term to be dropped was superfluous."""
     return replace(slip, kind="superfluous") if slip.kind == "dropped" else slip
@@ -323,11 +307,6 @@ def _term_places(
     if e.is_Add or e.is_Mul:
         for k, part in enumerate(e.args):
             yield from _term_places(part, (*path, k), bool(e.is_Add))
-
-
-def abs_letter(e: sp.Expr) -> sp.Symbol:
-    """Return a letter without its sign."""
-    return -e if e.could_extract_minus_sign() else e
 
 
 def _transposed(letter: sp.Symbol, letters: Iterable[sp.Symbol]) -> sp.Symbol | None:

@@ -23,10 +23,7 @@ Siblings = dict[tuple[bool, str], list[sp.Basic]]
 class Moves:
     """Kinds of slips, besides a letter for its sibling and an inverse or a transpose left out.
 
-    Parameters
-    ----------
-    factors : numbers that a term may be multiplied by; 0 drops it
-    exponents : numbers that are added to an exponent, counted away from 0
+    A term is multiplied by one of the factors, 0 drops it; exponents are added, counted away from 0.
     """
 
     factors: Sequence[sp.Rational] = (-sp.S.One, sp.Integer(2))
@@ -43,20 +40,10 @@ MENDS = Moves((-sp.S.One, sp.S.Half, sp.Integer(2), sp.S.Zero, sp.Rational(1, 3)
 
 @dataclass(frozen=True)
 class Slip:
-    """A place where a formula was changed.
+    """Place where a formula was changed: "sign", "factor", "dropped", "exponent", "letter" or "left out".
 
-    Parameters
-    ----------
-    kind : str
-        "sign", "factor", "dropped", "exponent", "letter", "left out" (an inverse or a transpose).
-    before, after : sympy expressions
-        The part before and after the change.
-    path : tuple of int
-        Which argument of which argument: the place in the formula.
-    term : sympy expression
-        The term, innermost, in which it happened, before the change.
-    formula : sympy expression
-        The whole formula with the change.
+    The path leads there, as arguments of arguments.  The term is the innermost one in which it happened, before the
+    change; the formula is the whole one with it.
     """
 
     kind: str
@@ -98,14 +85,7 @@ def siblings_in(pool: Iterable[sp.Basic]) -> Siblings:
 def slips(
     printed: tuple[sp.Basic, ...], pool: Iterable[sp.Basic], moves: Moves = PRINTS
 ) -> Iterator[tuple[sp.Basic, ...]]:
-    """Yield the formulas with one sign, factor, exponent or symbol changed.
-
-    Parameters
-    ----------
-    printed : tuple of sympy expressions, matrices or relations
-    pool : symbols that may be mistaken for each other
-    moves : Moves
-    """
+    """Yield the formulas with one sign, factor, exponent or symbol changed; those of the pool may be mistaken."""
     siblings = siblings_in(pool)
     for k, formula in enumerate(printed):
         for slip in slips_in(formula, siblings, moves):
@@ -124,7 +104,8 @@ def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Itera
     parts = _parts(node)
     for k, part in enumerate(parts):
         here: list[Slip] = []
-        is_term = _is_a_term(node, k)
+        # of a sum, a side of a relation, an entry of a matrix, a branch
+        is_term = _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
         if is_term and not _is_sum(part) and part != 0:
             here += factored(part, moves)
         if isinstance(node, sp.Pow) and k == 1 and part.is_number:
@@ -160,11 +141,6 @@ def _parts(node: sp.Basic) -> list[sp.Basic]:
 
 def _is_sum(node: sp.Basic) -> bool:
     return isinstance(node, sp.Add | sp.MatAdd | sp.MatrixBase)
-
-
-def _is_a_term(node: sp.Basic, k: int) -> bool:
-    """Return True for a term: of a sum, a side of a relation, an entry of a matrix, a branch."""
-    return _is_sum(node) or isinstance(node, Relational) or (isinstance(node, ExprCondPair) and k == 0)
 
 
 def _rebuilt(node: sp.Basic, parts: list[sp.Basic]) -> sp.Basic:

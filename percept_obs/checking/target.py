@@ -34,17 +34,11 @@ VALUE, EQUATION, INEQUALITY, ZEROS = "value", "equation", "inequality", "zeros"
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a target.
+    """Line of a target.
 
-    Parameters
-    ----------
-    name : str
-        Left side as it is typed, "y1'", or words; empty if it has no name.
-    formula : expression
-        Right side; of other equations and inequalities the left side less the right one.
-    kind : "value", "equation", "inequality" or "zeros"
-        Equations are the same up to a number, inequalities up to a positive one; of "zeros" it only matters where
-        the formula is zero.
+    The name is the left side as it is typed, "y1'", or words; empty if it has none.  The formula is the right side; of
+    other equations and inequalities the left side less the right one.  Equations are the same up to a number,
+    inequalities up to a positive one; of "zeros" it only matters where the formula is zero.
     """
 
     name: str
@@ -157,21 +151,15 @@ class Target:
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def read(self, mine: Any) -> list[Reading]:
-        """Return readings of text, sympy, or a list or a mapping of either.
-
-        Raises
-        ------
-        CannotRead
-            If a text is no formula of the target's letters.
-        ValueError
-            If it is something else, or has no finite value.
-        """
+        """Return readings of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
             found = read(mine, *self._known)
             return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
         if isinstance(mine, Mapping):
             return [
-                replace(r, name=r.name or self._named(name)) for name, part in mine.items() for r in self.read(part)
+                replace(r, name=r.name or (f"step{name}" if isinstance(name, int) else typed(str(name))))
+                for name, part in mine.items()
+                for r in self.read(part)
             ]
         if isinstance(mine, Sequence) and all(isinstance(part, str) for part in mine):
             return self.read("\n".join(mine))
@@ -188,10 +176,6 @@ class Target:
         if isinstance(whole, Relational) and isinstance(whole.lhs, sp.MatrixBase):
             return [Reading("", whole.func(*sides, evaluate=False)) for sides in zip(*whole.args, strict=True)]
         return [Reading("", whole)]
-
-    @staticmethod
-    def _named(name: object) -> str:
-        return f"step{name}" if isinstance(name, int) else typed(str(name))
 
     def words(self, text: str) -> list[Token]:
         """Return the tokens of a text, with the letters of this target told apart."""
@@ -233,10 +217,6 @@ def target_of(thing: Any) -> Target:
     ----------
     thing : anything that the package derives, formula, sequence or mapping of them
         As `percept_obs.check` takes it.
-
-    Returns
-    -------
-    Target
 
     Raises
     ------
@@ -403,12 +383,8 @@ def condition(formula: Boolean) -> sp.Expr:
 def matrix_target(relations: Iterable[Relational]) -> Target:
     """Return a target whose matrices can be typed by their letters, "xi' = G A xi", and are compared entry by entry.
 
-    The inverse of a letter has entries of its own, for written out it is too long.
-
-    Raises
-    ------
-    ValueError
-        If a matrix is given in several forms, or is an integral: entries do not tell whether those are the same.
+    The inverse of a letter has entries of its own, for written out it is too long.  Refused are a matrix in several
+    forms and integrals: entries do not tell whether those are the same.
     """
     relations = tuple(relations)
     named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]

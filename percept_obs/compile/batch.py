@@ -20,73 +20,30 @@ _COMPILING = Lock()
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Inputs of L runs: those of each, and those that they share.
+    """Inputs of L runs of K samples and N steps: those of each run, and those that they share."""
 
-    Parameters
-    ----------
-    start : array of shape (L, n)
-        States at the first sample.
-    first : array of shape (L, m)
-        Positive where a first sample corrects the start, 0 where it is the start.
-    gains : array of shape (L, number of gains)
-    moves : array of shape (L, 3 + 12 + number of the surface's numbers)
-        With `MovingPoint`: the point, the map [M | v] to the next sample, row by row, and the surface.
-    which : integer array of shape (L, 3)
-        Index of the noise, the truth and the motion of each run.
-    noise : array of shape (R, K, m)
-        Of the samples; NaN where one was lost.
-    truth : array of shape (D, K, n)
-        True coordinates, unless the points move on their own.
-    known : array of shape (B, 1, p) or (B, N EACH + 1, p)
-        Parameters of motion and surface, constant or at the instants of all steps.
-    lengths : array of shape (N,)
-        Lengths of the steps in seconds.
-    arriving : integer array of shape (N + 1,)
-        Index of the sample that arrives at the end of each step, -1 if none does; 0 first.
-    elapsed : array of shape (K,)
-        Seconds from the first sample to each.
-    reach : float
-        Largest absolute image coordinate that is seen.
-    held : array of shape (L, N, EACH + 1, m), optional
-        Outputs at the instants of the steps; the last sample is held when left out.
-    """
-
-    start: Array
-    first: Array
-    gains: Array
-    moves: Array
-    which: Indices
-    noise: Array
-    truth: Array
-    known: Array
-    lengths: Array
-    arriving: Indices
-    elapsed: Array
-    reach: float = np.inf
-    held: Array | None = None
+    start: Array  # (L, n), states at the first sample
+    first: Array  # (L, m), positive where a first sample corrects the start, 0 where it is the start
+    gains: Array  # (L, number of gains)
+    moves: Array  # (L, 3 + 12 + number of the surface's), of a `MovingPoint`: point, map [M | v], surface
+    which: Indices  # (L, 3), index of the noise, the truth and the motion of each run
+    noise: Array  # (R, K, m), of the samples; NaN where one was lost
+    truth: Array  # (D, K, n), true coordinates, unless the points move on their own
+    known: Array  # (B, 1, p) or (B, N EACH + 1, p), parameters of motion and surface, constant or at all instants
+    lengths: Array  # (N,), of the steps in seconds
+    arriving: Indices  # (N + 1,), index of the sample at each step's end, -1 if there is none; 0 first
+    elapsed: Array  # (K,), seconds from the first sample to each
+    reach: float = np.inf  # largest absolute image coordinate that is seen
+    held: Array | None = None  # (L, N, EACH + 1, m), outputs at the instants; the last sample is held without it
 
 
 def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, language: Language) -> Array:
-    """Run the equations for a batch and accumulate its statistics.
+    """Run the equations for a batch; return statistics of its L runs, shape (L, number of `COLUMNS` + 2 a mean).
 
-    Parameters
-    ----------
-    loop : BatchLoop
-    batch : Batch
-    tolerance : float
-        Bound on what is judged.
-    late : int
-        Sample from which on errors count.
-    language : "python" or "numba"
-        Python's runs in numpy.
-
-    Returns
-    -------
-    array of shape (L, number of `COLUMNS` + twice that of the means)
-        Of each run: the last sample outside of the tolerance, -1 if there is none; what is judged and the error at the
-        last sample; sum of squares and largest value of the error; resets; the step, from 1 on, at whose end the state
-        was no longer finite, or 0; how near a point came that moves on its own, and the largest change of its distance
-        between samples; and of each mean the sum and the number of values.
+    Errors count from the sample `late` on.  The columns are: the last sample outside of the tolerance, -1 if there is
+    none; what is judged and the error at the last sample; sum of squares and largest value of the error; resets; the
+    step, from 1 on, at whose end the state was no longer finite, or 0; how near a point came that moves on its own, and
+    the largest change of its distance between samples; and of each mean the sum and the number of values.
     """
     runs, columns = len(batch.start), len(COLUMNS) + 2 * len(loop.statistics.means)
     width = BATCH if language == "numba" else max(runs, 1)

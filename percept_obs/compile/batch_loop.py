@@ -36,101 +36,48 @@ COLUMNS = ("outside", "judged", "final", "squares", "worst", "resets", "diverged
 
 @dataclass(frozen=True)
 class Statistics:
-    """Statistics accumulated during a run, in the symbols of its equations and those defined here.
+    """Statistics accumulated during a run, in the symbols of its equations and those defined here."""
 
-    Parameters
-    ----------
-    truth : symbols
-        The true coordinates.
-    elapsed : symbol
-        Seconds since the first sample.
-    begun : symbols
-        The values of `first` at the first sample.
-    first : expressions, one for each of `begun`
-    hidden : condition
-        Where there is no estimate.
-    judged : expressions
-        The largest of which is to stay within the tolerance.
-    behind : condition
-        Where that is infinite.
-    error : expression
-        Whose last and largest value and mean square are asked for.
-    means : expressions
-        Whose means are asked for; a value that is not finite does not count.
-    samples : symbols
-        The samples that arrive, NaN where there is none, if the means use them.
-    measured : tuple of int
-        Index of each measured output among the true coordinates.
-    """
-
-    truth: Symbols
-    elapsed: sp.Symbol
-    begun: Symbols
+    truth: Symbols  # the true coordinates
+    elapsed: sp.Symbol  # seconds since the first sample
+    begun: Symbols  # the values of `first` at the first sample
     first: Expressions
-    hidden: Boolean
-    judged: Expressions
-    behind: Boolean
-    error: sp.Expr
-    means: Expressions = ()
-    samples: Symbols = ()
-    measured: tuple[int, ...] = ()
+    hidden: Boolean  # where there is no estimate
+    judged: Expressions  # the largest of which is to stay within the tolerance
+    behind: Boolean  # where that is infinite
+    error: sp.Expr  # whose last and largest value and mean square are asked for
+    means: Expressions = ()  # whose means are asked for; values that are not finite do not count
+    samples: Symbols = ()  # those that arrive, NaN where there is none, if the means use them
+    measured: tuple[int, ...] = ()  # index of each measured output among the true coordinates
 
 
 @dataclass(frozen=True)
 class MovingPoint:
-    """A point that moves in every run by a linear map of its own from each sample to the next.
-
-    Parameters
-    ----------
-    point, shape : symbols
-        Of the point and of the surface.
-    coordinates : expressions
-        True coordinates, from both.
-    distance : expression
-        Of the point.
-    """
+    """A point that moves in every run by a linear map of its own from each sample to the next."""
 
     point: Symbols
-    shape: Symbols
-    coordinates: Expressions
+    shape: Symbols  # of the surface
+    coordinates: Expressions  # true ones, from point and shape
     distance: sp.Expr
 
 
 class BatchLoop(NamedTuple):
-    """Everything that decides the text of a loop for a batch.
-
-    Parameters
-    ----------
-    equations : Equations
-    statistics : Statistics
-    moving : MovingPoint or None
-        Source of the truth, unless it comes from an array.
-    held : bool
-        Whether outputs between samples come from an array; otherwise the last sample is held.
-    varying : bool
-        Whether the parameters vary over time.
-    noises_alike, truths_alike : bool
-        Whether the noise, and the truth, are the same in all runs.
-    """
+    """Everything that decides the text of a loop for a batch."""
 
     equations: Equations
     statistics: Statistics
-    moving: MovingPoint | None
-    held: bool
-    varying: bool
-    noises_alike: bool
-    truths_alike: bool
+    moving: MovingPoint | None  # source of the truth, unless it comes from an array
+    held: bool  # whether outputs between samples come from an array; if not, the last is held
+    varying: bool  # whether the parameters vary over time
+    noises_alike: bool  # in all runs
+    truths_alike: bool  # in all runs
 
 
 @lru_cache(maxsize=128)
 def batch_source(loop: BatchLoop, language: Literal["numba", "numpy"]) -> str:
     """Text of a function of `ARGUMENTS`, described in `percept_obs.compile.batch`, that fills `result`.
 
-    Parameters
-    ----------
-    loop : BatchLoop
-    language : "numba" or "numpy"
-        For `BATCH` runs in machine code, or for any number of them as arrays.
+    It is for `BATCH` runs in machine code ("numba"), or for any number of them as arrays ("numpy").
     """
     numba = language == "numba"
     text = _Writer(loop, numba).written()

@@ -21,34 +21,17 @@ Expressions = tuple[sp.Expr, ...]
 class Equations:
     """Equations of a state between samples, at samples, and at resets.
 
-    Parameters
-    ----------
-    state : symbols
-        The state.
-    flow : expressions, one a state
-        Time derivative of the state.
-    measured, parameters, gains : symbols
-        Symbols of measured outputs, of the known motion and surface, and of constants in the expressions.
-    update : one tuple of expressions a measured output
-        The state after the sample of that output; the outputs take turns.
-    reset_condition : sympy condition
-        When the state is replaced by `reset`; looked at between steps.
-    reset : expressions, one a state
-        The state after a reset.
-
-    Raises
-    ------
-    ValueError
-        If an expression uses a symbol that is not listed, a symbol is listed twice, or lengths do not match.
+    A ValueError says if an expression uses a symbol that is not listed, a symbol is listed twice, or lengths do not
+    match.
     """
 
     state: Symbols
-    flow: Expressions
+    flow: Expressions  # its time derivative
     measured: Symbols = ()
-    parameters: Symbols = ()
-    gains: Symbols = ()
-    update: tuple[Expressions, ...] = ()
-    reset_condition: Boolean = sp.false
+    parameters: Symbols = ()  # of the known motion and surface
+    gains: Symbols = ()  # constants in the expressions
+    update: tuple[Expressions, ...] = ()  # the state after the sample of each measured output; these take turns
+    reset_condition: Boolean = sp.false  # when `reset` replaces the state; looked at between steps
     reset: Expressions = ()
 
     def __post_init__(self) -> None:

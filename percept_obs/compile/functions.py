@@ -72,21 +72,8 @@ def function_source(
 ) -> str:
     """Text of a function ``evaluate(x, out)`` that fills an array with the expressions' values and returns it.
 
-    Parameters
-    ----------
-    symbols : tuple of symbols
-        In the order of the argument array x.
-    expressions : tuple of expressions
-    language : "javascript" or "python"
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    NotCompilable
-        If an expression would not mean the same in Python and JavaScript.
+    The array x holds the symbols in their order.  Raises NotCompilable for an expression that would not mean the same
+    in Python and JavaScript.
     """
     text = Text(language)
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
@@ -105,8 +92,6 @@ def function_source(
 def python_text(expression: sp.Expr) -> str:
     """Text of an expression in Python, with functions of `math`.
 
-    Examples
-    --------
     >>> python_text(sp.sin(2 * sp.Symbol("t")) / 5)
     '((1.0/5.0))*math.sin(2.0*t)'
     """

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from percept_obs.compile.arrays import Array, Indices
 from percept_obs.validation import limit
@@ -53,19 +54,8 @@ LARGEST_SQUARED_STATE = 1e300
 
 
 def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
-    """Divide the intervals between times into equal steps no longer than given.
+    """Divide the intervals between times into equal steps no longer than given: the steps' ends, and each time's index.
 
-    Returns
-    -------
-    grid : array
-        Times of all steps' ends, from ``times[0]`` to ``times[-1]``.
-    index : array of shape (len(times),)
-        Index of each time in the grid.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from percept_obs.compile.integrator import step_grid
     >>> grid, index = step_grid(np.array([0.0, 1.0]), longest=0.4)
     >>> grid.round(2).tolist(), index.tolist()
     ([0.0, 0.33, 0.67, 1.0], [0, 3])
@@ -108,6 +98,13 @@ def step(state: Array, lengths: Array, rate: Callable[[int, Array], Array]) -> A
     return moved(WEIGHTS)
 
 
+def step_along(state: Array, times: ArrayLike, lengths: ArrayLike, rate: Callable[[Array, Array], Array]) -> Array:
+    """States after steps from times on; rate(times, states) is their rate."""
+    begun, h = np.asarray(times), np.asarray(lengths)
+    each = h.reshape(h.shape + (1,) * (state.ndim - h.ndim))
+    return step(state, each, lambda instant, moved: rate(begun + float(INSTANTS[instant]) * h, moved))
+
+
 def numbers() -> tuple[Array, Array, Indices]:
     """Coefficients a_ij, shape (stages, stages), b_i and the index of each stage's instant, as arrays."""
     square = [[*row, *[0] * (len(WEIGHTS) - len(row))] for row in COUPLING]
@@ -122,7 +119,7 @@ def for_the_page() -> str:
         "WEIGHTS": weights.tolist(),
         "INSTANTS": list(map(float, INSTANTS)),
     }
-    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "STEP_ROUNDING", "LARGEST_STEP_RATE", "LARGEST_SQUARED_STATE"):
+    for name in ("PLACES", "LONGEST_STEP", "PLANT_STEP", "STEP_ROUNDING", "LARGEST_SQUARED_STATE"):
         constants[name] = globals()[name]
     lines = [f"export const {name} = {json.dumps(value)};" for name, value in constants.items()]
     return "\n".join(["// Printed by percept_obs/compile/integrator.py, which says what they mean.", *lines, ""])

@@ -117,15 +117,7 @@ def definitions(expressions: Iterable[sp.Basic]) -> dict[sp.Symbol, sp.Expr]:
 def common_subexpressions(
     expressions: Iterable[sp.Expr], names: Iterator[sp.Symbol] | None = None
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    """Take intermediate results and common subexpressions out of expressions.
-
-    Returns
-    -------
-    list of (symbol, expression)
-        Values to compute first, in this order.
-    list of expressions
-        The expressions in terms of these symbols.
-    """
+    """Take intermediate results and common subexpressions out: values to compute first, in order, and what is left."""
     expressions = list(expressions)
     names = names or sp.numbered_symbols("shared")
     known: dict[sp.Basic, sp.Symbol] = {}

@@ -29,18 +29,6 @@ def choose(language: Language | None, steps: float) -> Language:
 
     It depends on nothing but the call, so that a run never changes with what ran before it.  To run the same observer
     often, pass the steps of all runs together, or ask for numba.
-
-    Parameters
-    ----------
-    language : "python" or "numba", optional
-        Returned if it is not None.
-    steps : float
-        Number of steps of one point's observer, or as much work.
-
-    Raises
-    ------
-    ValueError
-        If the language is another one.
     """
     if language not in (None, "python", "numba"):
         raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
@@ -49,43 +37,21 @@ def choose(language: Language | None, steps: float) -> Language:
 
 @dataclass(frozen=True)
 class Table:
-    """Known signals at the instants of every step: its start, its end, and the method's nodes between.
+    """Known signals at the instants of each of N steps: its start, its end, and the method's nodes between."""
 
-    Parameters
-    ----------
-    steps : array of shape (N,)
-        Lengths of the steps in seconds.
-    measured : array of shape (N, EACH + 1, m), or (N, 1, m) when held from each step's start to its end
-        Measured outputs at the instants of each step.
-    parameters : array of shape (N EACH + 1, p), or (1, p) when constant
-        Known motion and surface at the instants of all steps.
-    samples : array of shape (N + 1, m)
-        New samples at the steps' ends (and the first start); NaN where there is none.  Not looked at without updates.
-    """
-
-    steps: Array
-    measured: Array
-    parameters: Array
-    samples: Array
+    steps: Array  # (N,), lengths in seconds
+    measured: Array  # (N, EACH + 1, m), or (N, 1, m) when held from each step's start to its end
+    parameters: Array  # (N EACH + 1, p), or (1, p) when constant: known motion and surface
+    samples: Array  # (N + 1, m), new at the first start and the steps' ends, NaN where none is; for updates
 
 
 @dataclass(frozen=True)
 class Trace:
-    """Result of a run of the loop.
+    """Result of a run of the loop."""
 
-    Parameters
-    ----------
-    states : array of shape (N + 1, n)
-        States at the first start and at the end of every step; NaN from `diverged` on.
-    resets : array of shape (N + 1,) of bool
-        Where the state was reset.
-    diverged : int or None
-        The first step's end at which the state was no longer finite.
-    """
-
-    states: Array
-    resets: Flags
-    diverged: int | None
+    states: Array  # (N + 1, n), at the first start and the end of every step; NaN from `diverged` on
+    resets: Flags  # (N + 1,), where the state was reset
+    diverged: int | None  # first step's end at which the state was no longer finite
 
 
 def solve(
@@ -95,26 +61,7 @@ def solve(
     gains: ArrayLike = (),
     language: Language | None = None,
 ) -> Trace:
-    """Step the equations through the table.
-
-    Parameters
-    ----------
-    equations : Equations
-    start : array of shape (n,)
-    table : Table
-    gains : array of shape (number of gains,)
-    language : "python" or "numba", optional
-        Left out, numba where it is installed and the steps pay for its compiling, as `choose` says.
-
-    Returns
-    -------
-    Trace
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If numba is asked for and is not installed.
-    """
+    """Step the equations through the table from a start of shape (n,), in the language that `choose` returns."""
     size, count = len(equations.state), len(table.steps) + 1
     blocks = (start, table.steps, table.measured, table.parameters, table.samples, gains)
     inputs = [np.asarray(block, dtype=float).ravel() for block in blocks]

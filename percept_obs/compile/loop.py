@@ -23,24 +23,10 @@ ARGUMENTS = ("start", "steps", "measured", "parameters", "samples", "gains", "va
 
 @lru_cache(maxsize=512)
 def source(equations: Equations, language: Printed = "python") -> str:
-    """Text of the loop for these equations.
+    """Text of the loop for these equations, ``run(start, ..., resets)`` with `ARGUMENTS`, flat arrays as in `Table`.
 
-    Parameters
-    ----------
-    equations : Equations
-    language : "python" or "javascript"
-
-    Returns
-    -------
-    str
-        A function ``run(start, steps, measured, parameters, samples, gains, varying, states, resets)`` on flat
-        arrays in the order of `Table`.  It fills states and resets, and returns the index of the row at
-        which the state was no longer finite, or -1.
-
-    Raises
-    ------
-    NotCompilable
-        If an expression would not mean the same in both languages.
+    It fills states and resets, and returns the index of the row at which the state was no longer finite, or -1.  Raises
+    NotCompilable for an expression that would not mean the same in both languages.
     """
     loop = _Loop(Text(language), equations)
     text, n, m = loop.text, len(equations.state), len(equations.measured)

@@ -27,9 +27,8 @@ OPTIONS: dict[Rounding, dict[str, Any]] = {
 def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Callable[..., Any]:
     """Compile the last function of a text; it may call those before it.
 
-    numba keeps the machine code of files only, and compiles anew when the file, numba, Python or the processor is
-    another one.  So the text becomes a file, named by its hash; it must hold all that the code depends on.  It goes to
-    the user's cache, or to NUMBA_CACHE_DIR, and may be deleted at any time.
+    numba keeps machine code of files only.  So the text becomes a file in the user's cache or NUMBA_CACHE_DIR, named by
+    its hash; it must hold all that the code depends on, and may be deleted at any time.
     """
     import numba
     from platformdirs import user_cache_path

@@ -16,14 +16,8 @@ def slopes(symbols: Sequence[sp.Symbol]) -> Symbols:
 
 
 def slope(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Expressions:
-    """Change of expressions, to first order, when symbols change by their `slopes`.
+    """Change of expressions, to first order, when symbols change by their `slopes`; a sign counts as constant.
 
-    A sign counts as constant: it jumps at single instants only.
-
-    Examples
-    --------
-    >>> import sympy as sp
-    >>> from percept_obs.compile.variation import slope
     >>> x = sp.Symbol("x", real=True)
     >>> slope([x**2], [x])
     (2*d_x*x,)
@@ -41,23 +35,8 @@ def variation(equations: Equations, moved: Sequence[sp.Symbol]) -> Equations:
         x' = f(x, p),   dx' = (df/dx) dx + (df/dp) dp
 
     and alike at a sample and at a reset.  Stepped by the same method this is the derivative of the stepped state
-    itself, not only of the solution that it approximates; a change that moves a reset by a step is left out.
-
-    Parameters
-    ----------
-    equations : Equations
-    moved : sequence of symbols
-        Parameters that change; their `slopes` become parameters after all others.
-
-    Returns
-    -------
-    Equations
-        With the state (x, dx).
-
-    Raises
-    ------
-    ValueError
-        If a symbol is no parameter of the equations.
+    itself; a change that moves a reset by a step is left out.  The `slopes` of the parameters become parameters after
+    all others.
     """
     unknown = [str(symbol) for symbol in moved if symbol not in equations.parameters]
     if unknown:

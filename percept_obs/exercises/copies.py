@@ -61,7 +61,7 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
 
     See Also
     --------
-    teachers_copy : With the solutions.
+    stub : Takes the place of a solution.
 
     Examples
     --------
@@ -72,27 +72,8 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
     return {**notebook, "cells": [_for_students(cell) for cell in notebook["cells"]]}
 
 
-def teachers_copy(notebook: Notebook) -> dict[str, Any]:
-    """Return a notebook with everything that its file has.
-
-    Parameters
-    ----------
-    notebook : mapping
-
-    See Also
-    --------
-    students_copy : Without the solutions.
-
-    Examples
-    --------
-    >>> teachers_copy({"cells": []})
-    {'cells': []}
-    """
-    return dict(notebook)
-
-
-COPIES: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"students": students_copy, "teachers": teachers_copy}
-"""Functions that copy a notebook, by its readers."""
+COPIES: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"students": students_copy, "teachers": dict}
+"""Functions that copy a notebook, by its readers; teachers get everything."""
 
 
 def _for_students(cell: Notebook) -> dict[str, Any]:

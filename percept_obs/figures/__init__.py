@@ -3,7 +3,8 @@
 from percept_obs.figures.base import Figure
 from percept_obs.figures.image import image_plane
 from percept_obs.figures.observability import bound_map, consistency, excitation, fields, gramian, observability
-from percept_obs.figures.runs import distance, runs_over_time, scene, signals, velocities
+from percept_obs.figures.runs import distance, runs_over_time, signals
+from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
 from percept_obs.figures.studies import chatter, comparison, entries, scan, settings_map, trust
 

@@ -23,6 +23,7 @@ from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
 from percept_obs.tracking.run import Run
+from percept_obs.validation.kinds import with_article
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -103,14 +104,9 @@ class Figure:
 
 
 def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]]:
-    """Make a Figure of what a function draws and says.
+    """Make a Figure of what a function draws and says; its ValueError is described by `refuses`, after "If".
 
     Common parameters, Returns and Raises are added to its docstring.
-
-    Parameters
-    ----------
-    refuses : str
-        Condition of its ValueError, after "If".
     """
 
     def of(draw: Callable[P, Drawing]) -> Callable[P, Figure]:
@@ -122,8 +118,7 @@ def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]
                 axes.extend((yield from draw(*args, **kwargs)))
 
             text = " ".join(filter(None, sentences()))
-            whole: Any = axes[0].get_figure(root=True)
-            return Figure(whole, tuple(axes), text)
+            return Figure(whole(axes[0]), tuple(axes), text)
 
         signature = inspect.signature(draw)
         vars(drawn)["__signature__"] = signature.replace(return_annotation="Figure")
@@ -159,6 +154,11 @@ def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, *
     for ax in found:
         _tidy(ax)
     return found
+
+
+def whole(ax: Axes) -> Any:
+    """Return the figure that the axes are in, at last."""
+    return ax.get_figure(root=True)
 
 
 def rows(axes: Sequence[Axes] | None, heights: Sequence[float], parts: Sequence[str]) -> list[Axes]:
@@ -200,21 +200,17 @@ def legend_above(ax: Axes, centred: bool = False, fitting: int = 80) -> None:
 
 def require(data: Any, kinds: type | tuple[type, ...], source: str) -> None:
     """Raise a ValueError for data of another kind; the source says what makes one."""
-    names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
     if not isinstance(data, kinds):
-        raise ValueError(f"{' or '.join(map(_with_article, names))} is needed, not {data!r}; {source} makes one")
+        names = [with_article(kind.__name__) for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+        raise ValueError(f"{' or '.join(names)} is needed, not {data!r}; {source} makes one")
 
 
 def require_several(data: T | Iterable[T], kind: type[T], source: str) -> list[T]:
     """Return one or several of a kind as a list; the source says what makes one."""
     found: list[Any] = list(data) if isinstance(data, Iterable) else [data]
     if not found or not all(isinstance(each, kind) for each in found):
-        raise ValueError(f"{_with_article(kind.__name__)} or several are needed, not {data!r}; {source} makes one")
+        raise ValueError(f"{with_article(kind.__name__)} or several are needed, not {data!r}; {source} makes one")
     return found
-
-
-def _with_article(name: str) -> str:
-    return f"{'an' if name[0] in 'AEIO' else 'a'} {name}"
 
 
 def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:

@@ -15,6 +15,8 @@ from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_interval
 from percept_obs.tracking.run import Run
 
+Styles = Sequence[dict[str, Any]]
+
 ROUND_OFF = 1e-16
 """Below it, what should be positive is round-off; no logarithmic axis goes further down."""
 
@@ -74,6 +76,11 @@ def complete(rows: Array) -> Array:
     return rows[np.isfinite(rows).all(axis=1)]
 
 
+def estimated_distance(run: Run) -> Array:
+    """Return estimated distances, shape (K,); NaN where they are not in front of the camera."""
+    return np.where(np.isfinite(run.distance), run.distance, np.nan)
+
+
 def bulk(values: Array) -> Array:
     """Return the values without the smallest and the largest twentieth, which may be a transient."""
     seen = np.sort(describe.finite(values))
@@ -87,20 +94,20 @@ CLAIM = r"$\pm 2\sigma$ claimed"
 """Name of the band that an observer's covariance claims."""
 
 
-def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
-    """Draw curves with sparse markers, none of which lies on another."""
+def draw(ax: Axes, time: Array, curves: Array, labels: Sequence[str], styles: Styles = ()) -> None:
+    """Draw curves in the usual styles or others, with sparse markers, none of which lies on another."""
     step = max(1, len(time) // 8)
-    for number, (curve, name, style) in enumerate(zip(curves, labels, styles, strict=True)):
+    for number, (curve, name, style) in enumerate(zip(curves, labels, styles or look.styles(curves), strict=True)):
         every = (step * number // len(curves), step)
         ax.plot(time, curve, label=name, linewidth=1.5, markersize=5, markevery=every, **style)
     ax.set_xlim(time[0], time[-1])
 
 
-def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], styles: Sequence[dict[str, Any]]) -> None:
+def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], styles: Styles = ()) -> None:
     """Draw every error faintly, and over it a moving root mean square."""
     width = 2 * (len(time) // (2 * SMOOTHING)) + 1
     if width > 1:
-        for error, style in zip(errors, styles, strict=True):
+        for error, style in zip(errors, styles or look.styles(errors), strict=True):
             ax.plot(time, error, color=style["color"], linewidth=0.5, alpha=0.25)
         errors = np.array([_root_mean_square(error, width) for error in errors])
         note = f"bold: root mean square over {(time[-1] - time[0]) * width / len(time):.1g} s"

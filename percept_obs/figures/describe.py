@@ -46,6 +46,12 @@ def depth_or_range(view: View) -> tuple[str, str]:
     return ("depth", "l") if straight else ("range", "R")
 
 
+def in_metres(view: View) -> str:
+    """Return the label of the axis of a view's distance."""
+    word, symbol = depth_or_range(view)
+    return f"{word} ${symbol}$ (m)"
+
+
 def letter(name: str) -> str:
     """Return the symbol of a coordinate such as y1 in matplotlib's mathematics."""
     return f"${sp.latex(sp.Symbol(name))}$"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -163,8 +162,7 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, centre: Array, radius: f
 def _fit_height(ax: Axes) -> None:
     """Make the figure of a wide picture lower, without empty margins."""
     width, height = np.ptp([ax.get_xlim(), ax.get_ylim()], axis=1)
-    whole: Any = ax.get_figure(root=True)
-    lettering = 1.2  # inches above and below the axes
+    whole, lettering = base.whole(ax), 1.2  # inches above and below the axes
     whole.set_figheight(min(whole.get_figheight(), look.WIDTH * height / width + lettering))
 
 
@@ -210,8 +208,12 @@ def draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
         y1, y2 = map(describe.span, focus.T)
         where = f"The focus of expansion moves: y1 {y1}, y2 {y2}; {closest}."
     else:
-        mark = look.FOCUS | ({} if visible else _pointer(ax, focus[0]))
-        ax.plot(*(focus[0] if visible else _edge(ax, focus[0])), label=name, **mark)
+        shown, mark = focus[0], look.FOCUS
+        if not visible:  # a triangle at the edge points to it
+            shown = _edge(ax, focus[0])
+            away = focus[0] - shown
+            mark = mark | {"marker": (3, 0, np.degrees(np.arctan2(away[1], away[0])) - 90), "markersize": 10}
+        ax.plot(*shown, label=name, **mark)
         where = f"The focus of expansion is at {describe.place(focus[0])}; {closest}."
     return where if visible else f"{where} It lies outside the picture."
 
@@ -222,12 +224,6 @@ def _edge(ax: Axes, place: Array) -> Array:
     centre, half = ends.mean(axis=1), np.diff(ends, axis=1)[:, 0] / 2
     away = place - centre
     return centre + 0.96 * away * min(half / np.maximum(np.abs(away), 1e-12 * half))
-
-
-def _pointer(ax: Axes, place: Array) -> dict[str, Any]:
-    """Return the look of a triangle that points to a place outside."""
-    away = place - _edge(ax, place)
-    return {"marker": (3, 0, np.degrees(np.arctan2(away[1], away[0])) - 90), "markersize": 10}
 
 
 def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Array) -> str:

@@ -4,7 +4,7 @@ The labs take it from here as well: ``percept_obs.labs.printing`` writes it into
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -94,6 +94,11 @@ def style(number: int) -> dict[str, Any]:
         "marker": MARKERS[number % len(MARKERS)],
         "color": COLOURS[number % len(COLOURS)],
     }
+
+
+def styles(curves: Sized) -> list[dict[str, Any]]:
+    """Line, marker and colour of each of several curves."""
+    return [style(number) for number in range(len(curves))]
 
 
 def dots(values: Array, **others: Any) -> dict[str, Any]:

@@ -27,6 +27,7 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     Parameters
     ----------
     found : Observability
+        From `percept_obs.how_observable`.
 
     Examples
     --------
@@ -34,10 +35,6 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     >>> found = how_observable(record(scenarios.planar(), 4, Camera(0.1)), PerspectiveSystem(affine(), pinhole()))
     >>> len(figures.observability(found).axes)
     4
-
-    See Also
-    --------
-    percept_obs.how_observable : Computes them.
     """
     base.require(found, Observability, "how_observable(recording, system)")
     begun, hidden = found.recording.time[0], found.form.hidden[-1]
@@ -105,6 +102,7 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     Parameters
     ----------
     found : BoundMap
+        From `percept_obs.bound_map`.
     threshold : float
         Positive; in m/s, as w is.
 
@@ -114,10 +112,6 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     >>> forwards = PerspectiveSystem(affine([[0.0] * 3] * 3, [0, 0, -0.5]), pinhole())
     >>> print(figures.bound_map(bound_map(forwards, resolution=11)).text.split(". ")[-1])
     The circle |w| = 0.1 around it has the radius 0.2.
-
-    See Also
-    --------
-    percept_obs.bound_map : Computes it.
     """
     base.require(found, BoundMap, "bound_map(system)")
     if not threshold > 0:
@@ -132,9 +126,7 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     ax.grid(False)
     ax.set(xlabel=describe.label("y1", system.surface), ylabel=describe.label("y2", system.surface))
     if own:
-        whole: Any = ax.get_figure(root=True)
-        bar = whole.colorbar(picture, ax=ax, shrink=0.8)
-        bar.set_label("least error of the distance (%)")
+        base.whole(ax).colorbar(picture, ax=ax, shrink=0.8, label="least error of the distance (%)")
     best, worst = (
         np.unravel_index(pick(found.relative), found.relative.shape) for pick in (np.nanargmin, np.nanargmax)
     )
@@ -184,6 +176,7 @@ def excitation(
     Parameters
     ----------
     excitations : Excitation or sequence of Excitation
+        From `percept_obs.windowed`.
 
     Examples
     --------
@@ -192,10 +185,6 @@ def excitation(
     >>> found = windowed(form, record(scenarios.ma2005_eq35(), 20), 5)
     >>> print(figures.excitation(found).text.split(". ")[-1])
     5 s window: the least is 0.485, at 20 s, the largest 7.2.
-
-    See Also
-    --------
-    percept_obs.windowed : Computes it.
     """
     found = base.require_several(excitations, Excitation, "windowed(form, recording)")
     if not all(np.isfinite(one.smallest).any() for one in found):
@@ -224,6 +213,7 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     Parameters
     ----------
     found : Gramian or sequence of Gramian
+        From `percept_obs.points.gramian.gramian`.
 
     Examples
     --------
@@ -233,10 +223,6 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     >>> found = gramian(record(moving_body(1), 5, Camera(0.1)), 2)
     >>> print(figures.gramian(found).text.split("; ")[1])
     least is seen in the 2 s from 0 s on, mainly of r_z, r_y, r_x.
-
-    See Also
-    --------
-    percept_obs.points.gramian.gramian : Computes it.
     """
     found = base.require_several(found, Gramian, "points.gramian.gramian()")
     names = base.labels_for(labels, [f"{one.window:g} s window" for one in found])
@@ -259,6 +245,7 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Consistency
+        From `percept_obs.check_consistency`.
 
     Examples
     --------
@@ -268,10 +255,6 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     >>> run = track(recording, ekf(PerspectiveSystem(affine(), pinhole()), noise_variance=1e-4))
     >>> print(figures.consistency(check_consistency(run, after=5)).text.split(". ")[1])
     Consistent: the innovations are as large as the filter claims
-
-    See Also
-    --------
-    percept_obs.check_consistency : Computes it.
     """
     base.require(found, Consistency, "check_consistency(run)")
     ax = canvas(ax, 3.2)
@@ -336,6 +319,7 @@ def fields(
     Parameters
     ----------
     found : FieldBound or sequence of FieldBound
+        From `percept_obs.studies.fields.field_bound`.
 
     Examples
     --------
@@ -345,10 +329,6 @@ def fields(
     >>> found = field_bound(sphere(), sideways, AngleNoise(), 2.0, size=5)
     >>> print(figures.fields(found).text.split(". ")[1])
     sphere, y1, y2 measured: 0.53 % in the middle of the picture, 0.75 % near its edge, 0.53 to 96 % in all.
-
-    See Also
-    --------
-    percept_obs.studies.fields.field_bound : Computes them.
     """
     found = base.require_several(found, FieldBound, "field_bound()")
     names = base.labels_for(labels, [each.surface.name for each in found])
@@ -375,6 +355,5 @@ def fields(
         )
     maps[0].set_ylabel("up (°)")
     if own:
-        whole: Any = maps[0].get_figure(root=True)
-        whole.colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
+        base.whole(maps[0]).colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
     return maps

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from percept_obs.figures import base, curves, describe, look
-from percept_obs.figures.base import Array, Drawing, canvas, figure, legend_above, rows
+from percept_obs.figures.base import Array, Drawing, figure, legend_above, rows
 from percept_obs.observability.bound import Bound
 from percept_obs.recording import Recording
-from percept_obs.recording.poses import CameraPath
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.run import Run
@@ -187,10 +186,9 @@ def runs_over_time(
     truth = recording.truth[:, column]
     estimates = np.array([run.estimate[:, column] for run in runs])
     errors = np.abs(truth - estimates)
-    looks = [look.style(number) for number in range(len(runs))]
     upper.plot(recording.elapsed, truth, **look.TRUTH)
-    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
-    curves.draw_errors(lower, recording.elapsed, errors, labels, looks)
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels))
+    curves.draw_errors(lower, recording.elapsed, errors, labels)
     least = curves.draw_bound(lower, recording, bound, coordinate) if bound is not None else ""
     upper.set_ylabel(describe.label(coordinate, view))
     lower.set_ylabel(f"|error of {describe.letter(coordinate)}|")
@@ -199,7 +197,7 @@ def runs_over_time(
         f"{said} over {describe.times(runs[0])}: the truth, {describe.span(truth)}, the estimates of {_counted(runs)}, "
         "and below them the absolute errors on a logarithmic axis."
     )
-    for name, run, each in zip(labels, runs, looks, strict=True):
+    for name, run, each in zip(labels, runs, look.styles(runs), strict=True):
         claim = curves.draw_claim_of_coordinate(upper, run, column, each["color"])
         yield describe.joined(f"{name}:", describe.story(run, tolerance), claim)
     yield outside
@@ -246,8 +244,8 @@ def distance(
     runs = base.runs_of_one_point(runs)
     labels = base.labels_for(labels, _descriptions(runs))
     recording = runs[0].recording
-    word, symbol = describe.depth_or_range(recording.view)
-    estimates = np.array([np.where(np.isfinite(run.distance), run.distance, np.nan) for run in runs])
+    word, _ = describe.depth_or_range(recording.view)
+    estimates = np.array([curves.estimated_distance(run) for run in runs])
     known = _known_distances(recording)
     reference = reference or next(iter(known), None)
     if reference is not None and reference not in known:
@@ -256,23 +254,22 @@ def distance(
     upper, *lower = rows(axes, [2.2, 1.8][: len(parts)], parts)
     for name, values in known.items():
         upper.plot(recording.elapsed, values, **(look.TRUTH if name == "truth" else look.dots(values, label=name)))
-    looks = [look.style(number) for number in range(len(runs))]
-    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels), looks)
+    curves.draw(upper, recording.elapsed, estimates, _with_divergence(runs, labels))
     if np.isnan(estimates).all():
         upper.text(0.5, 0.5, "no estimate in front of the camera", ha="center", transform=upper.transAxes)
-    upper.set_ylabel(f"{word} ${symbol}$ (m)")
+    upper.set_ylabel(describe.in_metres(recording.view))
     firm = known[reference] if reference else curves.bulk(estimates)
     errors = 100 * np.abs(estimates / firm - 1) if reference else np.full_like(estimates, np.nan)
     outside = curves.linear(upper, firm, estimates, f"the estimated {word}", reach=0.5)
     yield f"Estimated {word} in metres over {describe.times(runs[0])}, {_counted(runs)}."
     for name, values in known.items():
         yield f"By the {name} it is {describe.span(values)} m."
-    for name, run, error, each in zip(labels, runs, errors, looks, strict=True):
+    for name, run, error, each in zip(labels, runs, errors, look.styles(runs), strict=True):
         yield describe.joined(f"{name}:", _distance_story(run, error), _draw_claim(upper, run, each["color"]))
     yield outside
     legend_above(upper)
     for ax in lower:
-        curves.draw_errors(ax, recording.elapsed, errors, labels, looks)
+        curves.draw_errors(ax, recording.elapsed, errors, labels)
         ax.set_ylabel("relative error (%)")
         yield f"Below, the errors relative to the {reference}, in per cent on a logarithmic axis."
         yield curves.log(ax, errors, "the relative errors", highest=1000, ticks="{x:g}")
@@ -326,149 +323,3 @@ def _distance_story(run: Run, error: Array) -> str:
         f"Over the last half its median relative error is {np.median(later):.2g} %." if later.size else "",
         f"{behind} of {len(run.elapsed)} estimates are not in front of the camera: gaps." if behind else "",
     )
-
-
-_CORNERS = [(1, 0.75, 2), (-1, 0.75, 2), (-1, -0.75, 2), (1, -0.75, 2)]
-_EDGES = [edge for corner in _CORNERS for edge in ((0, 0, 0), corner)]
-CAMERA = np.array([*_EDGES, *_CORNERS]) / 2
-"""Edges of a pyramid of height 1 that opens along Z, in one stroke."""
-
-
-@figure("no place is known, `far` is not more than 1, or the axes are flat")
-def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Drawing:
-    """The point's path in metres, with the camera at the origin and Z forward.
-
-    Parameters
-    ----------
-    data : Run or Recording
-        A recording alone must have its truth.
-    far : float
-        Estimates farther away than this many times the true distance, or not in front of the camera, are left out.
-        Without the truth, the median of the estimated distances stands for it.
-
-    Examples
-    --------
-    >>> from percept_obs import figures, record, scenarios
-    >>> print(figures.scene(record(scenarios.ma2005_eq35(), 20)).text.split(". ")[-1])
-    The point ends at X, Y, Z = (3.78, 10.1, 7.04) m.
-
-    See Also
-    --------
-    image_plane : The path in the image.
-    """
-    recording, run = base.recording_and_run(data)
-    if recording.points is None and run is None:
-        raise ValueError("the recording has no truth, so no place is known; draw the run of an observer on it")
-    if not far > 1:
-        raise ValueError(f"far is {far}; it must be more than 1")
-    if ax is not None and ax.name != "3d":
-        raise ValueError("the axes are flat; make them with figure.add_subplot(projection='3d')")
-    ax = canvas(ax, 5.6, projection="3d")
-    truth = np.empty((0, 3)) if recording.points is None else recording.points
-    estimate = np.empty((0, 3)) if run is None else _believable(run, far)
-    path = curves.complete(truth if len(truth) else estimate)
-    camera = 0.1 * np.abs(path).max(initial=1e-3) * CAMERA
-    _draw_in_space(ax, truth, **look.TRUTH)
-    _draw_in_space(ax, estimate, **look.ESTIMATE | {"linewidth": 0.9, "zorder": 1})
-    _draw_in_space(ax, camera, color=look.BLUE, linewidth=1, label="camera")
-    if len(path):
-        _draw_in_space(ax, np.array([(0, 0, 0), path[-1]]), color=look.GREY, linestyle=":", label="viewing ray")
-    _draw_in_space(ax, path[:1], color=look.BLACK, **look.START)
-    _draw_in_space(ax, path[-1:], color=look.BLACK, **look.END)
-    _set_equal_scales(ax, curves.complete(np.vstack([camera, truth, estimate])))
-    legend_above(ax, centred=True, fitting=66)
-    yield "Scene in metres, with the camera at the origin and Z forward."
-    yield _approach(recording.elapsed, truth) if len(truth) else ""
-    yield f"The point ends at X, Y, Z = {describe.place(path[-1])} m." if len(path) else "No place is known."
-    yield "" if run is None else f"Estimate of the {run.observer.name} observer, dashed. {describe.story(run)}"
-    if missing := len(estimate) - len(curves.complete(estimate)):
-        why = f"not in front of the camera or over {far:g} times as far away"
-        yield f"Left out: {missing} of {len(estimate)} estimates, {why}."
-    return [ax]
-
-
-def _draw_in_space(ax: Axes, points: Array, **looks: Any) -> None:
-    """Draw with Z to the right, X into the picture and Y upwards, which is right-handed."""
-    if len(points):
-        ax.plot(*points.T[[2, 0, 1]], **looks)
-
-
-def _set_equal_scales(ax: Any, points: Array) -> None:
-    """Set one scale for the three directions, with few ticks."""
-    x, y, z = curves.not_a_strip(*(curves.limits(column) for column in points.T[[2, 0, 1]]))
-    ax.set(xlim=x, ylim=y, zlim=z)
-    for set_label, name in ((ax.set_xlabel, "Z"), (ax.set_ylabel, "X"), (ax.set_zlabel, "Y")):
-        set_label(f"${name}$ (m)", labelpad=12)
-    ax.set_box_aspect(np.ptp([x, y, z], axis=1), zoom=0.76)
-    ax.locator_params(nbins=4)
-    ax.computed_zorder = False  # the truth stays above a noisy estimate
-
-
-def _believable(run: Run, far: float) -> Array:
-    """Return estimated places, shape (K, 3); NaN where they are not in front of the camera or too far away."""
-    seen = describe.finite(run.distance)
-    usual = np.median(seen) if seen.size else 0.0
-    expected = usual if run.recording.truth is None else run.recording.distance
-    return np.where((run.distance < far * expected)[:, None], run.points, np.nan)
-
-
-def _approach(time: Array, points: Array) -> str:
-    ranges = np.linalg.norm(points, axis=1)
-    k = int(np.argmin(ranges))
-    extents = ", ".join(f"{name} {describe.span(column)}" for name, column in zip("XYZ", points.T, strict=True))
-    return f"The true path: {extents} m; closest to the camera at {time[k]:.3g} s, within {ranges[k]:.3g} m."
-
-
-_TRUTH = "truth"
-"""Label of the path that the others are compared with."""
-
-
-@figure("there are no paths, their times differ, or the axis is none of 0, 1 and 2")
-def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None = None) -> Drawing:
-    """Velocity along one of the camera's own axes, as several derivatives of the same poses have it.
-
-    Parameters
-    ----------
-    paths : mapping of labels to CameraPath
-        From `Poses.path`; one that is labelled "truth" is drawn solid, and the others are compared with it.
-    axis : int
-        0, 1 and 2 are x to the right, y down and z forward.
-
-    Examples
-    --------
-    >>> from percept_obs import Neighbours, Quadratic, figures, read_tum
-    >>> from percept_obs.recording.worked import worked_folder
-    >>> poses = read_tum(worked_folder() / "poses.txt")
-    >>> paths = {"narrow": poses.path(Quadratic(0.1)), "neighbours": poses.path(Neighbours())}
-    >>> print(figures.velocities(paths).text.split(". ")[1])
-    narrow: from -0.226 to 0.226
-
-    See Also
-    --------
-    percept_obs.rigid_from_poses : The motion from poses.
-    """
-    if not paths or not all(isinstance(path, CameraPath) for path in paths.values()):
-        raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path(derivative) makes one")
-    time = next(iter(paths.values())).time
-    if not all(np.array_equal(path.time, time) for path in paths.values()):
-        raise ValueError("the paths have different times; draw derivatives of the same poses")
-    if axis not in (0, 1, 2):
-        raise ValueError(f"the axis is {axis!r}; it must be 0, 1 or 2")
-    ax = canvas(ax, 2.6)
-    elapsed, name = time - time[0], "xyz"[axis]
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel(f"velocity along {name} (m/s)")
-    ax.set_xlim(elapsed[0], elapsed[-1])
-    yield f"Velocity of the camera along its {name} axis in m/s, over {elapsed[-1]:.3g} s."
-    others = {label: path.velocity[:, axis] for label, path in paths.items() if label != _TRUTH}
-    true = paths[_TRUTH].velocity[:, axis] if _TRUTH in paths else None
-    for number, (label, values) in enumerate(others.items()):
-        style = {key: value for key, value in look.style(number).items() if key != "marker"}
-        ax.plot(elapsed, values, label=label, linewidth=1.3, **style)
-        off = "" if true is None else f", off by {np.sqrt(np.mean((values - true) ** 2)):.2g} m/s, root mean square"
-        yield f"{label}: {describe.span(values)}{off}."
-    if true is not None:
-        ax.plot(elapsed, true, **look.TRUTH)
-        yield f"The truth: {describe.span(true)}."
-    legend_above(ax)
-    return [ax]

@@ -62,14 +62,13 @@ def quantities(
     true = _named(first, first.truth, image)
     found = [_named(run, run.estimate, image) for run in runs]
     stack = rows(axes, [1.5] * len(true), list(true))
-    looks = [look.style(number) for number in range(len(runs))]
     shown = "Image coordinates, inverse depth and unknown quantities" if image else "Unknown quantities"
     yield f"{shown} from {first.elapsed[0]:g} to {first.elapsed[-1]:g} s, a row each."
     for ax, (name, truth) in zip(stack, true.items(), strict=True):
         unit = UNITS.get(name, "m/s")
         estimates = np.array([each[name] for each in found])
         ax.plot(first.elapsed, truth, **look.TRUTH)
-        curves.draw(ax, first.elapsed, estimates, labels, looks)
+        curves.draw(ax, first.elapsed, estimates, labels)
         ax.set_ylabel(f"${name[0]}_{{{name[1:].lstrip('_')}}}$" + (f" ({unit})" if unit else ""))
         ends = [f"{label} {_end(one)}" for label, one in zip(labels, estimates, strict=True)]
         yield f"{name}{f' in {unit}' if unit else ''}: the truth, {describe.span(truth)}; at the end {', '.join(ends)}."
@@ -119,8 +118,7 @@ def cases(
         legend.remove()
         column[0].set_title(name)
     handles, names = axes[0].get_legend_handles_labels()
-    whole: Any = axes[0].get_figure(root=True)
-    whole.legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
+    base.whole(axes[0]).legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
     return axes
 
 

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from percept_obs.studies.comparison import summary
-
-if TYPE_CHECKING:
-    import pandas as pd
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 from percept_obs.figures import base, curves, describe, look
 from percept_obs.figures.base import Drawing, canvas, canvases, figure, legend_above
 from percept_obs.studies.chatter import Effort
+from percept_obs.studies.comparison import summary
 from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
 from percept_obs.studies.trust import TrustOverTime
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 PANELS = {"settling_time": "settling time (s)", "rms": "rms error of 1/distance (1/m)"}
 
@@ -57,10 +54,6 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [observer])
     >>> print(figures.comparison(table).text.split(". ")[0])
     Settling time and rms error of every observer, on logarithmic axes
-
-    See Also
-    --------
-    percept_obs.studies.comparison.compare : Computes it.
     """
     if not len(table) or not {"observer", *PANELS} <= set(table.columns):
         raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")
@@ -71,10 +64,10 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
         ax.set_xlabel(title)
         ax.set_yticks(range(len(found)), [f"{label}\n{_counts(row)}" for label, row in found.iterrows()])
         ax.set_ylim(len(found) - 0.5, -0.5)
-    whole: Any = pair[0].get_figure(root=True)
-    whole.legend(
+    picture = base.whole(pair[0])
+    picture.legend(
         handles=[Line2D([], [], label=name, **looks) for name, looks in _KEY.items()],
-        loc="outside upper center" if whole.get_layout_engine() else "upper center",
+        loc="outside upper center" if picture.get_layout_engine() else "upper center",
         ncols=2,
         frameon=False,
     )
@@ -140,10 +133,6 @@ def chatter(
     >>> errors = chatter(record(scene, 1), observer, [0.01, 0.005])
     >>> len(figures.chatter({"smo": errors}, {"smo": effort(scene, observer, 0.2)}).axes)
     2
-
-    See Also
-    --------
-    percept_obs.studies.chatter.chatter, percept_obs.studies.chatter.effort : Compute it.
     """
     if not errors or not efforts:
         raise ValueError(f"there are {len(errors)} tables and {len(efforts)} efforts; at least one of each is needed")
@@ -188,10 +177,6 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     >>> errors = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], {"gain": [5, 10], "noise": [0.0, 0.1]}, name="error")
     >>> print(figures.settings_map(errors).text.split(". ")[-1])
     Largest: 4 at noise 0.1 and gain 10.
-
-    See Also
-    --------
-    percept_obs.ensemble : Computes it.
     """
     values = values.squeeze()
     if values.ndim != 2:
@@ -204,8 +189,7 @@ def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
     drawn = ax.pcolormesh(values[right], values[up], numbers, shading="nearest", cmap="viridis")
     ax.grid(visible=False)
     ax.set(xlabel=_with_unit(values[right]), ylabel=_with_unit(values[up]))
-    whole: Any = ax.get_figure(root=True)
-    whole.colorbar(drawn, ax=ax, label=_with_unit(values))
+    base.whole(ax).colorbar(drawn, ax=ax, label=_with_unit(values))
     yield f"{_with_unit(values)} over {_with_unit(values[right])} and, upwards, {_with_unit(values[up])}."
     if not known.any():
         yield "There is no finite value."
@@ -231,6 +215,7 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     Parameters
     ----------
     found : Sensitivity
+        From `percept_obs.studies.sensitivity.sensitivity`.
     most : int
         How many entries to draw.
     share : float
@@ -244,10 +229,6 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     >>> found = sensitivity(record(scenarios.ma2005_eq35(), 10), observer)
     >>> print(figures.entries(found, most=1).text.split(". ")[1])
     a32: 9.4 % in the median of the last half
-
-    See Also
-    --------
-    percept_obs.studies.sensitivity.sensitivity : Computes it.
     """
     base.require(found, Sensitivity, "studies.sensitivity.sensitivity()")
     if most < 1:
@@ -256,8 +237,7 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     ranking, changes = found.ranking(share), 100 * found.distance_change(share)
     drawn = list(ranking)[:most]
     shown = np.array([changes[:, found.entries.index(name)] for name in drawn])
-    labels = [describe.letter(name) for name in drawn]
-    curves.draw(ax, found.run.elapsed, shown, labels, [look.style(number) for number in range(len(drawn))])
+    curves.draw(ax, found.run.elapsed, shown, [describe.letter(name) for name in drawn])
     ax.set(xlabel="time (s)", ylabel=f"{describe.depth_or_range(found.run.view)[0]} moves by (%)")
     size = f"{100 * share:g} % of the motion's size"
     yield f"By how much the estimated distance moves when one entry of the motion is off by {size}, for {len(drawn)}."
@@ -277,6 +257,7 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : TrustOverTime
+        From `percept_obs.studies.trust.trust_over_time`.
 
     Examples
     --------
@@ -286,14 +267,9 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     >>> run = track(recording, ibo(PerspectiveSystem(affine(), pinhole())))
     >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
     Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
-
-    See Also
-    --------
-    percept_obs.studies.trust.trust_over_time : Computes it.
     """
     base.require(found, TrustOverTime, "studies.trust.trust_over_time(run)")
     ax, run = canvas(ax, 3.2), found.run
-    word, symbol = describe.depth_or_range(run.view)
     _shade(ax, found)
     sampled, spread = found.distance, 2 * found.deviation
     there = np.isfinite(sampled) & (spread < 1)
@@ -302,13 +278,13 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     ax.errorbar(
         found.time[there], sampled[there], ends, color=look.BLUE, linestyle="", marker=".", capsize=2, label=name
     )
-    estimate = np.where(np.isfinite(run.distance), run.distance, np.nan)
+    estimate = curves.estimated_distance(run)
     ax.plot(run.elapsed, estimate, **look.ESTIMATE)
     if run.recording.truth is not None:
         ax.plot(run.elapsed, run.recording.distance, **look.TRUTH)
     ax.set_xlim(run.elapsed[0], run.elapsed[-1])
-    ax.set(xlabel="time (s)", ylabel=f"{word} ${symbol}$ (m)")
-    over = describe.times(run)
+    ax.set(xlabel="time (s)", ylabel=describe.in_metres(run.view))
+    (word, _), over = describe.depth_or_range(run.view), describe.times(run)
     yield f"Estimated {word} in metres over {over}, with what the samples tell at {len(found.time)} times."
     yield found.sentence
     firm = sampled[there & (spread < 0.5)]
@@ -334,6 +310,7 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     Parameters
     ----------
     found : Diagnosis
+        From `percept_obs.diagnose`.
 
     Examples
     --------
@@ -346,10 +323,6 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
     >>> print(figures.scan(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[1])
     time offset. It looks as if the images are 0.099 s early against the motion
-
-    See Also
-    --------
-    percept_obs.diagnose : Computes it.
     """
     base.require(found, Diagnosis, "diagnose(recordings)")
     if not found.findings or len(found.findings[0].tried) < 2:

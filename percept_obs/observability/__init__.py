@@ -4,7 +4,7 @@ from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.efficiency import Efficiency, efficiency
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives, lie_ranks
-from percept_obs.observability.maps import BoundMap, MapKernel, bound_map, map_kernel
+from percept_obs.observability.maps import BoundMap, bound_map
 from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observability.steering import Steering, steered, steering
@@ -17,7 +17,6 @@ __all__ = [
     "Efficiency",
     "ErrorGramian",
     "LieRanks",
-    "MapKernel",
     "Measure",
     "Observability",
     "Steering",
@@ -30,7 +29,6 @@ __all__ = [
     "instantaneous",
     "lie_derivatives",
     "lie_ranks",
-    "map_kernel",
     "steered",
     "steering",
     "windowed",

@@ -52,7 +52,6 @@ class Bound:
 
     See Also
     --------
-    cramer_rao : Computes it.
     Efficiency : Errors of runs against it.
 
     Examples

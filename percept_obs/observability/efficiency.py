@@ -18,7 +18,7 @@ from percept_obs.validation import checked
 @checked
 @dataclass(frozen=True, eq=False)
 class Efficiency:
-    """Errors of several runs against the bound, for one coordinate.
+    """Errors of several runs against the bound, for one coordinate, from `efficiency`.
 
     Parameters
     ----------
@@ -31,7 +31,6 @@ class Efficiency:
 
     See Also
     --------
-    efficiency : Computes it.
     Bound : What the errors are compared with.
 
     Examples

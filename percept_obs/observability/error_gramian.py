@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import INSTANTS, step
+from percept_obs.compile.integrator import step_along
 from percept_obs.observability.linearised import (
     System,
-    flow_along,
     linearised,
     matching_form,
     names_of,
     outputs_of,
     positions,
+    rate_of,
+    values_along,
 )
 from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.recording import Recording
@@ -34,14 +35,19 @@ MOST_WINDOWS = 24
 class ErrorGramian(Windows):
     """Change of the outputs of a window with the coordinates at its beginning, squared and integrated.
 
+    It comes from `error_gramian` or `empirical_gramian`.
+
     Parameters
     ----------
-    names, time, matrices, window, scale
-        See `Windows`; `time` holds the windows' beginnings, and the states are the form's coordinates, in its order.
-
-    See Also
-    --------
-    error_gramian, empirical_gramian : Compute it.
+    names : tuple of n str
+        The form's coordinates, in its order.
+    time : array of shape (T,)
+        Beginnings of the windows in seconds.
+    matrices : array of shape (T, n, n)
+    window : float
+        Length of the windows in seconds.
+    scale : array of shape (T,), optional
+        With which eigenvalues are compared; the largest eigenvalue of each window when left out.
 
     Examples
     --------
@@ -161,7 +167,7 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
     sizes = share * np.maximum(np.abs(truth[begins]), share * usual)
     signs = np.concatenate([np.eye(n), -np.eye(n)])  # central differences
     states = (truth[begins][:, None] + sizes[:, None] * signs).reshape(-1, n)
-    rate = flow_along(form, recording)
+    rate = values_along(form, recording, [*rate_of(form)])
     measured, seen = positions(form, form.measured), np.isfinite(outputs_of(form, recording))
     found, before = np.zeros((len(begins), n, n)), np.zeros((len(begins), n, n))
     for j in range(int((ends - begins).max()) + 1):
@@ -175,10 +181,5 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
         count = max(1, int(np.ceil(h.max() / STEP - 1e-4)))
         length = np.repeat(h / count, 2 * n)
         for k in range(count):
-            start = np.repeat(time[at], 2 * n) + k * length
-
-            def moving(instant: int, state: Array, start: Array = start, length: Array = length) -> Array:
-                return rate(start + float(INSTANTS[instant]) * length, state)
-
-            states = step(states, length[:, None], moving)
+            states = step_along(states, np.repeat(time[at], 2 * n) + k * length, length, rate)
     return found

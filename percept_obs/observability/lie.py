@@ -37,7 +37,6 @@ class Codistribution:
 
     See Also
     --------
-    lie_derivatives : Derives it.
     LieRanks : Its ranks along a trajectory.
 
     Examples
@@ -136,7 +135,6 @@ class LieRanks:
 
     See Also
     --------
-    lie_ranks : Computes it.
     Codistribution : The differentials in symbols.
 
     Examples

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
-from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step
+from percept_obs.compile.integrator import LONGEST_STEP, step_along
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
@@ -23,24 +23,12 @@ Rate = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Small errors e of the coordinates along a recording's truth: e(t_k+1) = Phi_k e(t_k) + noise of covariance Q_k.
+    """Small errors e of coordinates along a recording's truth: e(t_k+1) = Phi_k e(t_k) + noise of covariance Q_k."""
 
-    Parameters
-    ----------
-    measured : integer array of shape (m,)
-        Positions of the measured coordinates.
-    seen : array of shape (K, m) of bool
-        Measured outputs that were sampled.
-    transitions : array of shape (K - 1, n, n)
-        Phi_k, in the order of the form's coordinates.
-    spreads : array of shape (K - 1, n, n)
-        Q_k, from doubts in the motion.
-    """
-
-    measured: Indices
-    seen: Flags
-    transitions: Array
-    spreads: Array
+    measured: Indices  # (m,), positions of the measured coordinates
+    seen: Flags  # (K, m), measured outputs that were sampled
+    transitions: Array  # (K - 1, n, n), Phi_k, in the order of the form's coordinates
+    spreads: Array  # (K - 1, n, n), Q_k, from doubts in the motion
 
 
 def names_of(form: PartitionedSystem) -> tuple[str, ...]:
@@ -86,29 +74,23 @@ def linearised(
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
     f = rate_of(form)
-    rates = _along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
+    rates = values_along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
     h = lengths / count
     # state, transition and spread are integrated together: x' = f, Phi' = F Phi, S' = F S + S F^T + Q
     whole = np.zeros((len(lengths), n, 2 * n + 1))
     whole[:, :, 0], whole[:, :, 1 : n + 1] = recording.truth[:-1], np.eye(n)
+
+    def moving(times: Array, whole: Array) -> Array:
+        values = rates(times, whole[:, :, 0])
+        F, Q = values[:, n:].reshape(-1, 2, n, n).swapaxes(0, 1)
+        turned = F @ whole[:, :, n + 1 :]
+        spread = turned + np.swapaxes(turned, 1, 2) + Q
+        return np.concatenate([values[:, :n, None], F @ whole[:, :, 1 : n + 1], spread], axis=2)
+
     for k in range(count):
-        begins = recording.time[:-1] + k * h
-
-        def moving(instant: int, whole: Array, begins: Array = begins) -> Array:
-            values = rates(begins + float(INSTANTS[instant]) * h, whole[:, :, 0])
-            F, Q = values[:, n:].reshape(-1, 2, n, n).swapaxes(0, 1)
-            turned = F @ whole[:, :, n + 1 :]
-            spread = turned + np.swapaxes(turned, 1, 2) + Q
-            return np.concatenate([values[:, :n, None], F @ whole[:, :, 1 : n + 1], spread], axis=2)
-
-        whole = step(whole, h[:, None, None], moving)
+        whole = step_along(whole, recording.time[:-1] + k * h, h, moving)
     seen = np.isfinite(outputs_of(form, recording))
     return Linearised(positions(form, form.measured), seen, whole[:, :, 1 : n + 1], whole[:, :, n + 1 :])
-
-
-def flow_along(form: PartitionedSystem, recording: Recording) -> Rate:
-    """The rate, shape (T, n), as a function of times (T,) and coordinates (T, n), with a recording's known motion."""
-    return _along(form, recording, list(rate_of(form)))
 
 
 def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
@@ -117,8 +99,8 @@ def rate_of(form: PartitionedSystem) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([by_name[symbol] for symbol in form.coordinates])
 
 
-def _along(form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]) -> Rate:
-    """Values of expressions, one a column, as a function of times and coordinates."""
+def values_along(form: PartitionedSystem, recording: Recording, expressions: list[sp.Expr]) -> Rate:
+    """Values of expressions, one a column, as a function of times (T,) and coordinates (T, n) in the known motion."""
     evaluate = vectorised((*form.coordinates, *form.parameters), expressions)
     surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
     return lambda times, states: np.stack(evaluate(*states.T, *recording.motion.known(times).T, *surface), axis=-1)

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Printed, function_source, vectorised
-from percept_obs.compile.integrator import INSTANTS, LONGEST_STEP, step, step_grid
+from percept_obs.compile.integrator import LONGEST_STEP, step_along, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
 from percept_obs.system.motion import Motion
@@ -38,35 +38,12 @@ class MapKernel:
         J = begin / P0 + (sum of gather over the samples, the first one included) / R
         relative standard deviation = finish, at the last sample
         not known where a distance is not positive on the way
-
-    Parameters
-    ----------
-    begin : expressions of X0
-        The prior's share of the six entries of J, on and above its diagonal, row by row.
-    gather : expressions of `PLACE`
-        A sample's share of the six entries, and the distance.
-    finish : expression of J's entries and of `PLACE`
-        The relative standard deviation of the distance.
-    shape : tuple of symbols
-        Parameters of the surface, such as a plane's normal vector.
-
-    See Also
-    --------
-    map_kernel : Derives it.
-    bound_map : Evaluates it over the image.
-
-    Examples
-    --------
-    >>> from percept_obs import pinhole
-    >>> from percept_obs.observability import map_kernel
-    >>> map_kernel(pinhole(), ("y1", "y2")).gather[-1]
-    Phi31*X0 + Phi32*Y0 + Phi33*Z0 + d3
     """
 
-    begin: Expressions
-    gather: Expressions
-    finish: sp.Expr
-    shape: tuple[sp.Symbol, ...] = ()
+    begin: Expressions  # of X0: the prior's share of the six entries of J, on and above its diagonal, row by row
+    gather: Expressions  # of `PLACE`: a sample's share of the six entries, and the distance
+    finish: sp.Expr  # of J's entries and `PLACE`: the relative standard deviation of the distance
+    shape: tuple[sp.Symbol, ...] = ()  # of the surface, such as a plane's normal
 
     def sources(self, language: Printed = "javascript") -> dict[str, str]:
         """Functions ``evaluate(x, out)`` for "begin", "gather" and "finish"; their arguments end with `shape`."""
@@ -80,30 +57,7 @@ class MapKernel:
 
 @lru_cache(maxsize=64)
 def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
-    """Derive a map's formulas for a surface and measured outputs, from the image and the distance of a point.
-
-    Parameters
-    ----------
-    surface : ImagingSurface
-    measured : tuple of str
-        Names of the outputs that are measured.
-
-    Returns
-    -------
-    MapKernel
-        The same object each time, for it is cached.
-
-    See Also
-    --------
-    bound_map : Evaluates it over the image.
-
-    Examples
-    --------
-    >>> from percept_obs import pinhole
-    >>> from percept_obs.observability import map_kernel
-    >>> map_kernel(pinhole(), ("y1",)).begin
-    (0, 0, 0, Z0**(-2), -Y0/Z0**3, Y0**2/Z0**4 + Z0**(-4))
-    """
+    """Derive a map's formulas for a surface and measured outputs, from the image and the distance of a point."""
     X = PHI * START + MOVED
     names = [symbol.name for symbol in surface.image_coordinates]
     seen = [e for name, e in zip(names, surface.image, strict=True) if name in measured]
@@ -146,11 +100,6 @@ class BoundMap:
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
         Time after which the bound holds, and distance of the points at the beginning.
-
-    See Also
-    --------
-    bound_map : Computes it.
-    percept_obs.figures.bound_map : Draws it.
 
     Examples
     --------
@@ -303,8 +252,8 @@ def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:
     """Phi and d of X(t) = Phi X(0) + d at times from 0 on, shapes (K, 3, 3) and (K, 3)."""
     evaluate = vectorised(motion.parameters, [*motion.A, *motion.b])
 
-    def rate(time: float, state: Array) -> Array:
-        A, b = np.split(np.ravel(evaluate(*motion.known(time)[0])), [9])
+    def rate(time: Array, state: Array) -> Array:
+        A, b = np.split(np.ravel(evaluate(*motion.known(float(time))[0])), [9])
         moved = A.reshape(3, 3) @ state
         moved[:, 3] += b
         return moved
@@ -314,11 +263,7 @@ def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:
     state = np.eye(3, 4)
     found = [state]
     for begin, h in zip(grid[:-1], np.diff(grid), strict=True):
-
-        def moving(instant: int, x: Array, begin: float = begin, h: float = h) -> Array:
-            return rate(begin + float(INSTANTS[instant]) * h, x)
-
-        state = step(state, h, moving)
+        state = step_along(state, begin, h, rate)
         found.append(state)
     whole = np.array(found)[index]
     return whole[:, :, :3], whole[:, :, 3]

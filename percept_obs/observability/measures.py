@@ -114,11 +114,6 @@ class Observability:
         Of the linearised error system, and by perturbed runs.
     bound : Bound
 
-    See Also
-    --------
-    how_observable : Computes it.
-    percept_obs.figures.observability : Draws it.
-
     Examples
     --------
     >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios

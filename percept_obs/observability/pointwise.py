@@ -15,12 +15,7 @@ from percept_obs.validation import checked, expression
 @checked
 @dataclass(frozen=True)
 class InstantaneousObservability:
-    """Information about the hidden coordinates at an instant, from w(x1) alone.
-
-    Parameters
-    ----------
-    form : CanonicalForm
-    """
+    """Information about the hidden coordinates of a canonical form at an instant, from w(x1) alone."""
 
     form: CanonicalForm
 
@@ -61,15 +56,10 @@ class InstantaneousObservability:
 
     @cached_property
     def eigenvalues(self) -> tuple[sp.Expr, ...]:
-        """Eigenvalues of the information for one output, or for one hidden coordinate: zeros, and |w|^2.
+        """Eigenvalues of the information for one output or one hidden coordinate, zeros and |w|^2; else a ValueError.
 
         Ma 2005, (20), p. 67, prints the last and larger one as the condition for y1 alone; its (18) asks for the
         smallest one, which is 0 everywhere.
-
-        Raises
-        ------
-        ValueError
-            With more of both, where they have no short form.
         """
         if 1 not in self.form.w.shape:
             raise ValueError(
@@ -97,14 +87,9 @@ class InstantaneousObservability:
         return growth if one_centre else None
 
     def circle(self, threshold: sp.Expr | float) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
-        """Centre and radius of the region where |w| is below a threshold.
+        """Centre and radius of the region where |w| is below a threshold; a ValueError if it is no circle.
 
         With both image coordinates the centre is the focus of expansion (Ma 2005, p. 66).
-
-        Raises
-        ------
-        ValueError
-            If the region is no circle, so that `growth` is None, as with one output alone.
         """
         if self.growth is None:
             raise ValueError(

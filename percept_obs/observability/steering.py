@@ -29,7 +29,7 @@ MOST_EVALUATIONS = 20_000
 @checked
 @dataclass(frozen=True)
 class Steering:
-    """Excitation of a form as a function of the velocity, and its gradient.
+    """Excitation of a form as a function of the velocity, and its gradient, from `steering`.
 
     Parameters
     ----------
@@ -45,7 +45,6 @@ class Steering:
 
     See Also
     --------
-    steering : Derives it.
     steered : Steers a scenario by it.
 
     Examples

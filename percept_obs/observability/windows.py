@@ -22,26 +22,13 @@ UNSEEN = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """Symmetric matrices, one for each window: how much of each direction of the state the window shows.
+    """Symmetric matrices, one for each window: how much of each direction of the state the window shows."""
 
-    Parameters
-    ----------
-    names : tuple of n str
-        Names of the states.
-    time : array of shape (T,)
-        Beginnings or ends of the windows in seconds.
-    matrices : array of shape (T, n, n)
-    window : float
-        Length of the windows in seconds.
-    scale : array of shape (T,), optional
-        Size with which eigenvalues are compared; the largest eigenvalue of each window when left out.
-    """
-
-    names: tuple[str, ...]
-    time: Array
-    matrices: Array
-    window: float
-    scale: Array | None = None
+    names: tuple[str, ...]  # of the n states
+    time: Array  # (T,), beginnings or ends of the windows in seconds
+    matrices: Array  # (T, n, n)
+    window: float  # length in seconds
+    scale: Array | None = None  # (T,), with which eigenvalues are compared; without it each window's largest one
 
     @cached_property
     def eigenvalues(self) -> Array:
@@ -74,13 +61,7 @@ class Windows:
         return int(np.argmax(missed) if missed.any() else np.argmin(self.smallest / self._positive_scale))
 
     def unseen(self, window: int | None = None) -> Array:
-        """Directions of the state that a window does not show, orthonormal columns, shape (n, q).
-
-        Parameters
-        ----------
-        window : int, optional
-            Its index; the weakest one when left out.
-        """
+        """Directions that a window does not show, orthonormal columns, shape (n, q); the weakest if none is given."""
         k = self.weakest if window is None else window
         values, vectors = np.linalg.eigh(self.matrices[k])
         return np.asarray(vectors[:, values <= UNSEEN * self._positive_scale[k]])
@@ -193,8 +174,7 @@ def check_window(recording: Recording, window: float, holds_samples: bool = Fals
 def window_integrals(time: Array, S: Array, Phi: Array, window: float) -> tuple[Indices, Array]:
     """Samples at which windows begin, shape (T,), and integrals of Phi^T S Phi over these windows, shape (T, n, n).
 
-    S, shape (K, n, n), is the information of each sample, and Phi, shape (K - 1, n, n), the transition from each
-    sample to the next.  No transition is inverted.
+    S, shape (K, n, n), is the information of each sample, and Phi, shape (K - 1, n, n), the transition to the next one.
     """
     h = np.diff(time)[:, None, None]
     G = h / 2 * (S[:-1] + _seen_through(Phi, S[1:]))

@@ -56,14 +56,9 @@ class About:
 
 @dataclass(frozen=True)
 class FastestRate:
-    """Decay rate of the fastest part of an observer, which an integration step must resolve.
+    """Decay rate in 1/s of an observer's fastest part, which an integration step must resolve.
 
-    Parameters
-    ----------
-    rate : expression
-        Decay rate in 1/s, from the gains and `elapsed`.
-    remedy : str
-        Advice if the step is too long, besides shortening it.
+    It depends on the gains and `elapsed`; the remedy is advice besides a shorter step.
     """
 
     rate: sp.Expr
@@ -126,17 +121,7 @@ class Observer:
     fastest: FastestRate | None = None
 
     def with_gains(self, **values: float) -> Observer:
-        """Observer with other gains; nothing is compiled again.
-
-        Raises
-        ------
-        ValueError
-            If a name is unknown, or a value is not finite or out of its range.
-
-        See Also
-        --------
-        in_units
-        """
+        """Observer with other gains, all in range; nothing is compiled again."""
         known = [gain.name for gain in self.gains]
         unknown = sorted(set(values) - set(known))
         if unknown:
@@ -178,12 +163,9 @@ class Observer:
         return sp.symbols(f"e1:{len(self.form.coordinates) + 1}", real=True)
 
     def error_dynamics(self) -> sp.ImmutableMatrix:
-        """Time derivative of the error e = x - xhat between samples and resets.
+        """Return the time derivative of the error e = x - xhat between samples and resets, shape (n, 1).
 
-        Returns
-        -------
-        matrix of shape (n, 1)
-            In terms of the true coordinates and the error, in the order of ``form.coordinates``.
+        It is in terms of the true coordinates and the error, in the order of ``form.coordinates``.
 
         Raises
         ------
@@ -236,7 +218,7 @@ class Observer:
     def lambdify(
         self, motion: Motion, measured: Callable[[float], Sequence[float]] | None = None
     ) -> Callable[[float, Sequence[float]], list[float]]:
-        """Flow as a function of time and state, for scipy's solvers; resets are left to the caller.
+        """Return the flow as a function of (t, state), for scipy's solvers; resets are left to the caller.
 
         Parameters
         ----------
@@ -244,11 +226,6 @@ class Observer:
             Known motion, with numbers.
         measured : function of a time, optional
             Measured outputs; not needed where the equations use none, as with `with_point`.
-
-        Returns
-        -------
-        function of (t, state)
-            Time derivative of the state.
 
         Raises
         ------
@@ -305,16 +282,13 @@ def _symbols_of_start(start: Expressions, coordinates: Symbols, x1: Symbols) -> 
 
 @checked
 def with_point(observer: Observer) -> Observer:
-    """Join observer and observed point to a system without inputs, with the state (x1, x2, observer's state).
+    """Return observer and observed point joined, with the state (x1, x2, observer's state).
+
+    Its equations need no samples, for the point's own rates take their place.
 
     Parameters
     ----------
     observer : Observer
-
-    Returns
-    -------
-    Observer
-        Its equations need no samples, for the point's own rates take their place.
 
     See Also
     --------

@@ -88,17 +88,12 @@ class Gain:
 
 
 def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
-    """Every combination of the gains' values.
+    """Return every combination of the gains' values by name; the last gain changes fastest.
 
     Parameters
     ----------
     **values : sequence of float
         Values to try, by the names of gains.
-
-    Returns
-    -------
-    tuple of mappings of names to values
-        The last gain changes fastest.
 
     See Also
     --------

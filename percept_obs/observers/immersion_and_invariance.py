@@ -13,12 +13,7 @@ lam = sp.Symbol("lambda", real=True)
 
 
 class NotIntegrable(ValueError):
-    """The form's w is not a gradient, so that no function of the outputs has it as its derivative.
-
-    See Also
-    --------
-    immersion_and_invariance : Raises it.
-    """
+    """The form's w is not a gradient, so that no function of the outputs has it as its derivative."""
 
 
 def not_integrable(form: CanonicalForm) -> NotIntegrable | None:

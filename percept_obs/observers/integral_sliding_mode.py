@@ -12,11 +12,11 @@ from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.inversion import (
     AMPLIFICATION_GAIN,
     Unobservable,
+    c_max,
     elapsed,
     first_innovation,
     inverted,
     needs_more_outputs,
-    start_left_over,
 )
 from percept_obs.observers.parts import hats, innovation
 from percept_obs.observers.switching import Switch, switch_named, switch_option
@@ -129,19 +129,15 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
 
 
 class GainTooSmall(ValueError):
-    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing.
-
-    See Also
-    --------
-    ultimate_bound : Raises it.
-    """
+    """The switching gain does not exceed what it is to dominate, so that Theorem 1 says nothing."""
 
 
 @checked
 def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) -> float:
-    """Bound on each entry of se, outside of which Theorem 1 makes it shrink.
+    """Return a bound on each entry of se, outside of which Theorem 1 makes it shrink.
 
     With alpha = |g| / gamma < 1 it is ln((1 + alpha) / (1 - alpha)) / (2 (a + b t)), and goes to 0 with time if b > 0.
+    It is in the unit of the outputs.
 
     Parameters
     ----------
@@ -151,11 +147,6 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
         Largest absolute value of the entries of g = w^T x2.
     time : float
         Seconds since the first sample.
-
-    Returns
-    -------
-    float
-        In the unit of the outputs.
 
     Raises
     ------
@@ -196,10 +187,11 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
 def tolerable_amplification(
     observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
 ) -> float:
-    """Value for the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
+    """Return the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
 
     White noise of standard deviation sigma on the samples passes into ghat with the factor k1 + 2 gamma c, and from
-    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.
+    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.  It
+    is hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
 
     Parameters
     ----------
@@ -213,11 +205,6 @@ def tolerable_amplification(
         Seconds at the end of the run; with b > 0 the factor grows.
     margin : float
         How many standard deviations must fit into `hidden`.
-
-    Returns
-    -------
-    float
-        hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
 
     Raises
     ------
@@ -237,10 +224,7 @@ def tolerable_amplification(
     [4.444, 0.444]
     """
     if not (noise > 0 and hidden > 0 and margin > 0 and margin * noise > 0 and 0 <= time < math.inf):
-        raise ValueError(
-            f"noise, hidden and margin must be positive and the time finite, from 0 on, not {noise}, {hidden}, "
-            f"{margin} and {time} s"
-        )
+        raise ValueError("noise, hidden and margin must be positive and the time finite, from 0 on")
     gains = observer.gain_values
     return hidden / (margin * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
 
@@ -252,14 +236,19 @@ def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch)
 
 
 def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobservable:
-    """Unobservable part at the start, from bounds on its rest in ghat - g = gamma tanh(c e) - se'.
+    """Condition under which the start may still make up half of the hidden coordinates.
 
-    On the surface e' = -gamma tanh(c e) + se', so that sinh(a |e|) shrinks at least like exp(-gamma a t); and se'
-    begins with the rate g, of which ghat is the estimate, and shrinks at least like exp(-(k1 + gamma a) t).
+    Its rest is bounded in ghat - g = gamma tanh(c e) - se'.  On the surface e' = -gamma tanh(c e) + se', so that
+    sinh(a |e|) shrinks at least like exp(-gamma a t); and se' begins with the rate g, of which ghat is the estimate,
+    and shrinks at least like exp(-(k1 + gamma a) t).  The bound and ghat are inverted alike, so that the same rest does
+    not matter where the hidden coordinates follow easily.  Shrunk below 1 / c_max, no inversion brings it back.
     """
     slower, faster = (sp.exp(-rate * elapsed) for rate in (gamma * a, k1 + gamma * a))
     begun = first_innovation(form).applyfunc(lambda entry: gamma * sp.sinh(a * sp.Abs(entry)))
-    return start_left_over(form, g_hat, begun * slower + g_hat.applyfunc(sp.Abs) * faster, slower)
+    left, (numerator, _) = begun * slower + g_hat.applyfunc(sp.Abs) * faster, form.cramer
+    squared = [sum(entry**2 for entry in matrix) for matrix in (numerator, left, numerator * g_hat)]
+    half = sp.And(sp.Ge(4 * squared[0] * squared[1], squared[2]), sp.Ge(c_max * slower, 1))
+    return Unobservable(half, "what is left of the start may be half of what is found")
 
 
 def _fastest(switch: str) -> FastestRate | None:

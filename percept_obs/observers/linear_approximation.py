@@ -91,7 +91,8 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     previous: dict[sp.Symbol, sp.Expr] = at_zero
     for number in range(1, iterates + 1):
         estimate = tuple(sp.Symbol(f"{hat.name}_{number}", real=True) for hat in hats(x))
-        P = _symmetric(size, number)
+        names = [[f"P{min(i, j) + 1}{max(i, j) + 1}_{number}" for j in range(size)] for i in range(size)]
+        P = sp.Matrix([[sp.Symbol(name, real=True) for name in row] for row in names])
         hidden_block = (jacobian.subs(at_zero) + jacobian.subs(previous, simultaneous=True)) / 2
         F = sp.Matrix(sp.BlockMatrix([[sp.zeros(n1), form.w.T], [sp.zeros(size - n1, n1), hidden_block]]))
         gain = P * C.T / R
@@ -106,10 +107,6 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     rate = sp.Rational(7, 6) * P0 / R + sp.sqrt(Q / R)
     remedy = "take a larger measurement_weight or a smaller start_weight"
     return Derived(tuple(state), tuple(flow), tuple(start), estimate, fastest=FastestRate(rate, remedy))
-
-
-def _symmetric(size: int, number: int) -> sp.Matrix:
-    return sp.Matrix(size, size, lambda i, j: sp.Symbol(f"P{min(i, j) + 1}{max(i, j) + 1}_{number}", real=True))
 
 
 lao = linear_approximation

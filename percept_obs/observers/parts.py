@@ -28,16 +28,12 @@ NOISE_GAIN = Gain(
 
 
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols of the estimates: yhat1 for y1.
+    """Return symbols of the estimates: yhat1 for y1.
 
     Parameters
     ----------
     symbols : sequence of symbols
         Such as y1; the hat goes before the number at the end.
-
-    Returns
-    -------
-    tuple of symbols
 
     See Also
     --------
@@ -53,17 +49,12 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
 
 
 def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Symbols that are 1 where a measured output starts from its first sample, and 0 where the user sets its start.
+    """Return symbols s_y1 for y1 that are 1 where an output starts from its first sample, 0 where its start is set.
 
     Parameters
     ----------
     x1 : sequence of symbols
         Measured outputs.
-
-    Returns
-    -------
-    tuple of symbols
-        Named s_y1 for y1, for use in an observer's start.
 
     See Also
     --------
@@ -85,7 +76,7 @@ def output_injection(
     hidden_gain: sp.Expr,
     bias: sp.ImmutableMatrix | None = None,
 ) -> Expressions:
-    """Flow of a copy of the system with feedback of a correction.
+    """Return the flow of a copy of the system with feedback of a correction.
 
     With the correction c, the gains L1, L2 and the bias b of w c::
 
@@ -100,10 +91,6 @@ def output_injection(
     measured_gain, hidden_gain : expressions
     bias : matrix of shape (n2, 1), optional
         Such as `noise_bias`; none when left out.
-
-    Returns
-    -------
-    tuple of n1 + n2 expressions
 
     See Also
     --------
@@ -125,15 +112,11 @@ def output_injection(
 
 
 def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
-    """Measured outputs minus their estimates, x1 - x1hat.
+    """Return measured outputs minus their estimates, x1 - x1hat, shape (n1, 1).
 
     Parameters
     ----------
     form : CanonicalForm
-
-    Returns
-    -------
-    matrix of shape (n1, 1)
 
     See Also
     --------
@@ -150,7 +133,7 @@ def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
 
 
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
-    """Reset condition and reset that shrink an estimate to the bound M once its norm reaches gamma M.
+    """Return the reset condition and the reset that shrink an estimate to the bound M once its norm reaches gamma M.
 
     Ma 2005, (12), p. 65.  Other states stay.
 
@@ -159,11 +142,6 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     state : symbols
     estimate : symbols
         Those of the state whose norm is bounded.
-
-    Returns
-    -------
-    condition : sympy condition
-    reset : expressions, one a state
 
     See Also
     --------
@@ -182,7 +160,7 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
 
 @checked
 def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Bias of ``w(x1) correction(x1)`` by white noise on the outputs.
+    """Return the bias of ``w(x1) correction(x1)``, shape (n2, 1), by white noise on the outputs.
 
     The same sample n enters both factors: with the variance sigma^2 in each output,
     E[w(x1 + n) correction(x1 + n)] = w correction + sigma^2 sum_j (dw/dx1_j) (d correction/dx1_j) + ...
@@ -194,10 +172,6 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     form : CanonicalForm
     correction : matrix of shape (n1, 1)
         Factor of w in the observer, in terms of the measured outputs.
-
-    Returns
-    -------
-    matrix of shape (n2, 1)
 
     See Also
     --------

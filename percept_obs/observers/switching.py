@@ -26,13 +26,7 @@ def switch_option(own: str, meaning: str) -> Option:
 
 
 def switch_named(name: str) -> Switch:
-    """Way to switch with this name.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """Way to switch with this name; refuse an unknown one."""
     refuse_kind("the observer", "switch", name, str)
     if name not in SWITCHES:
         raise ValueError(f"the switch {name!r} is none of {', '.join(map(repr, SWITCHES))}")

@@ -12,26 +12,14 @@ from percept_obs.system.surfaces import POINT, ImagingSurface
 
 
 class NotLinear(ValueError):
-    """The surface's images do not become linear in the point when they are multiplied by its distance.
-
-    See Also
-    --------
-    point_block : Raises it.
-    """
+    """The surface's images do not become linear in the point when they are multiplied by its distance."""
 
 
 @dataclass(frozen=True, eq=False)
 class PointBlock:
     """Image of one point without a division: l(xi) (y - h(xi)) = -B(y) xi.
 
-    Parameters
-    ----------
-    y : symbols
-        Image coordinates of the point, m of them.
-    N : matrix of shape (m, 3)
-        The image times the distance, N xi = l(xi) h(xi).
-    l : matrix of shape (1, 3)
-        The distance l xi.
+    Here y are its m image coordinates, N xi = l(xi) h(xi) is the image times the distance, and l xi the distance.
     """
 
     y: tuple[sp.Symbol, ...]
@@ -80,17 +68,12 @@ class PointBlock:
 
 @lru_cache(maxsize=64)
 def point_block(surface: ImagingSurface) -> PointBlock:
-    """Derive one point's block from the surface.
+    """Return one point's block, derived from the surface.
 
     Parameters
     ----------
     surface : ImagingSurface
         The pinhole or a plane.
-
-    Returns
-    -------
-    PointBlock
-        Kept for each surface.
 
     Raises
     ------

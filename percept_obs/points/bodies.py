@@ -20,7 +20,9 @@ MOST_POINTS = 200
 
 @checked
 def independent_points(motion: Motion, points: int, surface: ImagingSurface | None = None) -> PointsForm:
-    """Form of points that share a known motion only: x = (X_1, ..., X_p), with X_k' = A X_k + b.
+    """Return the form of points that share a known motion only: x = (X_1, ..., X_p), with X_k' = A X_k + b.
+
+    The 3 p states are X1_x, X1_y, X1_z, X2_x, ...
 
     Parameters
     ----------
@@ -30,11 +32,6 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
         p.
     surface : ImagingSurface, optional
         The pinhole when left out.
-
-    Returns
-    -------
-    PointsForm
-        With 3 p states X1_x, X1_y, X1_z, X2_x, ...
 
     Raises
     ------
@@ -71,12 +68,14 @@ def rigid_body(
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
-    """Form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), its first point and offsets from it.
+    """Return the form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), point and offsets from it.
 
     With the angular velocities w_c of the camera and w_b of the body and the velocities v_c of the camera and v_p of
     the body's first point, all in the world and written in the camera's axes::
 
         r' = -w_c x r + v_p - v_c,    d_k' = (w_b - w_c) x d_k,    X_1 = r,  X_k = r + d_k
+
+    The 3 p states are r_x, r_y, r_z, d2_x, ...
 
     Parameters
     ----------
@@ -89,11 +88,6 @@ functions of time, optional
         Times in seconds of sampled velocities.
     surface : ImagingSurface, optional
         The pinhole when left out.
-
-    Returns
-    -------
-    PointsForm
-        With 3 p states r_x, r_y, r_z, d2_x, ...
 
     Raises
     ------
@@ -132,10 +126,11 @@ def body_with_origin(
     times: ArrayLike | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
-    """Form of a rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
+    """Return the form of a rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
 
-    A warning example: moving the origin one way and all points' places the other changes no image while both
-    turn alike, so that three directions of the state are never seen.  `rigid_body` has none of them.
+    A warning example: moving the origin one way and all points' places the other changes no image while both turn
+    alike, so that three directions of the state are never seen.  `rigid_body` has none of them.  The 3 p + 3 states are
+    o_x, o_y, o_z, d1_x, ...
 
     Parameters
     ----------
@@ -143,11 +138,6 @@ def body_with_origin(
         See `rigid_body`.
     origin_velocity : array of shape (3,) or (K, 3), or function of time, optional
         Velocity of the origin in the world, in m/s.
-
-    Returns
-    -------
-    PointsForm
-        With 3 p + 3 states o_x, o_y, o_z, d1_x, ...
 
     Warns
     -----

@@ -16,21 +16,11 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """The inequalities that make V = rho^T P rho decrease, along a run.
+    """Inequalities that make V = rho^T P rho decrease, at T times along a run.
 
-    Parameters
-    ----------
-    time : array of shape (T,)
-        Seconds.
-    printed : array of shape (T,)
-        Largest eigenvalue of A^T P + P A + P'; not positive where (15) holds.
-    weaker : array of shape (T,)
-        Largest eigenvalue of A^T P + P A + P' - (2 - epsilon) S; not positive where V' <= -epsilon |B C rho|^2.
-    least : array of shape (T,)
-        Smallest eigenvalue of P, which is to stay above a positive number.
-    epsilon : float
-    scale : array of shape (T,)
-        Size of the terms, by which the eigenvalues are judged.
+    The largest eigenvalues of A^T P + P A + P', as `printed` in (15), and of the `weaker` condition with -(2 - epsilon)
+    S added, under which V' <= -epsilon |B C rho|^2, must not be positive; the least one of P must stay above a positive
+    number.  They are judged by the scale, the size of the terms.
     """
 
     time: Array

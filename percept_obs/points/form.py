@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -19,7 +19,7 @@ from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
-from percept_obs.validation import Entries, checked, expression, matrix, numbers, warn
+from percept_obs.validation import Entries, checked, expression, matrix, numbers, set_fields, warn
 
 DRAWS = 4
 """Random values of a motion's symbols, by which directions are found that no motion shows."""
@@ -29,12 +29,7 @@ JUDGED = "the points' positions"
 
 
 class UnseenDirection(UserWarning):
-    """A direction of the state that no image of any point depends on, whatever the camera sees.
-
-    See Also
-    --------
-    PointsForm : Warns with it.
-    """
+    """A direction of the state that no image of any point depends on, whatever the camera sees."""
 
 
 class Layout(NamedTuple):
@@ -93,6 +88,7 @@ class PointsForm:
     C: Entries
     surface: ImagingSurface = field(default_factory=pinhole)
     names: tuple[str, ...] = ()
+    judged: ClassVar[str] = JUDGED
 
     def __post_init__(self) -> None:
         n = self.motion.A.shape[0]
@@ -103,9 +99,8 @@ class PointsForm:
                 f"C has blocks of shape {', '.join(map(str, sorted(shapes))) or 'none'}; the motion has {n} states, so "
                 f"each point needs a block of shape {(3, n)}"
             )
-        object.__setattr__(self, "C", tuple(map(_matrix, blocks)))
         names = tuple(self.names) or tuple(f"x{k + 1}" for k in range(n))
-        object.__setattr__(self, "names", names)
+        set_fields(self, C=tuple(map(_matrix, blocks)), names=names)
         if len(set(names)) != len(names) or len(names) != n:
             raise ValueError(f"{len(names)} names were given for {n} states; each state needs a name of its own")
         point_block(self.surface)
@@ -221,11 +216,6 @@ class PointsForm:
         """Inverse depths in 1/m of states of shape (..., n), shape (..., p); negative behind the camera."""
         distance = self.locate(states) @ self.surface_numbers[1]
         return np.divide(1, distance, out=np.full_like(distance, np.inf), where=distance != 0)
-
-    @property
-    def judged(self) -> str:
-        """Name of the estimated quantity."""
-        return JUDGED
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """Error of the worst point's position, relative to its distance, shape (K,); see `View`."""
@@ -350,10 +340,7 @@ class PointsForm:
 def points_form(recording: Recording) -> PointsForm:
     """Return the form of a recording; raise ValueError if it does not show points of a state."""
     if not isinstance(recording.view, PointsForm):
-        raise ValueError(
-            f"this needs a recording of points of a state, but it shows the {recording.view.name}; record a "
-            "PointsScenario"
-        )
+        raise ValueError(f"this needs a recording of points of a state, but it shows the {recording.view.name}")
     return recording.view
 
 

@@ -10,11 +10,11 @@ from types import MappingProxyType
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.observability.directions import in_words, mainly
 from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm, points_form
+from percept_obs.points.information import transitions
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.recording import Recording
@@ -89,7 +89,9 @@ class Gramian(Windows):
 
 @checked
 def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """Information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
+    """Return the information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
+
+    There is a window for each sample from which it fits into the recording.
 
     Parameters
     ----------
@@ -99,11 +101,6 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
         Seconds.
     form : PointsForm, optional
         System with the believed motion; the recording's own when left out.
-
-    Returns
-    -------
-    Gramian
-        With a window for each sample from which it fits into the recording.
 
     Raises
     ------
@@ -127,13 +124,13 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     form = form or seen
     if form.points != seen.points:
         raise ValueError(f"the form has {form.points} points, the recording {seen.points}")
-    images = true_images(recording)
+    images = _true_images(recording)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
 @checked
 def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
-    """Information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
+    """Return the information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
 
     The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
     with epsilon, this one is at least epsilon / (1 + sup |y|^2) (Proposition 3.3); the converse fails.
@@ -142,10 +139,6 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     ----------
     recording, window, form
         See `gramian`.  Points count while they are seen.
-
-    Returns
-    -------
-    Gramian
 
     Raises
     ------
@@ -225,7 +218,7 @@ class DecayBound:
 
 @checked
 def decay_bound(recording: Recording, observer: LuenbergerObserver, window: float) -> DecayBound:
-    """Bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
+    """Return a bound on the decay of the error, from (14) as the proof of Theorem 3.4 uses it.
 
     With z = B C rho, (15) gives V(t) - V(t + T) >= 2 int |z|^2.  By (22), the error without corrections would have
     shown B C Phi rho(t) = z + K z, where K is the operator with the kernel B C Phi(s, tau) P^-1 C^T B^T.  So
@@ -241,10 +234,6 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         With a given P, that meets (15).
     window : float
         Seconds.
-
-    Returns
-    -------
-    DecayBound
 
     Raises
     ------
@@ -271,7 +260,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window, holds_samples=True)
-    time, images, slack = recording.time, true_images(recording), slack_of(recording.time)
+    time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
     if P.computed or not conditions(observer, time[every], images[every], _over(P, time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
@@ -282,7 +271,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         inside = inside[np.unique(np.linspace(0, len(inside) - 1, PARTS + 1).round().astype(int))]
         at = time[inside]
         shares = np.convolve(np.diff(at), [0.5, 0.5])  # of the trapezoidal rule
-        steps = _transitions(form, at)
+        steps = transitions(form, at)[:, :-1, :-1]
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
@@ -308,42 +297,11 @@ def _over(P: LyapunovMatrix, times: Array) -> Array:
     return np.broadcast_to(values, (len(times), *values.shape[1:]))
 
 
-def true_images(recording: Recording) -> Array:
-    """Images without noise where the truth is known, else the outputs.
-
-    Parameters
-    ----------
-    recording : Recording
-        Of K samples of p points, with m image coordinates each.
-
-    Returns
-    -------
-    array of shape (K, p, m)
-        NaN where a point is not seen.
-
-    See Also
-    --------
-    gramian : Uses them.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, Gaussian, record
-    >>> from percept_obs.points.gramian import true_images
-    >>> from percept_obs.points.scenarios import along_the_line_of_sight
-    >>> true_images(record(along_the_line_of_sight(), 1, Camera(0.5, Gaussian(0.01)))).round(3).tolist()
-    [[[0.2, 0.1]], [[0.2, 0.1]], [[0.2, 0.1]]]
-    """
+def _true_images(recording: Recording) -> Array:
+    """Images without noise where the truth is known, else the outputs; NaN where a point is not seen."""
     if recording.truth is None:
         return recording.outputs
     return np.where(recording.seen[..., None], recording.view.outputs(recording.truth), np.nan)
-
-
-def _transitions(form: PointsForm, time: Array) -> Array:
-    """Transition matrices from each time to the next, shape (K - 1, n, n), by one step each."""
-    places = instants(time)
-    A, _ = form.coefficients(places)
-    A = by_step(np.broadcast_to(A, (len(places), *A.shape[1:])))
-    return step(np.eye(form.states), np.diff(time)[:, None, None], lambda instant, Phi: A[:, instant] @ Phi)
 
 
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
@@ -351,6 +309,6 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     check_window(recording, window, holds_samples=True)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
-    begins, matrices = window_integrals(time, information(used), _transitions(form, time), window)
+    begins, matrices = window_integrals(time, information(used), transitions(form, time)[:, :-1, :-1], window)
     states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
     return Gramian(form.names, time[begins], matrices, window, states=states)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import accumulate
 
 import numpy as np
 
@@ -26,7 +27,8 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         every = max(1, (len(recording.time) - first) * form.states**2 // LARGEST_TABLE)
         used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
         outputs = recording.outputs[used]
-        back = _backwards(form, recording.time[used])
+        maps = transitions(form, recording.time[used])
+        back = np.stack([*accumulate(maps, lambda at, map_: map_ @ at, initial=np.eye(form.states + 1))])[:, :-1]
         m = outputs.shape[-1]
         rows = form.rows(outputs).reshape(len(used), form.points, m, form.states) @ back[:, None]
         l = form.surface_numbers[1]
@@ -55,21 +57,13 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
     return fit
 
 
-def _backwards(form: PointsForm, time: Array) -> Array:
-    """Maps from the state at the first of decreasing times, and 1, to that at each of them, shape (T, n, n + 1)."""
-    places = instants(time)
-    A, v = form.coefficients(places)
-    A, v = (by_step(np.broadcast_to(rows, (len(places), *rows.shape[1:]))) for rows in (A, v))
-    found = [np.eye(form.states, form.states + 1)]
-    for k, length in enumerate(np.diff(time)):
-
-        def rate(instant: int, state: Array, k: int = k) -> Array:
-            moved = A[k, instant] @ state
-            moved[:, -1] += v[k, instant]
-            return np.asarray(moved)
-
-        found.append(step(found[-1], np.asarray(length), rate))
-    return np.stack(found)
+def transitions(form: PointsForm, time: Array) -> Array:
+    """Maps of the state and 1 from each time to the next, shape (T - 1, n + 1, n + 1), by one step each."""
+    places, n = instants(time), form.states
+    rate = np.zeros((len(places), n + 1, n + 1))
+    rate[:, :n, :n], rate[:, :n, n] = form.coefficients(places)
+    rate = by_step(rate)
+    return step(np.eye(n + 1), np.diff(time)[:, None, None], lambda instant, map_: rate[:, instant] @ map_)
 
 
 def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, determined: Flags, noise: float) -> float:

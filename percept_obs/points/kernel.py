@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from percept_obs.compile import Array, Indices, executed, machine_code
-from percept_obs.compile import Language as Language
+from percept_obs.compile import Array, Indices, Language, executed, machine_code
 from percept_obs.compile import choose as choose_for_steps
 from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, numbers
 from percept_obs.points.block import PointBlock
@@ -210,7 +209,6 @@ def run(
     return -1, now[n:].reshape(size, size) if size else P
 
 
-@cache
 def source(block: PointBlock, language: Language) -> str:
     """Text of the loop for points on one kind of surface, with all that it depends on, as `machine_code` needs it."""
     helpers = (combine_by_numpy, solve_by_numpy) if language == "python" else (combine_by_loops, solve_by_loops)
@@ -228,18 +226,15 @@ def source(block: PointBlock, language: Language) -> str:
 
 
 @cache
-def _python(block: PointBlock) -> Callable[..., tuple[int, Array]]:
-    """The loop in Python."""
-    return executed(source(block, "python"))
-
-
-def _compiled(block: PointBlock) -> Callable[..., tuple[int, Array]]:
-    """The loop in machine code."""
+def _loop(block: PointBlock, language: Language) -> Callable[..., tuple[int, Array]]:
+    """The loop in Python or in machine code."""
+    if language == "python":
+        return executed(source(block, language))
     line, sheet, book, shelf = (f"float64[{':, ' * further}::1]" for further in range(4))
     form = f"Tuple(({'intp[::1], ' * 6}{line}, {line}))"
     law = f"Tuple((boolean, float64, float64, {sheet}))"
     signature = f"({form}, {law}, {line}, {sheet}, {line}, {sheet}, {book}, {shelf}, {sheet})"
-    return machine_code(source(block, "numba"), signature)
+    return machine_code(source(block, language), signature)
 
 
 def choose(language: Language | None, work: float) -> Language:
@@ -267,7 +262,7 @@ def advance(
     """
     path = np.full((len(steps) + 1, len(start)), np.nan)
     tables = (start, P, steps, coefficients, inverses, outputs)
-    loop = (_compiled if language == "numba" else _python)(form.block)
+    loop = _loop(form.block, language)
     with np.errstate(all="ignore"):
         diverged, P = loop(form[:-1], law, *(np.array(table, dtype=float, order="C") for table in tables), path)
     if diverged >= 0:

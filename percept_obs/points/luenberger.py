@@ -100,11 +100,7 @@ class LuenbergerObserver:
         return sp.symbols(f"rho1:{self.form.states + 1}", real=True)
 
     def error_dynamics(self) -> sp.ImmutableMatrix:
-        """Rate of the error rho = x - xhat, in terms of the images and the error; Inaba et al. 2005, (12).
-
-        Returns
-        -------
-        matrix of shape (n, 1)
+        """Return the rate of the error rho = x - xhat, in terms of images and error; Inaba et al. 2005, (12).
 
         Notes
         -----
@@ -136,7 +132,7 @@ class LuenbergerObserver:
 def luenberger(
     form: PointsForm, P: ArrayLike | Callable[[float], ArrayLike] | LyapunovMatrix = 1.0
 ) -> LuenbergerObserver:
-    """Luenberger-type observer of a linear state seen through many points.
+    """Return the Luenberger-type observer of a linear state seen through many points.
 
     ::
 
@@ -151,10 +147,6 @@ def luenberger(
     P : number, array of shape (n, n), function of time, or LyapunovMatrix
         A number stands for its multiple of the identity.  Others come from `constant`, `scheduled`, `lyapunov` and
         `riccati`.  A smaller P corrects more.
-
-    Returns
-    -------
-    LuenbergerObserver
 
     Raises
     ------

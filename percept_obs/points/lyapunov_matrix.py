@@ -84,13 +84,7 @@ class LyapunovMatrix:
         return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
 
     def sized(self, states: int) -> LyapunovMatrix:
-        """Copy for a number of states, with matrices in place of numbers.
-
-        Raises
-        ------
-        ValueError
-            If a matrix has another shape, or is not symmetric, finite and positive (semi-)definite.
-        """
+        """Return a copy for some states, with matrices in place of numbers, which must be symmetric and definite."""
         if self.schedule is not None:
             rows = self.schedule.at(0.0) if callable(self.schedule.samples) else self.schedule.samples
             for k, row in enumerate(rows):
@@ -123,16 +117,12 @@ class LyapunovMatrix:
 
 @checked
 def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
-    """P that stays as it is.
+    """Return a P that stays as it is.
 
     Parameters
     ----------
     P : array of shape (n, n) or float
         Symmetric positive definite; a number stands for its multiple of the identity.
-
-    Returns
-    -------
-    LyapunovMatrix
 
     See Also
     --------
@@ -149,7 +139,7 @@ def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
 
 @checked
 def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> LyapunovMatrix:
-    """P as a function of time, or from samples.
+    """Return P as a function of time, or from samples.
 
     Parameters
     ----------
@@ -157,10 +147,6 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
         Symmetric positive definite; numbers are multiples of the identity.
     times : array of shape (K,), optional
         Times in seconds of the samples, linear between them.
-
-    Returns
-    -------
-    LyapunovMatrix
 
     Raises
     ------
@@ -189,7 +175,7 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
 
 @checked
 def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatrix:
-    """P from the Lyapunov equation P' = -A^T P - P A - decrease, which meets (15) with room for the decrease.
+    """Return P from the Lyapunov equation P' = -A^T P - P A - decrease, which meets (15) with room for the decrease.
 
     Parameters
     ----------
@@ -197,10 +183,6 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatri
         Symmetric positive definite.
     decrease : array of shape (n, n) or float
         Symmetric positive semidefinite.  P stays positive only while the start outweighs what it takes away.
-
-    Returns
-    -------
-    LyapunovMatrix
 
     See Also
     --------
@@ -217,7 +199,9 @@ def lyapunov(start: ArrayLike = 1.0, decrease: ArrayLike = 0.0) -> LyapunovMatri
 
 @checked
 def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
-    """P from P' = -A^T P - P A + S - forgetting (P - start), S = C^T B^T B C; its inverse solves a Riccati equation.
+    """Return P from P' = -A^T P - P A + S - forgetting (P - start), whose inverse solves a Riccati equation.
+
+    Here S = C^T B^T B C.
 
     P gathers what the images told, as the information matrix of least squares does, and forgets it exponentially, but
     for its start: so it stays bounded above and, for points out of sight as well, below.
@@ -228,10 +212,6 @@ def riccati(start: ArrayLike = 0.01, forgetting: float = 0.3) -> LyapunovMatrix:
         Symmetric positive definite: how much the start is trusted, against images seen for a second.
     forgetting : float
         In 1/s, not negative.
-
-    Returns
-    -------
-    LyapunovMatrix
 
     Raises
     ------
@@ -275,7 +255,4 @@ def _definite(matrix: Array, what: str, semi: bool = False) -> None:
         raise ValueError(f"{what} must be a finite symmetric matrix")
     least = float(np.linalg.eigvalsh(matrix)[0])
     if least < -1e-12 or (least <= 0 and not semi):
-        raise ValueError(
-            f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite, "
-            "for V = rho^T P rho is to measure the error"
-        )
+        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")

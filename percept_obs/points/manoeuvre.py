@@ -36,18 +36,11 @@ def velocities() -> Vectors:
 @checked
 @dataclass(frozen=True)
 class Manoeuvre:
-    """A camera and a body in motion, with all points kept in view.
+    """Camera and body in motion, with all points kept in view.
 
-    Parameters
-    ----------
-    turning : float
-        Share of W = [w]x, w = (0.2 sin 0.3t, 0.3 cos 0.4t, 0.5), by which the camera turns.
-    spin : float
-        Share of (0.5 sin t, 0.4 cos t, 0.3) rad/s, by which the body turns in the world.
-    input : float
-        Share of the input v = r' - W r, which keeps a point on r = (1.5 sin t, 1.2 cos 0.7t, 2.5 + 0.5 sin 0.5t).
-    velocity : three numbers
-        A constant part of v, in m/s.
+    The camera turns by a share of W = [w]x, w = (0.2 sin 0.3t, 0.3 cos 0.4t, 0.5), and the body spins in the world by
+    one of (0.5 sin t, 0.4 cos t, 0.3) rad/s.  A share of the input v = r' - W r keeps a point on r = (1.5 sin t, 1.2
+    cos 0.7t, 2.5 + 0.5 sin 0.5t); the velocity is a constant part of v, in m/s.
     """
 
     turning: float = 1.0

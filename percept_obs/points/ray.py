@@ -89,14 +89,10 @@ class RayError:
 
 @lru_cache(maxsize=1)
 def ray_error() -> RayError:
-    """Derive the error of a point from its block, in the plane in which its ray turns.
+    """Return the error of a point, from its block, in the plane in which its ray turns.
 
     The point is seen at y(t) = (y1(t), 0) by a pinhole, the camera turns in the same plane at a known rate, and P is a
     multiple of the identity.
-
-    Returns
-    -------
-    RayError
 
     Raises
     ------
@@ -132,7 +128,9 @@ def ray_error() -> RayError:
 
 @checked
 def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
-    """Rate in rad/s at which the input v turns the ray of each point: v_k across the ray, over the range.
+    """Return the rate in rad/s at which the input v turns the ray of each point, shape (K, p).
+
+    It is v_k across the ray, over the range.
 
     Parameters
     ----------
@@ -141,10 +139,6 @@ def ray_turning(form: PointsForm, times: Array, states: Array) -> Array:
         Seconds.
     states : array of shape (K, n)
         True states.
-
-    Returns
-    -------
-    array of shape (K, p)
 
     See Also
     --------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -54,6 +55,7 @@ class PointsRun(Run):
     began: Flags
     kept: Indices
     P: Array
+    remedy: ClassVar[str] = REMEDY
 
     @property
     def view(self) -> PointsForm:
@@ -63,18 +65,10 @@ class PointsRun(Run):
 
     @property
     def truth(self) -> Array:
-        """True states, shape (K, n).
-
-        Raises
-        ------
-        ValueError
-            If the recording has none, or of a state of another size.
-        """
+        """True states, shape (K, n); raises ValueError if the recording has none, or of a state of another size."""
         truth, states = super().truth, len(self.view.coordinates)
         if truth.shape[1] != states:
-            raise ValueError(
-                f"the observer believes in {states} states, the truth has {truth.shape[1]}; compare the points"
-            )
+            raise ValueError(f"the observer believes in {states} states, the truth has {truth.shape[1]}")
         return truth
 
     @property
@@ -88,21 +82,13 @@ class PointsRun(Run):
         return np.asarray(np.linalg.norm(self.error, axis=1))
 
     @property
-    def remedy(self) -> str:
-        """Advice if it diverged."""
-        return REMEDY
-
-    @property
     def _least_squares(self) -> Fit:
         return many_points(self.view, self.recording)
 
     def decay_rate(self, begin: float = -math.inf, end: float = math.inf) -> float:
         """Rate of the exponential fitted to the error's norm between two times, in 1/s; positive where it shrinks.
 
-        Raises
-        ------
-        ValueError
-            If fewer than two samples lie between the times, or the error is not finite and positive there.
+        At least two samples must lie between them, with finite errors that are not zero.
         """
         inside = (self.time >= begin) & (self.time <= end)
         size = self.deviation[inside]

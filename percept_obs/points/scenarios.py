@@ -15,16 +15,11 @@ from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.recording import Scene
 from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import TIME, Motion, linear
-from percept_obs.validation import checked
+from percept_obs.validation import checked, set_fields
 
 
 class LeavesEveryBound(ValueError):
-    """The state grows without end, so that nothing can be recorded of it.
-
-    See Also
-    --------
-    PointsScenario : Raises it.
-    """
+    """The state grows without end, so that nothing can be recorded of it."""
 
 
 @checked
@@ -71,7 +66,7 @@ class PointsScenario(Scene):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "state", self._check("state", self.state, self.form.names))
+        set_fields(self, state=self._check("state", self.state, self.form.names))
 
     @property
     def view(self) -> PointsForm:
@@ -86,12 +81,8 @@ class PointsScenario(Scene):
     def coordinates(self, times: ArrayLike) -> Array:
         """States at times from 0 on that do not decrease, shape (K, n), as exact as those of a `Scenario`.
 
-        Raises
-        ------
-        LeavesEveryBound
-            If the state grows beyond all bounds before.
-        TooMuchWork
-            If there are too many times, or the motion is too fast.
+        It raises LeavesEveryBound if the state grows beyond all bounds before, and TooMuchWork if the motion is too
+        fast.
         """
         form, start = self.form, np.array(self.state)
         times = times_of(times, form.states)
@@ -109,9 +100,7 @@ class PointsScenario(Scene):
         bounded = np.isfinite(path).all(axis=1)
         if not bounded.all():
             when = times[np.argmin(bounded)]
-            raise LeavesEveryBound(
-                f"the state of {self.name!r} leaves every bound at {when:.4g} s; shorten the duration"
-            )
+            raise LeavesEveryBound(f"the state of {self.name!r} leaves every bound at {when:.4g} s; stop before")
         return path
 
 
@@ -121,7 +110,7 @@ OFFSET = (0.5, -0.3, 0.4)
 
 @checked
 def moving_body(points: int = 1) -> PointsScenario:
-    """Scenario of a rigid body that stays in the view of a turning camera, for 60 s.
+    """Return a scenario of a rigid body that stays in the view of a turning camera, for 60 s.
 
     The camera moves as in `Manoeuvre`, whose path the first point follows.  The second one is at `OFFSET` from it;
     further ones are drawn at random, always the same, from a cube of 1 m around it.
@@ -130,10 +119,6 @@ def moving_body(points: int = 1) -> PointsScenario:
     ----------
     points : int
         Points of the body, from 1 on.
-
-    Returns
-    -------
-    PointsScenario
 
     See Also
     --------
@@ -155,13 +140,9 @@ def moving_body(points: int = 1) -> PointsScenario:
 
 @checked
 def lost_offset() -> PointsScenario:
-    """Scenario of two points of which the camera sees the first one only: the second one's offset is lost.
+    """Return a scenario of two points of which the camera sees the first one: the second one's offset is lost.
 
     It warns of an `UnseenDirection`.
-
-    Returns
-    -------
-    PointsScenario
 
     See Also
     --------
@@ -183,12 +164,9 @@ def lost_offset() -> PointsScenario:
 
 @checked
 def along_the_line_of_sight() -> PointsScenario:
-    """Scenario of a point that recedes along its ray: the images stand still, and its depth is lost.
+    """Return a scenario of a point that recedes along its ray: the images stand still, and its depth is lost.
 
-    Returns
-    -------
-    PointsScenario
-        In the coordinates X, Y, Z in metres, for 60 s.
+    Its coordinates are X, Y, Z in metres, for 60 s.
 
     See Also
     --------

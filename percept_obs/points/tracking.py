@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags, Indices
+from percept_obs.compile import Array, Flags, Indices, Language
 from percept_obs.compile.integrator import EACH
 from percept_obs.points.form import PointsForm
-from percept_obs.points.kernel import Language, advance, arrays, choose
+from percept_obs.points.kernel import advance, arrays, choose
 from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
@@ -148,7 +148,7 @@ def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Ar
     loop = arrays(task.observer.form, states, points)
     law = (matrix.computed, matrix.information, matrix.forgetting, pull)
     stops = np.union1d(task.kept, np.flatnonzero(task.began[:, points].any(axis=1)))
-    inverses = np.zeros((1, 1, 1))
+    inverses: Array = np.zeros((1, 1, 1))
     state, at_kept = np.full((len(time), n), np.nan), np.full((len(task.kept), n, n), np.nan)
     # the loop runs from stop to stop, where P is kept or points begin
     for first, last in zip(stops, [*stops[1:], None], strict=True):
@@ -161,7 +161,10 @@ def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Ar
         steps = slice(index[first], index[last])
         rows = slice(EACH * steps.start, EACH * steps.stop + 1)
         if not matrix.computed and (first == stops[0] or not matrix.constant):
-            inverses = _inverses(matrix.at(grid.instants[rows])[:, block[0], block[1]])
+            given = matrix.at(grid.instants[rows])[:, block[0], block[1]]
+            if not (np.isfinite(given).all() and (np.linalg.eigvalsh((given + given.swapaxes(1, 2)) / 2) > 0).all()):
+                raise ValueError("P is singular or not positive definite at some time; it must stay positive definite")
+            inverses = np.asarray(np.linalg.inv(given), dtype=float)
         known = task.coefficients if len(task.coefficients) == 1 else task.coefficients[rows]
         images = task.images[steps][:, :, points]
         path, P, diverged = advance(loop, law, x, P, grid.steps[steps], known, inverses, images, task.language)
@@ -192,10 +195,3 @@ def _begin(
     P[free] = P[:, free] = 0
     P[np.ix_(free, free)] = task.observer.P.start[np.ix_(states[free], states[free])]
     return x, P
-
-
-def _inverses(P: Array) -> Array:
-    """Inverses of matrices; raise ValueError unless all are positive definite."""
-    if not (np.isfinite(P).all() and (np.linalg.eigvalsh((P + np.swapaxes(P, 1, 2)) / 2) > 0).all()):
-        raise ValueError("P is singular or not positive definite at some time; it must stay positive definite")
-    return np.asarray(np.linalg.inv(P))

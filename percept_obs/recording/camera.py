@@ -18,22 +18,13 @@ from percept_obs.validation import checked, limit
 Seed = np.random.Generator | int
 
 
-class _Noise(ABC):
+class _Noise:
     """Independent noise of one spread, which is its bound or its standard deviation."""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
-
-    @property
-    @abstractmethod
-    def variance(self) -> float:
-        """Variance of a sample."""
-
-    @abstractmethod
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """Return independent samples of a shape."""
 
 
 @checked
@@ -172,19 +163,7 @@ class Camera:
     def times(self, duration: float, each: int = 1) -> Array:
         """Return the times of the samples in seconds, from 0 on, shape (K,).
 
-        Parameters
-        ----------
-        duration : float
-            In seconds.
-        each : int
-            Numbers kept of a sample, for the limit of memory.
-
-        Raises
-        ------
-        ValueError
-            If the duration holds no two of them.
-        TooMuchWork
-            If it holds too many.
+        The duration holds at least one period, and not too many samples for `each` numbers in every one.
         """
         if not math.isfinite(duration):
             raise ValueError(f"a duration of {duration} s holds no two samples; it must be finite")
@@ -198,29 +177,17 @@ class Camera:
         return self.period * np.arange(int(np.floor(duration / self.period + 1e-9)) + 1, dtype=float)
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
-        """Return samples of a scene and the variance of their noise.
+        """Return samples of a scene, shape (K, ..., m), and the variance of their noise.
 
-        Parameters
-        ----------
-        scene : Scene
-        time : array of shape (K,)
-            Seconds.
-        truth : array of shape (K, n)
-            Coordinates of the scene's view.
-        generator : numpy Generator
-            Draws the noise and then the lost samples.
-
-        Returns
-        -------
-        outputs : array of shape (K, ..., m)
-            NaN where a point is not seen.
-        variance : float
-            Of the noise in each output.
+        The truth has the coordinates of its view at the times.  Noise is drawn first, then the lost samples.
         """
         exact = scene.view.outputs(truth)
         outputs = exact + self.noise.draw(generator, exact.shape)
-        lost = self.lost(generator, exact.shape[:-1])
-        outputs[lost | ~(np.abs(exact).max(axis=-1) <= self.reach) | self._out_of_view(scene.view, truth)] = np.nan
+        lost = self.lost(generator, exact.shape[:-1]) | ~(np.abs(exact).max(axis=-1) <= self.reach)
+        if self.field_of_view < 2 * math.pi:
+            points = scene.view.locate(truth)
+            lost |= points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1)
+        outputs[lost] = np.nan
         return outputs, self.noise.variance
 
     def drawn(self, seeds: Sequence[int], shape: tuple[int, ...]) -> Array:
@@ -231,13 +198,6 @@ class Camera:
             if self.dropout:
                 noise[k][self.lost(generator, shape[:-1])] = np.nan
         return noise
-
-    def _out_of_view(self, view: View, truth: Array) -> Flags | bool:
-        """Return True for points outside of the field of view, shape (K, ...)."""
-        if self.field_of_view == 2 * math.pi:
-            return False
-        points = view.locate(truth)
-        return np.asarray(points[..., 2] < math.cos(self.field_of_view / 2) * np.linalg.norm(points, axis=-1))
 
     def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
         """Return True for samples lost by chance; the first ones never are."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from percept_obs.compile import Array, Indices
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 AT_ONCE = 200_000
 """Poses in windows that are fitted together, for about 50 MB of memory."""
@@ -83,8 +82,7 @@ class Quadratic:
     fewest = 5
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.half_width) and self.half_width > 0):
-            raise ValueError(f"the half_width is {self.half_width} s; it must be positive, for instance 0.2")
+        positive(half_width=self.half_width)
 
     def of(self, time: Array, position: Array, orientation: Array) -> Derived:
         """Return smoothed poses and rates; see `Derived`."""

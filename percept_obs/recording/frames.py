@@ -73,9 +73,7 @@ class Frames:
                 f"there are {len(images)} frames and times of shape {time.shape}; give each frame a time, increasing"
             )
         if extent.shape != (4,) or extent[0] == extent[1] or extent[2] == extent[3]:
-            raise ValueError(
-                f"the extent is {self.extent!r}; give y1 of the left and right, y2 of the lower and upper edge"
-            )
+            raise ValueError(f"the extent is {self.extent!r}; give y1 of left and right, y2 of lower and upper edge")
         vars(self).update(images=images, time=time, extent=tuple(extent.tolist()))
 
 
@@ -100,7 +98,7 @@ def _png(image: Any, number: int) -> bytes:
 
 @checked
 def render(recording: Recording, count: int = 60, size: int = 160, radius: float = 0.15) -> Frames:
-    """Draw a film of a recording with its truth: a ball around the point, which grows as it comes nearer.
+    """Return a film drawn of a recording with its truth: a ball around the point, which grows as it comes nearer.
 
     Parameters
     ----------
@@ -112,10 +110,6 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
         Side of a frame in pixels.
     radius : float
         Of the ball, in metres.
-
-    Returns
-    -------
-    Frames
 
     Raises
     ------

@@ -23,13 +23,7 @@ def numbers_of(scenario: Scenario) -> dict[str, float]:
 
 
 def with_numbers(scenario: Scenario, **values: float) -> Scenario:
-    """Return the scenario with some of its `numbers_of` replaced.
-
-    Raises
-    ------
-    BehindCamera
-        If its point does not start in front of the camera.
-    """
+    """Return the scenario with some of its `numbers_of` replaced."""
     now = numbers_of(scenario) | values
     motion, surface = scenario.motion, scenario.surface
     if motion.values:
@@ -40,18 +34,7 @@ def with_numbers(scenario: Scenario, **values: float) -> Scenario:
 
 
 def transitions(A: Array, b: Array, length: float) -> Array:
-    """Return maps [M | v] of a position to the one a time later, under D constant motions.
-
-    Parameters
-    ----------
-    A, b : arrays of shapes (D, 3, 3) and (D, 3)
-    length : float
-        Of time, in seconds.
-
-    Returns
-    -------
-    array of shape (D, 3, 4)
-    """
+    """Return maps [M | v] of a position to the one `length` seconds later, shape (D, 3, 4), under constant motions."""
     whole = np.zeros((len(A), 4, 4))  # of (X, 1), so that b is a part of the matrix
     whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
     fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))

@@ -30,9 +30,7 @@ def times_of(times: ArrayLike, states: int) -> Array:
     """Return times of a path as an array; refuse them unless finite, from 0 on, not decreasing and not too many."""
     array = np.atleast_1d(np.asarray(times, dtype=float))
     if array.ndim != 1 or not array.size or not np.isfinite(array).all() or (np.diff(array, prepend=0) < 0).any():
-        raise ValueError(
-            "the times must be a list, not empty, of finite seconds from 0 on that do not decrease; sort them"
-        )
+        raise ValueError("the times must be a list, not empty, of finite seconds from 0 on that do not decrease")
     limit(len(array) * (states + 4), "numbers along the path", "ask for fewer times")
     return array
 
@@ -81,18 +79,7 @@ def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
 def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ()) -> Array:
     """Return states at the times under a motion that varies, shape (K, n), by scipy's DOP853 and its dense output.
 
-    Parameters
-    ----------
-    rate : function of (time, state)
-    start : array of shape (n,)
-    times : array of shape (K,)
-    breaks : array, optional
-        Times at which the rate has a kink, so that no step crosses them.
-
-    Raises
-    ------
-    TooMuchWork
-        If the motion changes so fast that it would have to be evaluated too often.
+    No step crosses the breaks, times at which the rate has a kink.
     """
     from scipy.integrate import DOP853
 

@@ -100,10 +100,8 @@ class PixelCamera:
     def image(self, pixels: ArrayLike) -> Array:
         """Return the image coordinates (y1, y2) of pixels, shape (..., 2); NaN where a pixel is.
 
-        Raises
-        ------
-        ValueError
-            If the lens maps no direction to a pixel, so that the coefficients do not fit the images.
+        It raises ValueError where the lens maps no direction to a pixel, so that the coefficients do not fit the
+        images.
         """
         distorted = (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
         return self._undistorted(distorted) if any(self.distortion) else distorted

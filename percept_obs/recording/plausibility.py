@@ -18,12 +18,7 @@ LONG_GAP = 10
 
 
 class Unlikely(UserWarning):
-    """A recording can be followed, but is hardly what was meant.
-
-    See Also
-    --------
-    percept_obs.Recording : Warns with it.
-    """
+    """A recording can be followed, but is hardly what was meant."""
 
 
 def warn_if_implausible(time: Array, outputs: Array, names: tuple[str, ...], view: View, motion: Motion) -> None:

@@ -18,7 +18,9 @@ EUROC_EXAMPLE = "1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153
 
 @checked
 def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
-    """Read poses from a file in the format of the TUM RGB-D benchmark.
+    """Return the poses in a file in the format of the TUM RGB-D benchmark.
+
+    ``read_tum(path).motion()`` is the motion for `Recording.from_csv`.
 
     Parameters
     ----------
@@ -26,11 +28,6 @@ def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
         Rows of seconds, position x y z and quaternion x y z w, separated by spaces.  Lines with # are comments.
     clock : Clock
         Of the file; give ``Clock(zero=...)`` to bring its times onto the clock of the tracks.
-
-    Returns
-    -------
-    Poses
-        ``read_tum(path).motion()`` is the motion for `Recording.from_csv`.
 
     Raises
     ------
@@ -60,7 +57,9 @@ def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
 
 @checked
 def read_euroc(path: PathLike, clock: Clock = NANOSECONDS) -> Poses:
-    r"""Read poses from a file in the format of the EuRoC benchmark's ``state_groundtruth_estimate0/data.csv``.
+    r"""Return the body's poses in a file of the EuRoC benchmark, ``state_groundtruth_estimate0/data.csv``.
+
+    `Poses.mounted` gives those of a camera on it.
 
     Parameters
     ----------
@@ -70,11 +69,6 @@ def read_euroc(path: PathLike, clock: Clock = NANOSECONDS) -> Poses:
     clock : Clock
         Of the file.  ``Clock(zero=1403636580838555648, tick=1e-9)`` counts from there, exactly; without a
         zero 19 digits do not fit, and times are good to 0.2 microseconds.
-
-    Returns
-    -------
-    Poses
-        Of the body; `Poses.mounted` gives those of a camera on it.
 
     Raises
     ------

@@ -67,16 +67,12 @@ class Poses:
         time, position, turns = (numbers(each, f"the poses' {name}") for name, each in vars(self).items())
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
-        shapes: dict[str, list[tuple[int, ...]]] = {
-            "time": [()],
-            "position": [(3,)],
-            "orientation": [(4,), (3, 3)],
-        }
-        for (name, expected), values in zip(shapes.items(), (time, position, turns), strict=True):
-            if values.shape not in [(len(time), *shape) for shape in expected]:
+        expected: dict[str, list[tuple[int, ...]]] = {"time": [()], "position": [(3,)], "orientation": [(4,), (3, 3)]}
+        for (name, shapes), values in zip(expected.items(), (time, position, turns), strict=True):
+            if values.shape not in [(len(time), *shape) for shape in shapes]:
                 raise ValueError(
                     f"the {name}s have the shape {values.shape}; expected {len(time)} rows, as the times have, of "
-                    f"shape {' or '.join(map(str, expected))}; a quaternion is x, y, z, w"
+                    f"shape {' or '.join(map(str, shapes))}; a quaternion is x, y, z, w"
                 )
             bad = ~np.isfinite(values.reshape(len(time), -1)).all(axis=1)
             if bad.any():
@@ -132,9 +128,7 @@ class Poses:
             If there are too few poses for it.
         """
         if len(self.time) < derivative.fewest:
-            raise ValueError(
-                f"{len(self.time)} poses are too few for the derivative {derivative!r}; it needs {derivative.fewest}"
-            )
+            raise ValueError(f"{len(self.time)} poses are too few for {derivative!r}; it needs {derivative.fewest}")
         position, orientation, velocity, turning = derivative.of(self.time, self.position, self.orientation)
         smoothed = Poses(self.time, position, orientation)
         return CameraPath(self.time, position, smoothed.orientation, smoothed.rotation.inv().apply(velocity), turning)
@@ -199,6 +193,8 @@ def rigid_from_poses(
 ) -> Motion:
     """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
+    It is X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
+
     Parameters
     ----------
     times : array of shape (K,)
@@ -212,11 +208,6 @@ def rigid_from_poses(
         "camera" for poses of the world in the camera's frame, X_camera = R X_world + p, as calibration has them.
     derivative : Neighbours, Quadratic or SmoothingSpline
         For the velocities; a parabola over 0.1 s to either side when left out.
-
-    Returns
-    -------
-    Motion
-        X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
 
     Raises
     ------

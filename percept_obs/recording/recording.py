@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags, Indices
+from percept_obs.compile import Array, Flags
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import warn_if_implausible
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
-from percept_obs.recording.track_table import fields_of_recordings
+from percept_obs.recording.track_table import fields_of_recordings, runs
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
@@ -161,10 +161,7 @@ class Recording:
             )
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
-            raise ValueError(
-                f"the recording names the outputs {', '.join(self.names)}; those of the {self.view.name} are "
-                f"{', '.join(known)}, each once"
-            )
+            raise ValueError(f"the outputs are named {', '.join(self.names)}; there are {', '.join(known)}, each once")
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
             raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
@@ -201,16 +198,6 @@ class Recording:
         return readonly(np.diff(self.time))
 
     @cached_property
-    def places(self) -> Indices:
-        """Indices 0 to K - 1 of the samples in a grid in which each ends a step."""
-        return np.arange(len(self.time))
-
-    @cached_property
-    def longest_interval(self) -> float:
-        """The longest of `intervals`."""
-        return float(self.intervals.max())
-
-    @cached_property
     def last_outputs(self) -> Array:
         """Outputs, with the last one before where a sample was lost."""
         there = np.isfinite(self.outputs)
@@ -226,13 +213,7 @@ class Recording:
 
     @property
     def imaging_surface(self) -> ImagingSurface:
-        """View of one point, with rays and distances.
-
-        Raises
-        ------
-        ValueError
-            If the recording was not seen on an imaging surface.
-        """
+        """View of one point, with rays and distances; raises ValueError if it is no imaging surface."""
         if not isinstance(self.view, ImagingSurface):
             raise ValueError(f"this needs image coordinates of one point, but the recording shows the {self.view.name}")
         return self.view
@@ -244,43 +225,20 @@ class Recording:
 
     @cached_property
     def distance(self) -> Array:
-        """True depth or range in metres, shape (K,) or (K, p).
-
-        Raises
-        ------
-        ValueError
-            If the recording has no truth.
-        """
+        """True depth or range in metres, shape (K,) or (K, p); raises ValueError without a truth."""
         if self.truth is None:
             raise ValueError("the recording has no truth to compare with")
         return 1 / self.view.inverse(self.truth)
 
     def reference(self, name: str) -> Array:
-        """Return distances to compare estimates with, in metres, shape (K,) or (K, p).
-
-        Parameters
-        ----------
-        name : str
-            "truth", or the name of a measured distance.
-
-        Raises
-        ------
-        ValueError
-            If the recording has none of this name.
-        """
+        """Return the true distances, "truth", or measured ones by name, in metres, shape (K,) or (K, p)."""
         if name != "truth" and name not in self.distances:
             known = ", ".join(["truth", *self.distances])
             raise ValueError(f"the recording {self.source!r} has no distance with the name {name!r}; it has {known}")
         return self.distance if name == "truth" else self.distances[name]
 
     def between(self, begin: float, end: float) -> Recording:
-        """Return the part of the recording with begin <= time <= end, in seconds.
-
-        Raises
-        ------
-        ValueError
-            If there are less than two samples.
-        """
+        """Return the part of the recording with begin <= time <= end in seconds, two samples at least."""
         keep = (self.time >= begin) & (self.time <= end)
         if keep.sum() < 2:
             raise ValueError(
@@ -296,19 +254,7 @@ class Recording:
         )
 
     def without(self, begin: float, end: float, point: int = 0) -> Recording:
-        """Return the recording without the images of a point with begin <= time < end.
-
-        Parameters
-        ----------
-        begin, end : float
-            Seconds.
-        point : int, from 0 on
-
-        Raises
-        ------
-        ValueError
-            If there is no such point, or the end does not come after the begin.
-        """
+        """Return the recording without a point's images with begin <= time < end in seconds; points count from 0."""
         if not begin < end:
             raise ValueError(f"without() got the times from {begin} to {end} s; the end must come after the begin")
         outputs = self.outputs.copy()
@@ -321,24 +267,14 @@ class Recording:
     def sightings(self, absence: float) -> tuple[Sighting, ...]:
         """Return when points are in sight, in the order of their beginnings.
 
-        Parameters
-        ----------
-        absence : float
-            Seconds without a sample after which it is another sighting.
-
-        Raises
-        ------
-        ValueError
-            If it is not positive.
+        After `absence` seconds without a sample it is another sighting.
         """
         if not absence > 0:
             raise ValueError(f"the absence is {absence} s; it must be positive")
         found = []
         for point, seen in enumerate(self.seen.reshape(len(self.time), -1).T):
-            samples = np.flatnonzero(seen)
-            if len(samples):
-                runs = np.split(samples, np.flatnonzero(np.diff(self.time[samples]) > absence) + 1)
-                found += [Sighting(point, int(run[0]), int(run[-1])) for run in runs]
+            parts = runs(self.time, np.flatnonzero(seen), absence)
+            found += [Sighting(point, int(part[0]), int(part[-1])) for part in parts]
         return tuple(sorted(found, key=lambda sighting: (sighting.first, sighting.point)))
 
     @classmethod

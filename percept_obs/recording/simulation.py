@@ -77,17 +77,14 @@ class Scenario(Scene):
         self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
-        """Return positions of the point: exact if the motion is constant, else to a relative error of 1e-10 a step.
+        """Return positions of the point in metres, shape (K, 3).
+
+        They are exact if the motion is constant, else to a relative error of 1e-10 a step.
 
         Parameters
         ----------
         times : array of shape (K,)
             Seconds, from 0 on, not decreasing.
-
-        Returns
-        -------
-        array of shape (K, 3)
-            Metres.
 
         Raises
         ------
@@ -129,13 +126,7 @@ class Scenario(Scene):
         return self.motion
 
     def coordinates(self, times: ArrayLike) -> Array:
-        """Return image coordinates and inverse distance of the point, shape (K, n).
-
-        Raises
-        ------
-        BehindCamera
-            If the point is not in front of the camera at one of the times.
-        """
+        """Return image coordinates and inverse distance of the point, which must stay in front, shape (K, n)."""
         times = times_of(times, len(POINT))
         points = self.points(times)
         try:
@@ -168,7 +159,7 @@ class Scenario(Scene):
 
 @checked
 def record(scenario: Scene, duration: float | None = None, camera: Camera | None = None, seed: Seed = 0) -> Recording:
-    """Simulate what a camera records of a scenario.
+    """Return the simulated recording of a scenario by a camera.
 
     Parameters
     ----------
@@ -179,10 +170,6 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         The scenario's own when left out, which has no noise.
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
-
-    Returns
-    -------
-    Recording
 
     Raises
     ------

@@ -102,13 +102,7 @@ class StereoTracks:
 
     @cached_property
     def points(self) -> Array:
-        """Landmarks in the camera's frame, in metres, from the smoothed poses, shape (K, L, 3).
-
-        Raises
-        ------
-        ValueError
-            If the file does not hold their places.
-        """
+        """Landmarks in the camera's frame, from the smoothed poses, in metres, shape (K, L, 3), if they are known."""
         if self.landmarks is None:
             raise ValueError(f"the file has no {LANDMARKS}, so it is not known where the landmarks are")
         return self.path.sees(self.landmarks)
@@ -136,14 +130,9 @@ class StereoTracks:
         )
 
     def recordings(self, name: str, pixel_sigma: float | None = None) -> tuple[Recording, ...]:
-        """Return a recording of each track; its truth is the landmark seen from the smoothed pose.
+        """Return a recording of each track, its source named; the truth is the landmark from the smoothed pose.
 
-        Parameters
-        ----------
-        name : str
-            Of the file, for the sources of the recordings.
-        pixel_sigma : float, optional
-            Standard deviation of the noise in pixels, if it is known.
+        The standard deviation of the noise is in pixels, if it is known.
         """
         surface, found = pinhole(), []
         for number, track in enumerate(self.tracks):
@@ -161,7 +150,7 @@ def read_stereo_mat(
     shortest: float = SHORTEST_TRACK,
     gap: float = LONGEST_GAP,
 ) -> StereoTracks:
-    """Read a MATLAB file of stereo tracks.
+    """Return the tracks in a MATLAB file of a stereo camera.
 
     Parameters
     ----------
@@ -173,10 +162,6 @@ def read_stereo_mat(
         Seconds that a track lasts at least.
     gap : float
         Seconds between two samples of a track at most.
-
-    Returns
-    -------
-    StereoTracks
 
     Raises
     ------

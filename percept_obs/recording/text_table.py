@@ -64,13 +64,7 @@ class Clock:
         vars(self).update(zero=zero, tick=float(self.tick))
 
     def seconds(self, readings: list[str]) -> Array:
-        """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding.
-
-        Raises
-        ------
-        ValueError
-            If a reading is not a finite number.
-        """
+        """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding."""
         zero, found = Decimal(repr(self.zero)), []
         for row, text in enumerate(readings, 1):
             try:
@@ -93,26 +87,13 @@ SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
 
 @dataclass(frozen=True, eq=False)
 class TextTable:
-    """Table of text; an empty cell is "".
-
-    Parameters
-    ----------
-    file : str
-        Its name in messages.
-    columns : mapping of names to lists of text
-    """
+    """Table of text; an empty cell is ""."""
 
     file: str
     columns: dict[str, list[str]]
 
     def column(self, name: str, meaning: str = "") -> list[str]:
-        """Return the cells of a column; the meaning, such as "time", is for the message.
-
-        Raises
-        ------
-        ValueError
-            If there is none of this name.
-        """
+        """Return the cells of a column; the meaning, such as "time", is for the message if there is none."""
         if name not in self.columns:
             raise ValueError(
                 f"{self.file} has the columns {', '.join(self.columns)}; it needs {name!r}"
@@ -121,13 +102,7 @@ class TextTable:
         return self.columns[name]
 
     def numbers(self, name: str, meaning: str = "", gaps: bool = True) -> Array:
-        """Return the numbers of a column, shape (K,); NaN for a cell that is empty or nan, if gaps are allowed.
-
-        Raises
-        ------
-        ValueError
-            If another cell is no finite number.
-        """
+        """Return the numbers of a column, shape (K,); NaN for a cell that is empty or nan, if gaps are allowed."""
         found = []
         for row, text in enumerate(self.column(name, meaning), 1):
             try:
@@ -153,22 +128,8 @@ class TextTable:
 def read_table(path: PathLike, names: tuple[str, ...] = (), separator: str = ",", example: str = "") -> TextTable:
     """Read a table of text; what follows a # in a line is a comment.
 
-    Parameters
-    ----------
-    path : path
-    names : tuple of str
-        Of the columns, where the file has no header.  Further columns are left out.
-    separator : str
-        A regular expression.
-    example : str
-        A first line as it should be, for messages.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it is no table, has no rows, or too few columns.
+    Names are those of the columns of a file without a header, which may have further ones; the separator is a regular
+    expression, and the example a first line for messages.
     """
     import pandas as pd
 

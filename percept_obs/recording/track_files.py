@@ -59,10 +59,7 @@ def write_tracks(
     first = recordings[0]
     for each in recordings:
         if (each.names, set(each.distances)) != (first.names, set(first.distances)):
-            raise ValueError(
-                f"the recordings {first.source!r} and {each.source!r} have different outputs or distances; write them "
-                "to files of their own"
-            )
+            raise ValueError(f"the recordings {first.source!r} and {each.source!r} have different outputs or distances")
         if each.outputs.ndim != 2:
             raise ValueError(f"the recording {each.source!r} is of several points; a table has recordings of one point")
     if camera is not None and (first.imaging_surface.name, first.names) != ("pinhole", ("y1", "y2")):

@@ -90,6 +90,12 @@ def fields_of_recordings(
         }
 
 
+def runs(time: Array, samples: Indices, gap: float) -> list[Indices]:
+    """Parts of some samples without a longer gap, in seconds."""
+    ends = np.flatnonzero(np.diff(time[samples]) > gap) + 1
+    return [run for run in np.split(samples, ends) if len(run)]
+
+
 def _outputs_of_pixels(table: TextTable, surface: ImagingSurface, camera: PixelCamera, pixels: Sequence[str]) -> Array:
     """Image coordinates on the surface, shape (K, m), of the columns of pixels; NaN where a pixel is."""
     try:
@@ -155,8 +161,7 @@ def _tracks(
                 f"{file}: the times of the point {point} do not increase at row {rows[back[0] + 1] + 1}; sort the rows "
                 "by time and remove repeated ones"
             )
-        samples = rows[seen[rows]]
-        parts = [part for part in np.split(samples, _ends(time[samples], gap)) if len(part)]
+        parts = runs(time, rows[seen[rows]], gap * (1 + 1e-9))
         lasting = [part for part in parts if len(part) > 1 and np.ptp(time[part]) >= shortest]
         single += sum(len(part) == 1 for part in parts)
         for number, part in enumerate(lasting, 1):
@@ -170,8 +175,3 @@ def _tracks(
     if single and not shortest:
         warn(Unlikely(f"{file}: {single} sightings of a single sample are left out, for nothing follows from one"))
     return found
-
-
-def _ends(time: Array, gap: float) -> Indices:
-    """Indices at which a gap longer than this has just ended."""
-    return np.flatnonzero(np.diff(time) > gap * (1 + 1e-9)) + 1

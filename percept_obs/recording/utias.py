@@ -33,28 +33,18 @@ PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 
 class DatasetUnavailable(ConnectionError):
-    """Raised when the recording is not on this machine and could not be fetched.
-
-    See Also
-    --------
-    find_utias : Raises it.
-    """
+    """Raised when the recording is not on this machine and could not be fetched."""
 
 
 @checked
 def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
-    """Find the recording's file on this machine, or fetch it on first use.
+    """Return the recording's file on this machine, its SHA-256 checked; it is fetched on first use.
 
     Parameters
     ----------
     path : str or path, optional
         The file dataset3.mat or a folder that holds it; the environment variable PERCEPT_OBS_UTIAS when left out.
         Without either the file is fetched once from the laboratory's repository and kept in this user's cache.
-
-    Returns
-    -------
-    pathlib.Path
-        The file, its SHA-256 checked.
 
     Raises
     ------
@@ -83,21 +73,17 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
 
 @checked
 def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, ...]:
-    """Return tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
+    """Return 44 tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
 
     The motion is rigid: the point rests and the camera moves, with angular velocity w = -(the camera's).  The truth is
-    the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth.
-    A measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.
+    the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth. A
+    measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.  They last 3.0 to
+    8.6 s.
 
     Parameters
     ----------
     path : path, optional
         See `find_utias`, also for the exceptions.
-
-    Returns
-    -------
-    tuple of Recording
-        44 tracks of 3.0 to 8.6 s.
 
     See Also
     --------
@@ -115,20 +101,16 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
 def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
     """Return the camera's motion and the landmarks' tracks in the recording.
 
-    The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted
-    around each sample to the recorded poses within 0.30 s, or to the nearest five where these are fewer.  The
-    recorded gyroscope is not used: it agrees poorly with the motion of the image.  A track is a landmark seen
-    at consecutive samples for at least 3 s, without a gap of more than 0.30 s.
+    The camera's position, orientation, velocity and angular velocity come from quadratics in time, fitted around each
+    sample to the recorded poses within 0.30 s, or to the nearest five where these are fewer.  The recorded gyroscope is
+    not used: it agrees poorly with the motion of the image.  A track is a landmark seen at consecutive samples for at
+    least 3 s, without a gap of more than 0.30 s.  There are 1900 samples of the camera, 20 landmarks and 44 tracks with
+    2739 measurements.
 
     Parameters
     ----------
     path : path, optional
         See `find_utias`, also for the exceptions.
-
-    Returns
-    -------
-    StereoTracks
-        1900 samples of the camera, 20 landmarks and 44 tracks with 2739 measurements.
 
     See Also
     --------

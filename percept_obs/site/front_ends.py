@@ -45,8 +45,6 @@ FRONT_ENDS = {
 def page() -> str:
     """Return the table and its explanation as Markdown.
 
-    Examples
-    --------
     >>> print(next(line for line in page().splitlines() if "this site" in line))
     | this site | Chromium | Chromium | Chromium | Chromium | Chromium | Chromium |
     """

@@ -29,16 +29,6 @@ class Notebooks(dict[str, str]):
 def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, Any]:
     """Return substitutions by their keys; an equation of a paper that is not on the site has no link.
 
-    Parameters
-    ----------
-    notebooks : iterable of str
-        File names of the site's notebooks.
-    ledgers : mapping of str to Ledger
-        The site's papers.
-
-    Examples
-    --------
-    >>> from percept_obs.papers import NAMED
     >>> found = named(["02_two_observers.ipynb"], NAMED)
     >>> found["nb"]["02"], found["nb"]["03"], found["MA2005"]["(11)"]
     ('[02](/notebooks/02_two_observers.ipynb)', '03', '[(11)](/ledger/ma2005/11.md)')

@@ -47,15 +47,7 @@ def draw_for_pages() -> None:
 
 
 def drawing(figure: Figure) -> str:
-    """Return a figure as SVG within a page, with its text equivalent.
-
-    Examples
-    --------
-    >>> import matplotlib.figure
-    >>> whole = matplotlib.figure.Figure()
-    >>> drawing(Figure(whole, (whole.subplots(),), "no curves")).startswith('<svg role="img" aria-label="no curves"')
-    True
-    """
+    """Return a figure as SVG within a page, with its text equivalent."""
     import matplotlib
 
     written = io.StringIO()
@@ -72,13 +64,7 @@ def drawing(figure: Figure) -> str:
 
 
 def run_all(notebooks: Mapping[str, Mapping[str, Any]], parallel: int) -> Iterator[tuple[str, nbformat.NotebookNode]]:
-    """Run notebooks, some at once, and yield each with its name in their order.
-
-    Raises
-    ------
-    SiteFault
-        If a cell fails.
-    """
+    """Run notebooks, some at once, and yield each with its name in their order; SiteFault if a cell fails."""
     with ThreadPoolExecutor(parallel) as several:
         yield from zip(notebooks, several.map(_run, notebooks, notebooks.values()), strict=True)
 
@@ -104,14 +90,9 @@ def labs_of(notebook: nbformat.NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.NotebookNode:
-    """Replace widgets by labs that need no Python, and other widgets by their last outputs.
+    """Replace widgets by labs that need no Python, and other widgets by their last outputs, in a notebook that was run.
 
-    Parameters
-    ----------
-    notebook : NotebookNode
-        One that was run; it is changed.
-    script : str
-        HTML that loads the labs' scripts, put before the first one.
+    The script, HTML that loads the labs' scripts, is put before the first one.
     """
     from nbformat.v4 import new_output
 

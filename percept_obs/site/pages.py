@@ -70,8 +70,6 @@ def ledger_pages(ledgers: Mapping[str, Ledger]) -> Pages:
 def slug(text: str) -> str:
     """Return a text as a part of an address.
 
-    Examples
-    --------
     >>> slug("Theorem 3.4 (ii)")
     'theorem-3-4-ii'
     """

@@ -18,19 +18,14 @@ from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, set_fields
 
 QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
 """Names of possible unknowns: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
 
 
 class ImpossibleChoice(ValueError):
-    """The unknowns cannot be told apart, or the statements about them contradict each other.
-
-    See Also
-    --------
-    percept_obs.StructureAndMotion : Raises it.
-    """
+    """The unknowns cannot be told apart, or the statements about them contradict each other."""
 
 
 @checked
@@ -89,22 +84,19 @@ class StructureAndMotion(OnePoint):
     def __post_init__(self) -> None:
         for group in ("unknown", "zero", "earlier"):
             names = tuple(getattr(self, group))
-            strange = [name for name in names if name not in QUANTITIES]
-            if strange:
+            if strange := [name for name in names if name not in QUANTITIES]:
                 raise ImpossibleChoice(
                     f"{group}: there is no quantity {', '.join(map(str, strange))}; there are {', '.join(QUANTITIES)}"
                 )
             if len(set(names)) != len(names):
                 raise ImpossibleChoice(f"{group} names a quantity twice: {', '.join(names)}")
-            object.__setattr__(self, group, tuple(sorted(names, key=QUANTITIES.index)))
-        reason = self._contradiction() or self._ambiguity()
-        if reason:
+            set_fields(self, **{group: tuple(sorted(names, key=QUANTITIES.index))})
+        if reason := self._objection():
             raise ImpossibleChoice(reason)
 
-    def _contradiction(self) -> str:
-        """Statements about a quantity that contradict each other, in words; empty if there are none."""
-        both = [name for name in self.unknown if name in (*self.zero, *self.earlier)]
-        if both:
+    def _objection(self) -> str:
+        """Contradiction of statements, or reason why the unknowns cannot be told apart; empty if there is none."""
+        if both := [name for name in self.unknown if name in (*self.zero, *self.earlier)]:
             return f"{', '.join(both)} cannot be unknown and known at once; take it out of one of the lists"
         if d_s.name in self.zero:
             return "d_s is one over a distance, so it is not zero; zero names velocity components"
@@ -112,10 +104,6 @@ class StructureAndMotion(OnePoint):
             return f"d_s cannot be unknown and known to be {self.scale}; leave out one of the two"
         if self.scale is not None and not (math.isfinite(self.scale) and self.scale > 0):
             return f"d_s is {self.scale}; it is one over a distance in metres, finite and positive"
-        return ""
-
-    def _ambiguity(self) -> str:
-        """Reason why the unknowns cannot be told apart; empty if they can."""
         if not self.unknown:
             return f"nothing is unknown; name one to three of {', '.join(QUANTITIES)}"
         if len(self.unknown) > len(OUTPUTS):
@@ -168,17 +156,9 @@ class StructureAndMotion(OnePoint):
         return tuple(s for s in (*ROTATION, *CAMERA, *OBJECT) if s.name not in (*self.unknown, *self.zero))
 
     def known_motion(self, motion: Motion) -> Motion:
-        """Signals of the known parameters of a rigid motion.
+        """Signals of the known parameters of a motion from `rigid`, with numbers.
 
-        Parameters
-        ----------
-        motion : Motion
-            From `rigid`, with numbers; those of unknown quantities are not used and may be anything.
-
-        Raises
-        ------
-        ValueError
-            If the motion is not rigid, or a velocity that is said to be zero is not.
+        Those of unknown quantities are not used and may be anything; velocities that are said to be zero must be.
         """
         if motion.parameters != rigid().parameters:
             raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
@@ -247,13 +227,10 @@ class StructureAndMotion(OnePoint):
         return f"{far}; and where {stands_still}: no known velocity is left that the scale could be compared with"
 
     def sensitivity(self) -> sp.ImmutableMatrix:
-        """Sensitivity of theta to errors of ybar3 and of its rate, to first order.
+        """Return the sensitivity of theta to errors of ybar3 and of its rate, to first order, shape (n, 2).
 
-        Returns
-        -------
-        matrix of shape (n, 2)
-            Derivatives of theta, as it is recovered from ybar and its rate, with respect to ybar3 and ybar3', in
-            terms of ybar, theta and the known signals.
+        These are the derivatives of theta, as it is recovered from ybar and its rate, with respect to ybar3 and ybar3',
+        in terms of ybar, theta and the known signals.
         """
         numerator, determinant = self.form.cramer
         changed = self.form.rate[: len(OUTPUTS), :].diff(ybar3)
@@ -269,16 +246,13 @@ class StructureAndMotion(OnePoint):
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
     def quantities(self, theta: ArrayLike) -> dict[str, Array]:
-        """Unknown quantities by name, from values of theta.
+        """Return unknown quantities by name, d_s in 1/m and velocities in m/s, from values of theta.
+
+        They are NaN where theta gives no positive d_s, so that no velocity follows.
 
         Parameters
         ----------
         theta : array of shape (..., n)
-
-        Returns
-        -------
-        mapping of names to arrays of shape (...)
-            d_s in 1/m and velocities in m/s, NaN where theta gives no positive d_s, so that no velocity follows.
 
         Raises
         ------

@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from percept_obs.observers import (
-    Observer,
-    de_luca,
-    extended_kalman,
-    identifier_based,
-    integral_sliding_mode,
-    range_identification,
-)
+from percept_obs.observers import Observer, de_luca, ekf, ibo, ismo, rio
 from percept_obs.recording import Recording, record
 from percept_obs.structure import DepthSource, LinearView, ScaledDepthCamera, StructureAndMotion, linear_view
 from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
@@ -72,17 +65,17 @@ def competitors(recording: Recording) -> dict[str, tuple[Recording, Observer]]:
     there = variance / float(np.nanmean(recording.outputs[:, 2])) ** 2
     prior = {"hidden_process_noise": 1.0, "hidden_variance": 100.0}
     return {
-        "ISMO, ideal switch": (recording, integral_sliding_mode(choice.form)),
-        "ISMO, boundary layer": (recording, integral_sliding_mode(choice.form, "hyperbolic tangent")),
-        "ISMO, ideal switch, b = 0": (recording, integral_sliding_mode(choice.form, sharpening=0)),
-        "RIO, the stand-in": (recording, range_identification(choice.form)),
-        "EKF": (recording, extended_kalman(choice.form, noise_variance=variance, measured_variance=variance, **prior)),
+        "ISMO, ideal switch": (recording, ismo(choice.form)),
+        "ISMO, boundary layer": (recording, ismo(choice.form, "hyperbolic tangent")),
+        "ISMO, ideal switch, b = 0": (recording, ismo(choice.form, sharpening=0)),
+        "RIO, the stand-in": (recording, rio(choice.form)),
+        "EKF": (recording, ekf(choice.form, noise_variance=variance, measured_variance=variance, **prior)),
         "Kalman filter, linear view": (
             straight,
-            extended_kalman(view.form, noise_variance=there, measured_variance=there, **prior),
+            ekf(view.form, noise_variance=there, measured_variance=there, **prior),
         ),
-        "IBO": (recording, identifier_based(choice.form, bound=1e3)),
-        "IBO, linear view": (straight, identifier_based(view.form, lyapunov=-5.0, bound=1e3)),
+        "IBO": (recording, ibo(choice.form, bound=1e3)),
+        "IBO, linear view": (straight, ibo(view.form, lyapunov=-5.0, bound=1e3)),
         "De Luca, linear view": (straight, de_luca(view.form, measured_gain=10.0, hidden_gain=100.0)),
     }
 

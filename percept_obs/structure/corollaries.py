@@ -44,13 +44,7 @@ class Corollary:
     earlier: tuple[str, ...] = ()
 
     def choice(self, axes: str = "123", scale: float | None = None) -> StructureAndMotion:
-        """Choice of the corollary with the axes i, j, k in the given order, "123" in the paper's section VII.
-
-        Raises
-        ------
-        ValueError
-            If the axes are no order of 1, 2 and 3.
-        """
+        """Choice of the corollary with the axes i, j, k in the given order, "123" in the paper's section VII."""
         if sorted(axes) != ["1", "2", "3"]:
             raise ValueError(f"the axes {axes!r} must be 1, 2 and 3 in some order")
         order = str.maketrans("ijk", axes)

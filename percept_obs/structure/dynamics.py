@@ -22,10 +22,7 @@ class ScaledDynamics:
 
         ybar' = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s
 
-    Parameters
-    ----------
-    camera, rotation, object : matrices of shape (3, 3)
-        Omega1, the matrix that multiplies w in Omega2, and Omega3.
+    The matrices are `camera` for Omega1, `rotation` for that which multiplies w in Omega2, and `object` for Omega3.
     """
 
     camera: sp.ImmutableMatrix
@@ -46,11 +43,7 @@ class ScaledDynamics:
 
 @lru_cache(maxsize=1)
 def scaled_dynamics() -> ScaledDynamics:
-    """Derive the dynamics of the scaled inverse depth from a rigid motion seen by a pinhole.
-
-    Returns
-    -------
-    ScaledDynamics
+    """Return the dynamics of the scaled inverse depth, from a rigid motion seen by a pinhole.
 
     See Also
     --------

@@ -1,4 +1,4 @@
-"""Pixels of Chwa's cameras: noise as a ratio of powers, homographies, and the apparent size of an object."""
+"""Pixels of Chwa's cameras: noise as a ratio of powers, and homographies."""
 
 from __future__ import annotations
 
@@ -62,11 +62,12 @@ class SignalToNoise:
 
 @checked
 def homography(reference: ArrayLike, images: ArrayLike) -> Array:
-    """Homographies from the image of a planar patch in a reference picture to its image in others.
+    """Return homographies, shape (..., 3, 3), from the image of a planar patch in a reference picture to others.
 
     With the motion X = R X* + t of points on the plane n . X* = d they are H = R + t n^T / d.  They are found by the
-    direct linear transform, on coordinates shifted and scaled to their centre and spread, up to a factor that makes
-    the second singular value 1, as that of R + t n^T / d is, and the points stay in front of the camera.
+    direct linear transform, on coordinates shifted and scaled to their centre and spread, up to a factor that makes the
+    second singular value 1, as that of R + t n^T / d is, and the points stay in front of the camera.  Depth in the
+    other picture over depth in the reference is the third entry of H m*.
 
     Parameters
     ----------
@@ -74,11 +75,6 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
         Image coordinates (y1, y2) of n >= 4 points, no three of four of them on a line.
     images : array of shape (..., n, 2)
         Those of the same points in other pictures.
-
-    Returns
-    -------
-    array of shape (..., 3, 3)
-        Depth in the other picture over depth in the reference is the third entry of H m*.
 
     Raises
     ------
@@ -115,41 +111,12 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     p = _homogeneous(images) @ np.swapaxes(to_images, -1, -2)
     m = np.broadcast_to(_homogeneous(reference) @ to_reference.T, p.shape)
     if np.linalg.svd(_equations(m, m), compute_uv=False)[..., 7].min(initial=np.inf) < 1e-9:
-        raise ValueError(
-            "the points of the reference picture do not determine a map; take four of which no three lie on a line"
-        )
+        raise ValueError("the points of the reference picture determine no map; take four, no three on a line")
     solution = np.linalg.svd(_equations(m, p))[2][..., -1, :]
     H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
     H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
     depths = H[..., 2, :] @ _homogeneous(reference).T
     return H * np.sign(depths.sum(axis=-1))[..., None, None]
-
-
-@checked
-def apparent_size(images: ArrayLike) -> Array:
-    """Root mean square distance of image points to their centre.
-
-    Parameters
-    ----------
-    images : array of shape (..., n, 2)
-
-    Returns
-    -------
-    array of shape (...)
-
-    See Also
-    --------
-    homography : All of the patch's motion.
-
-    Examples
-    --------
-    >>> from percept_obs.structure.pixels import apparent_size
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    >>> apparent_size([square, square / 2]).round(3).tolist()
-    [1.414, 0.707]
-    """
-    images = numbers(images, "the images", "n", 2)
-    return np.sqrt(np.sum((images - images.mean(axis=-2, keepdims=True)) ** 2, axis=-1).mean(axis=-1))
 
 
 def _equations(m: Array, p: Array) -> Array:
@@ -167,7 +134,9 @@ def _homogeneous(points: Array) -> Array:
 
 def _normalising(points: Array) -> Array:
     """Similarity after which the points' centre is 0 and their root mean square distance to it sqrt(2)."""
-    centre, scale = points.mean(axis=-2), np.sqrt(2) / apparent_size(points)
+    centre = points.mean(axis=-2)
+    squares = np.sum((points - centre[..., None, :]) ** 2, axis=-1)
+    scale = np.sqrt(2 / squares.mean(axis=-1))
     transform = np.zeros((*points.shape[:-2], 3, 3))
     transform[..., 0, 0] = transform[..., 1, 1] = scale
     transform[..., :2, 2] = -scale[..., None] * centre

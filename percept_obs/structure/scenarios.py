@@ -29,18 +29,15 @@ _CHWA_EXPERIMENT = {
 
 @checked
 def chwa2019_experiment(section: str) -> StructureScenario:
-    """Scenario of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
+    """Return the scenario of the experiment, with the values that are stated for it (Chwa 2019, VII.B, pp. 12-14).
+
+    It lasts 10 s, with d_s = 10.4 per metre.
 
     Parameters
     ----------
     section : str
         "IV.A", "IV.B", "V.B", "VI.B" or "VI.C".  In IV.B the camera and the object have other velocities than in IV.A,
         although they are two stages of one motion; the paper says nothing of it.
-
-    Returns
-    -------
-    StructureScenario
-        For 10 s, with d_s = 10.4 per metre.
 
     Raises
     ------
@@ -91,10 +88,11 @@ _CHWA_SIMULATION = {
 
 @checked
 def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL) -> StructureScenario:
-    """Scenario of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
+    """Return the scenario of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
 
     The paper states y(0) = (0.4, 0.4, 0.2) and d_s = 4, and no velocities.  Here they vary at up to 1 rad/s where they
-    need not be constant, keep the point in view, and fulfil the case's observability condition at all times.
+    need not be constant, keep the point in view, and fulfil the case's observability condition at all times.  It lasts
+    10 s.
 
     Parameters
     ----------
@@ -103,11 +101,6 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
     angular_velocity : three floats
         w in rad/s, minus the camera's own; zero in the paper.  If it is not zero, the point starts on its axis, at
         w / w3 in the image, so that it stays in view; w3 must be positive then.
-
-    Returns
-    -------
-    StructureScenario
-        For 10 s.
 
     Raises
     ------
@@ -138,7 +131,9 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
 
 @checked
 def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenario:
-    """Scenario of an object that stands still and then moves, both stages in one motion (Chwa 2019, section IV).
+    """Return the scenario of an object that stands still and then moves (Chwa 2019, section IV).
+
+    Both stages are one motion, and the choice is that of the second.
 
     Parameters
     ----------
@@ -147,11 +142,6 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
         for IV.A and then those for IV.B, so that the camera changes its velocity when the object moves off.
     moves_at : float
         Seconds; the paper does not state it.
-
-    Returns
-    -------
-    StructureScenario
-        With the choice of the second stage.
 
     Raises
     ------
@@ -186,12 +176,9 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
 
 @checked
 def chwa2019_crossing() -> StructureScenario:
-    """Scenario of corollary 3 with a camera that turns back along its axis: v_c3 crosses 0 at 2.1 s and every 3.1 s.
+    """Return the scenario of corollary 3 with a camera that turns back along its axis, for 10 s.
 
-    Returns
-    -------
-    StructureScenario
-        For 10 s.
+    Its v_c3 crosses 0 at 2.1 s and every 3.1 s.
 
     See Also
     --------

@@ -20,7 +20,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -148,7 +148,9 @@ class PatchDepth:
 
 @checked
 def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:
-    """Offsets of the points of a square grid from the tracked one in its centre.
+    """Return offsets in metres of a square grid's points from the tracked one in its centre, shape (count^2, 3).
+
+    The tracked one is first.
 
     Parameters
     ----------
@@ -158,11 +160,6 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
         Points along a side; odd, so that the tracked one is among them.
     normal : three floats
         Normal vector of the patch in the camera's frame; facing the camera when left out.
-
-    Returns
-    -------
-    array of shape (count^2, 3)
-        In metres, zero first.
 
     Raises
     ------
@@ -239,7 +236,7 @@ class StructureScenario(Scenario):
         if not (np.isfinite(self.scale) and self.scale > 0):
             raise ValueError(f"d_s is {self.scale}; it is one over a distance in metres, finite and positive")
         if self.choice.parameters:
-            object.__setattr__(self, "choice", replace(self.choice, scale=self.scale))
+            set_fields(self, choice=replace(self.choice, scale=self.scale))
         self.choice.known_motion(self.motion)
 
     @property
@@ -313,12 +310,7 @@ class ScaledDepthCamera(Camera):
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
 
-        Raises
-        ------
-        BehindCamera
-            If a point of the object does not stay in front of the camera.
-        ValueError
-            If it is not an object whose structure is sought, or a point is outside the first picture.
+        All points of the object must stay in front of the camera, and be inside the first picture.
         """
         if not isinstance(scene, StructureScenario):
             raise ValueError(f"a ScaledDepthCamera measures a StructureScenario, not {scene.name!r}; take a Camera")
@@ -348,7 +340,7 @@ def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
 
 @checked
 def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, scale: float | None = None) -> Recording:
-    """Recording of the same samples with another choice of unknowns.
+    """Return the recording of the same samples, times and noise with another choice of unknowns.
 
     Parameters
     ----------
@@ -360,11 +352,6 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
         From `rigid`; its unknown parameters are not used unless the truth is asked for.
     scale : float, optional
         The true d_s, if the true theta shall follow from the motion; it has no truth when left out.
-
-    Returns
-    -------
-    Recording
-        With the same samples, times and noise.
 
     Raises
     ------
@@ -399,17 +386,14 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
 
 @checked
 def linear_view(recording: Recording) -> Recording:
-    """Recording in scaled positions, for the Kalman filter.
+    """Return the recording in scaled positions (y1, y2, 1) / ybar3, for the Kalman filter.
+
+    It names no variance, for the noise is no longer the same in all outputs.
 
     Parameters
     ----------
     recording : Recording
         Of (y1, y2, ybar3).
-
-    Returns
-    -------
-    Recording
-        Of (y1, y2, 1) / ybar3; it names no variance, for the noise is no longer the same in all outputs.
 
     Raises
     ------
@@ -431,9 +415,7 @@ def linear_view(recording: Recording) -> Recording:
     """
     choice = recording.view
     if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
-        raise ValueError(
-            f"the linear view needs a recording of the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}"
-        )
+        raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,

@@ -26,15 +26,7 @@ _OBJECT = tuple(symbol.name for symbol in rigid().parameters[6:])
 @checked
 @dataclass(frozen=True, eq=False)
 class SemigeneralRun:
-    """Runs of two observers, one after the other.
-
-    Parameters
-    ----------
-    static, moving : Run
-        Runs while the object stands still, and while it moves.
-    found : mapping of names to floats
-        Results of the first stage for the second: d_s in 1/m and camera velocities in m/s.
-    """
+    """Runs while the object stands still and while it moves; d_s in 1/m and velocities in m/s from the first."""
 
     static: Run
     moving: Run

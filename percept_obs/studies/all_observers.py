@@ -6,7 +6,7 @@ import html
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -146,6 +146,8 @@ def all_observers(
         raise ValueError(f"{len(references)} references and {len(after)} times after: at least one of each is needed")
     if not all(math.isfinite(seconds) and seconds >= 0 for seconds in after):
         raise ValueError(f"after is {list(after)!r}; the times must be finite and not negative, in seconds")
+    if split not in get_args(Split):
+        raise ValueError(f"the split {split!r} is none of {' and '.join(map(repr, get_args(Split)))}")
     first = recordings[0]
     system = PerspectiveSystem(first.motion, first.imaging_surface)
     form = system.partition(*first.names)
@@ -162,7 +164,11 @@ def all_observers(
             f"{len(usable)} of {len(recordings)} recordings can be used, and two are needed, one to choose gains on "
             f"and one to report on; cut one in two with between(){'; left out: ' + unusable if unusable else ''}"
         )
-    choosing, reporting = _halves(usable, split)
+    if split == "alternating":
+        choosing, reporting = usable[::2], usable[1::2]
+    else:
+        usable.sort(key=lambda recording: float(recording.time[0]))
+        choosing, reporting = usable[: len(usable) // 2], usable[len(usable) // 2 :]
     shorter = min(max(float(each.elapsed[-1]) + slack_of(each.time) for each in half) for half in (choosing, reporting))
     left_out |= {
         f"errors after {seconds:g} s": f"no recording in one of the halves lasts longer than {shorter:.3g} s"
@@ -206,13 +212,3 @@ def _why_not(
     if recording.elapsed[-1] < shortest - slack_of(recording.time):
         return f"it lasts {recording.elapsed[-1]:.3g} s, and the first error is asked for after {shortest:g} s"
     return ""
-
-
-def _halves(recordings: Sequence[Recording], split: Split) -> tuple[Sequence[Recording], Sequence[Recording]]:
-    """Recordings to choose gains on, and recordings to report errors on."""
-    if split == "alternating":
-        return recordings[::2], recordings[1::2]
-    if split == "earlier and later":
-        ordered = sorted(recordings, key=lambda recording: float(recording.time[0]))
-        return ordered[: len(ordered) // 2], ordered[len(ordered) // 2 :]
-    raise ValueError(f"the split {split!r} is none of 'alternating' and 'earlier and later'")

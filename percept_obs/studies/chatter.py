@@ -141,7 +141,7 @@ def effort(
     tolerance: float = 1e-6,
     most: int = 20_000,
 ) -> Effort:
-    """Integrate point and observer together by one of scipy's adaptive solvers, without noise and resets.
+    """Return the steps of one of scipy's adaptive solvers for point and observer together, without noise and resets.
 
     At each crossing of a jump the solver finds an error that its order does not explain, and shortens the step until
     the jump weighs no more than the tolerance.  Once the observer slides, crossings never end (Filippov 1988).
@@ -160,10 +160,6 @@ def effort(
         Relative and absolute.
     most : int
         Evaluations after which it gives up.
-
-    Returns
-    -------
-    Effort
 
     Raises
     ------

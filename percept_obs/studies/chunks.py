@@ -10,6 +10,7 @@ from contextlib import closing
 from typing import Any
 
 from percept_obs.compile import Array
+from percept_obs.compile.batch import compiled
 from percept_obs.studies.plan import NOT_RUN, Plan
 from percept_obs.validation import bar, warn, workers
 
@@ -19,13 +20,7 @@ class Unfinished(UserWarning):
 
 
 def open_store(path: str | os.PathLike[str], fingerprint: str, shape: tuple[int, int], chunk: int) -> Any:
-    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics).
-
-    Raises
-    ------
-    ValueError
-        If the store holds something else.
-    """
+    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics); refuse another."""
     import zarr
 
     group: Any = zarr.open_group(os.fspath(path), mode="a")
@@ -42,28 +37,15 @@ def open_store(path: str | os.PathLike[str], fingerprint: str, shape: tuple[int,
 
 
 def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:
-    """Compute the runs that have no results yet.
+    """Compute the runs that have no results yet, in chunks, and keep them in a store; warn if interrupted.
 
-    Parameters
-    ----------
-    plan : Plan
-    results : array of shape (number of runs, number of statistics)
-    chunk : int
-        Runs that are computed together.
-    client : distributed.Client, optional
-        Dask gives another worker what a worker that dies had begun.
-    stored : Zarr array of the same shape, optional
-
-    Warns
-    -----
-    Unfinished
-        If it was interrupted.
+    With a client Dask gives another worker what a worker that dies had begun.
     """
     missing = results[:, 0] == NOT_RUN
     chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
     todo = [each for each in chunks if missing[each].any()]
     if client is None:
-        plan.prepare()
+        compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
     if client or workers() > 1:
         computed = _concurrent(plan, todo, client)
     else:

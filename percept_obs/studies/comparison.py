@@ -199,7 +199,10 @@ def relative_distance_errors(
     absence: float = math.inf,
     points: Collection[int] | None = None,
 ) -> Array:
-    """Relative errors of the estimated distance, a given time after each point came into sight.
+    """Return relative errors of the estimated distance, a given time after each point came into sight.
+
+    There is one for each sighting that lasts as long, |estimate - reference| / reference: infinite where the estimate
+    is not in front of the camera, NaN where there is none.
 
     Parameters
     ----------
@@ -213,12 +216,6 @@ def relative_distance_errors(
         Seconds without a sample after which a new sighting begins.
     points : collection of int, optional
         Indices of the points to use; all of them when left out.
-
-    Returns
-    -------
-    array of shape (number of sightings that last as long,)
-        |estimate - reference| / reference; infinite where the estimate is not in front of the camera, NaN where there
-        is none.
 
     Raises
     ------
@@ -270,7 +267,7 @@ def best_setting(
     after: Sequence[float] = (2.0,),
     reference: str = "truth",
 ) -> Observer:
-    """Choose the observer with the least median relative distance error, summed over the given times.
+    """Return the observer with the least median relative distance error, summed over the given times.
 
     Choose on some recordings and report on others: errors on the recordings that were chosen on are too small.
 
@@ -286,10 +283,6 @@ def best_setting(
         Seconds since the first sample.
     reference : str
         "truth", or the name of a measured distance of the recordings.
-
-    Returns
-    -------
-    Observer
 
     Raises
     ------

@@ -30,17 +30,14 @@ JUDGEMENTS = MappingProxyType(
 
 @checked
 def claimed_interval(run: Run) -> tuple[Array, Array]:
-    """Ends of the interval of two claimed standard deviations around the estimate.
+    """Return ends of the interval of two claimed standard deviations around the estimate, of shape (K, n) each.
+
+    They are NaN where the run has diverged.
 
     Parameters
     ----------
     run : Run
         Of an observer that claims a covariance.
-
-    Returns
-    -------
-    low, high : arrays of shape (K, n)
-        NaN where the run has diverged.
 
     Raises
     ------
@@ -67,20 +64,16 @@ def claimed_interval(run: Run) -> tuple[Array, Array]:
 
 @checked
 def claimed_distance(run: Run) -> tuple[Array, Array]:
-    """Ends of the `claimed_interval` of the distance in metres.
+    """Return ends of the `claimed_interval` of the distance in metres, of shape (K,) each.
 
-    An interval of the inverse distance that reaches zero stands for distances without an upper end.
+    An interval of the inverse distance that reaches zero stands for distances without an upper end.  The high one is
+    infinite where the interval reaches zero, and both are where it is not positive at all; they are NaN where the run
+    has diverged.
 
     Parameters
     ----------
     run : Run
         Of an observer that claims a covariance.
-
-    Returns
-    -------
-    low, high : arrays of shape (K,)
-        `high` is infinite where the interval reaches zero, and both are where it is not positive at all; NaN where
-        the run has diverged.
 
     Raises
     ------
@@ -182,12 +175,6 @@ class Consistency:
         return bool(abs(self.autocorrelation) <= norm.ppf((1 + self.confidence) / 2) / np.sqrt(self.whitened.size))
 
     @property
-    def whiteness(self) -> str:
-        """The autocorrelation in words."""
-        means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
-        return f"The innovations are {means}; neighbours have the correlation {self.autocorrelation:.2g}"
-
-    @property
     def judgement(self) -> str:
         """One of "consistent", "overconfident" (innovations are too large) and "conservative" (too small)."""
         low, high = self.interval(len(self.nis))
@@ -207,9 +194,11 @@ class Consistency:
         """The summary, the share of moving averages inside their interval, and the whiteness."""
         lowest, highest = self.interval(self.samples)
         inside = np.mean((self.averages >= lowest) & (self.averages <= highest))
+        means = "white" if self.white else "not white: each tells of the next, so that they hold more than noise"
         return (
             f"{self.summary}. Of the moving averages of {self.samples} samples {100 * inside:.0f} % lie in their "
-            f"interval, {lowest:.3g} to {highest:.3g}. {self.whiteness}"
+            f"interval, {lowest:.3g} to {highest:.3g}. The innovations are {means}; neighbours have the correlation "
+            f"{self.autocorrelation:.2g}"
         )
 
     def __repr__(self) -> str:
@@ -218,7 +207,7 @@ class Consistency:
 
 @checked
 def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
-    """Test whether a filter's innovations are as large as it claims.
+    """Return a test whether a filter's innovations are as large as it claims.
 
     It needs no truth, so it works on real data.  It cannot find errors that leave no trace in the innovations, such as
     a wrong scale.
@@ -233,10 +222,6 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
     confidence : float
         Probability of the two-sided intervals, between 0 and 1.
-
-    Returns
-    -------
-    Consistency
 
     Raises
     ------
@@ -266,9 +251,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
-        raise ValueError(
-            f"the run diverged at {run.diverged_at - run.time[0]:.3g} s; a filter that diverges is not consistent"
-        )
+        raise ValueError(f"the run diverged at {run.diverged_at - run.time[0]:.3g} s, so that it is not consistent")
     nis = run.nis
     counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
     there = int(counted.sum())

@@ -145,7 +145,7 @@ def field_bound(
     size: int = 41,
     prior: float = 1.0,
 ) -> FieldBound:
-    """Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
+    """Return the Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
 
     A point in space moves linearly, X(t) = Phi(t) X(0) + d(t), so that the information on X(0) of its images is a sum.
     Images outside of the field of view are not used.
@@ -171,10 +171,6 @@ def field_bound(
         Directions across the field of view.
     prior : float
         Relative standard deviation of a point before the first image, in each direction of space.
-
-    Returns
-    -------
-    FieldBound
 
     Raises
     ------
@@ -210,7 +206,10 @@ def field_bound(
     times = Camera(period, NO_NOISE).times(seconds)
     limit(len(times) * size**2, "directions and samples", "take fewer directions or a longer period", 1e7)
     angles = field_of_view / 2 * np.linspace(-1, 1, size)
-    starts = distance * _directions(angles).reshape(-1, 3)
+    right, up = np.meshgrid(angles, angles)
+    away = np.hypot(right, up)
+    share = np.sinc(away / np.pi)
+    starts = distance * np.stack([share * right, share * up, np.cos(away)], axis=-1).reshape(-1, 3)
     inside = _inside(starts, field_of_view) & surface.sees(starts)
     starts = starts[inside]
     information = np.eye(3) / (prior * distance) ** 2 + np.zeros((len(starts), 3, 3))
@@ -249,14 +248,6 @@ def _weights(
     spread = (noise.sigma**2 * np.sum(points**2, axis=1))[:, None, None] * D @ D.swapaxes(1, 2)
     # three outputs depend on each other, so that their noise has no share along one direction
     return np.asarray(np.linalg.pinv(spread, rcond=1e-10, hermitian=True))
-
-
-def _directions(angles: Array) -> Array:
-    """Unit vectors at angles from the optical axis, to the right and up, shape (N, N, 3)."""
-    right, up = np.meshgrid(angles, angles)
-    away = np.hypot(right, up)
-    share = np.sinc(away / np.pi)
-    return np.stack([share * right, share * up, np.cos(away)], axis=-1)
 
 
 def _inside(points: Array, field_of_view: float) -> Flags:

@@ -16,7 +16,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 __all__ = ["LeastSquares", "moving_window_least_squares"]
 
@@ -65,10 +65,11 @@ class LeastSquares:
 
 @checked
 def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Run:
-    """Least-squares position at the end of a window, from all samples in it.
+    """Return a run of least-squares positions at the end of a window, from all samples in it.
 
     The point of each sample lies on its ray: the cross product of the ray and the position is zero.  With the known
-    affine motion every position is affine in the one at the window's end, so that this is a linear problem.
+    affine motion every position is affine in the one at the window's end, so that this is a linear problem.  Estimates
+    are 0, so that they have no distance, where the window determines no point in front of the camera.
 
     Parameters
     ----------
@@ -76,11 +77,6 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
         With all image coordinates of its surface.
     window : float
         Seconds.
-
-    Returns
-    -------
-    Run
-        Its estimates are 0, so that they have no distance, where the window determines no point in front of the camera.
 
     Raises
     ------
@@ -106,8 +102,7 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     names = tuple(symbol.name for symbol in surface.image_coordinates)
     if recording.names != names:
         raise ValueError(f"least squares need the outputs {', '.join(names)}; there are {', '.join(recording.names)}")
-    if not (np.isfinite(window) and window > 0):
-        raise ValueError(f"the window is {window} s; it must be positive")
+    positive(window=window)
     time, count = recording.time, len(recording.time)
     rays = np.stack(vectorised(surface.image_coordinates, surface.ray, surface.values)(*recording.outputs.T), axis=-1)
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)

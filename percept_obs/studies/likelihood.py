@@ -74,7 +74,9 @@ class Tuned:
 
 @checked
 def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
-    """Log-likelihood of all innovations of some runs, by the filter's own claims.
+    """Return the log-likelihood of all innovations of some runs, by the filter's own claims.
+
+    It is minus infinity if a run diverged.
 
     Parameters
     ----------
@@ -82,11 +84,6 @@ def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
         Of an observer that claims a covariance and has a measurement update.
     after : float
         Seconds since the first sample of each run to leave out.
-
-    Returns
-    -------
-    float
-        Minus infinity if a run diverged.
 
     Raises
     ------
@@ -122,7 +119,7 @@ def tune_by_likelihood(
     follow: Follow,
     after: float = 0.0,
 ) -> Tuned:
-    """Choose a filter's gains by maximum likelihood of its innovations; no truth is needed.
+    """Return a filter with gains of maximum likelihood of its innovations; no truth is needed.
 
     A small claimed variance makes a large innovation unlikely, and a large one makes every innovation unlikely.  A gain
     that may be 0, such as a process noise, is 0 if the innovations do not clearly speak against it.  Choose on some
@@ -139,10 +136,6 @@ def tune_by_likelihood(
         Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
     after : float
         Seconds at the beginning of each recording whose innovations do not count.
-
-    Returns
-    -------
-    Tuned
 
     Raises
     ------

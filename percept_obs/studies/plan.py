@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from percept_obs.compile import Array, Indices, Language, vectorised
-from percept_obs.compile.batch import Batch, compiled, run_batch
+from percept_obs.compile.batch import Batch, run_batch
 from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop, MovingPoint
 from percept_obs.compile.integrator import by_step, instants, step_grid
 from percept_obs.observability import cramer_rao
@@ -49,13 +49,7 @@ Variances = tuple[tuple[str, float], ...]
 
 
 def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> xr.Dataset:
-    """Coordinates over which an ensemble goes, the seed first; a DataArray brings its dimensions.
-
-    Raises
-    ------
-    ValueError
-        If values are none, not finite, or lengths of a dimension differ.
-    """
+    """Coordinates over which an ensemble goes, the seed first; a DataArray brings its dimensions."""
     import xarray as xr
 
     columns: dict[str, Any] = {"seed": ("seed", seeds, {"units": "1"})}
@@ -128,10 +122,6 @@ class Plan:
             noises_alike=self.grid.sizes["seed"] == 1 and not {"noise", "dropout"} & varied,
             truths_alike=not self.scenes,
         )
-
-    def prepare(self) -> None:
-        """Compile the loop here and now, where numba may set warning filters, rather than in a thread."""
-        compiled(self.loop, self.language)
 
     def compute(self, chunk: slice) -> Array:
         """Statistics of a chunk of runs, shape (L, number of statistics)."""

@@ -59,13 +59,7 @@ class Sensitivity:
     sizes: Array
 
     def change(self, **errors: float) -> Array:
-        """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n).
-
-        Raises
-        ------
-        ValueError
-            If a name is none of the `entries`.
-        """
+        """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n)."""
         if unknown := sorted(set(errors) - set(self.entries)):
             raise ValueError(f"the sensitivity has no entry {', '.join(unknown)}; it has {', '.join(self.entries)}")
         return np.asarray(self.derivatives @ [errors.get(name, 0.0) for name in self.entries])
@@ -102,7 +96,7 @@ def sensitivity(
     believed: Motion | None = None,
     **settings: Any,
 ) -> Sensitivity:
-    """Derivative of an observer's estimate with respect to entries of the believed motion, along a run.
+    """Return the derivative of an observer's estimate with respect to entries of the believed motion, along a run.
 
     The variational equations are integrated: the observer's flow, measurement update, reset, start and estimate,
     each differentiated.
@@ -118,10 +112,6 @@ def sensitivity(
         The recording's own when left out.
     **settings
         Passed to `track`, such as ``hold``.
-
-    Returns
-    -------
-    Sensitivity
 
     Raises
     ------
@@ -164,8 +154,11 @@ def sensitivity(
         unobservable=(),
         fastest=None,
     )
-    directions = [_with_change(motion, moved, direction) for direction in np.eye(len(moved))]
-    runs = [track(recording, varied, start, believed=each, **settings) for each in directions]
+    runs = []
+    for direction in np.eye(len(moved)):  # the changes of the entries are further parameters of the motion
+        signal = _mapped(motion, lambda rows, more=direction: np.hstack([rows, np.tile(more, (len(rows), 1))]))
+        changed = replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
+        runs.append(track(recording, varied, start, believed=changed, **settings))
     derivatives = np.stack([each.estimate for each in runs], axis=-1)
     derivatives[np.isnan(run.estimate)] = np.nan
     return Sensitivity(run, tuple(symbol.name for symbol in moved), derivatives, _sizes(motion, moved, recording.time))
@@ -208,21 +201,12 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
     """The entries' symbols."""
     there = {symbol.name: symbol for symbol in motion.parameters if symbol != TIME}
     if not there or motion.signal is None:
-        raise ValueError(
-            f"the {motion.name} motion has no entries with numbers that could be wrong; give its coefficients as "
-            "arrays or as functions of time"
-        )
+        raise ValueError(f"the {motion.name} motion has no entries with numbers that could be wrong; give it some")
     names = [*there] if entries is None else list(entries)
     unknown = [name for name in names if name not in there]
     if unknown or not names:
         raise ValueError(f"the {motion.name} motion has no entry {', '.join(unknown)}; it has {', '.join(there)}")
     return tuple(there[name] for name in names)
-
-
-def _with_change(motion: Motion, moved: Sequence[sp.Symbol], direction: Array) -> Motion:
-    """Return the motion with the changes of its entries as further parameters."""
-    signal = _mapped(motion, lambda rows: np.hstack([rows, np.broadcast_to(direction, (len(rows), len(direction)))]))
-    return replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
 
 
 def _mapped(motion: Motion, of: Any) -> Signal:

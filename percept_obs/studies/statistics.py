@@ -85,22 +85,10 @@ def _normalised(P: sp.Matrix, e: list[sp.Expr]) -> sp.Expr:
 
 
 def statistics_of(sums: Array, elapsed: Array, grid: Array, late: int) -> dict[str, Array]:
-    """Statistics of runs from what was accumulated.
+    """Statistics of L runs, by their names in `STATISTICS`, from sums of `percept_obs.compile.batch.run_batch`.
 
-    Parameters
-    ----------
-    sums : array of shape (L, number of sums)
-        From `percept_obs.compile.batch.run_batch`.
-    elapsed : array of shape (K,)
-        Seconds from the first sample to each.
-    grid : array of shape (N + 1,)
-        Seconds from the first sample to the ends of the steps.
-    late : int
-        Index of the first sample whose error counts.
-
-    Returns
-    -------
-    mapping of names of `STATISTICS` to arrays of shape (L,)
+    Seconds elapsed are those from the first sample to each and, of the grid, to the ends of the steps; `late` is the
+    first sample whose error counts.
     """
     column = dict(zip(COLUMNS, sums.T, strict=False))
     last, judged, squares = len(elapsed) - 1, column["judged"], column["squares"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from percept_obs.compile import Array, Flags
+from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.information import FEWEST, Information
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE, Trust
@@ -91,7 +92,7 @@ class TrustOverTime:
 
 @checked
 def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> TrustOverTime:
-    """Ask `Run.trust` at several times, each time with the samples up to then only.
+    """Return `Run.trust` at several times, each time with the samples up to then only.
 
     Parameters
     ----------
@@ -101,10 +102,6 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
         Relative, as for `Run.trust`.
     count : int
         Number of times, evenly spread from the first at which there are enough samples to the end.
-
-    Returns
-    -------
-    TrustOverTime
 
     Raises
     ------
@@ -124,7 +121,8 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
     >>> trust_over_time(run, count=4).trusted.tolist()
     [False, True, True, True]
     """
-    run.recording.imaging_surface  # noqa: B018  refuses several points
+    if not isinstance(run.view, ImagingSurface):
+        raise ValueError(f"this needs a run of one point on an imaging surface, but it shows the {run.view.name}")
     length = len(run.time)
     if length < 2 * FEWEST:
         raise ValueError(f"the run has {length} samples; {2 * FEWEST} are needed to say how far it can be trusted")

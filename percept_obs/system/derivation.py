@@ -49,13 +49,7 @@ class Step:
         return self.follows is not None
 
     def onward(self, values: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-        """Result of the whole derivation, a column, from other values of this step.
-
-        Raises
-        ------
-        ValueError
-            If `leads_on` is False.
-        """
+        """Result of the whole derivation, a column, from other values of this step, where it `leads_on`."""
         if self.follows is None:
             raise ValueError(f"it is not known what follows from {self.reason!r}; ask `leads_on` first")
         return self.follows(values)

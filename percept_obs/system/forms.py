@@ -103,13 +103,7 @@ class PartitionedSystem:
         return tuple(symbol.name for symbol in self.x2)
 
     def canonical_form(self) -> CanonicalForm:
-        """Canonical form of the system, which most observers need.
-
-        Raises
-        ------
-        NotAffine
-            If the measured coordinates' rate is not affine in the hidden ones.
-        """
+        """Canonical form of the system, which most observers need; raises NotAffine if there is none."""
         if self.culprits:
             raise NotAffine(self.measured, self.culprits)
         n1, w = len(self.x1), self._weight
@@ -193,15 +187,10 @@ class CanonicalForm(PartitionedSystem):
 
     @property
     def cramer(self) -> tuple[sp.ImmutableMatrix, sp.Expr]:
-        """Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
+        """Return Cramer's rule for w^T x2: a matrix N and a determinant D such that x2 = N (w^T x2) / D.
 
         With as many outputs as hidden coordinates N / D is the inverse of w^T, with more (w w^T)^-1 w, the solution
         in the least-squares sense.
-
-        Returns
-        -------
-        matrix of shape (n2, n1)
-        expression
 
         Raises
         ------

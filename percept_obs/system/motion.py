@@ -73,10 +73,7 @@ class Motion:
     def known(self, times: ArrayLike) -> Array:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
-        Raises
-        ------
-        ValueError
-            If the motion has symbols without numbers, or a time lies outside the known ones.
+        It raises ValueError if the motion has symbols without numbers, or a time lies outside the known ones.
         """
         if self.signal is None:
             if self.parameters:
@@ -96,7 +93,7 @@ class Motion:
 
 @checked
 def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: ArrayLike | None = None) -> Motion:
-    """Affine motion (Ma 2005, (1), p. 63).
+    """Return the affine motion X' = A X + b (Ma 2005, (1), p. 63); given numbers are the values of its symbols.
 
     Parameters
     ----------
@@ -106,11 +103,6 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
         Coefficients in m/s; symbols b1, b2, b3 when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
-
-    Returns
-    -------
-    Motion
-        X' = A X + b; given numbers are the values of its symbols.
 
     Raises
     ------
@@ -144,7 +136,7 @@ def rigid(
     point_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
 ) -> Motion:
-    """Rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)).
+    """Return the rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)), with the parameters w1, w2, ... v_p3.
 
     The plus sign of [w]x makes w the negative of the camera's angular velocity in its own frame.
 
@@ -154,11 +146,6 @@ def rigid(
         w in rad/s, v_c and v_p in m/s; symbols when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
-
-    Returns
-    -------
-    Motion
-        With the parameters w1, w2, w3, v_c1, ... v_p3.
 
     Raises
     ------
@@ -195,7 +182,9 @@ def linear(
     states: int | None = None,
     times: ArrayLike | None = None,
 ) -> Motion:
-    """Linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
+    """Return the linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
+
+    Coefficients that are given as arrays and are 0 at all times stay out of its parameters.
 
     Parameters
     ----------
@@ -207,11 +196,6 @@ def linear(
         n; needed where neither array shows it.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
-
-    Returns
-    -------
-    Motion
-        Coefficients that are given as arrays and are 0 at all times stay out of its parameters.
 
     Raises
     ------
@@ -253,31 +237,17 @@ def linear(
 def bound(
     name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, coefficients: list[Coefficient], times: ArrayLike | None
 ) -> Motion:
-    """Motion with values for its symbols.
+    """Motion with values for the symbols of A and b.
 
-    Parameters
-    ----------
-    name : str
-    A, b : sympy matrices
-        In the symbols of the blocks.
-    coefficients : list of (value, block of symbols)
-        Values as `affine` takes them: arrays, functions of time, expressions (in `TIME` or others), or None for all.
-    times : array of shape (K,), optional
-        Times in seconds of sampled values.
-
-    Raises
-    ------
-    ValueError
-        If only some values are None, shapes do not match, values are not finite or times do not increase.
+    Values of each block of symbols are as `affine` takes them: arrays, functions of time, expressions (in `TIME` or
+    others), or None for all; the times are those of sampled values.
     """
     values, symbols = [value for value, _ in coefficients], tuple(s for _, block in coefficients for s in block)
     missing = [_title(block) for value, block in coefficients if value is None]
     if len(missing) == len(coefficients):
         return Motion(name, A, b, symbols)
     if missing:
-        raise ValueError(
-            f"a {name} motion takes all of its coefficients or none of them; give also {', '.join(missing)}"
-        )
+        raise ValueError(f"a {name} motion takes all of its coefficients or none; give also {', '.join(missing)}")
     if any(map(_has_symbols, values)):
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))

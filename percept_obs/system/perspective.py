@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -88,10 +88,16 @@ class PerspectiveSystem:
 
         It is expanded, unless roots or letters of the surface's shape would make it long.
         """
-        moved = self._rate(self._gradients, self._velocity)
+        gradients = _gradients(self.surface)
+        moved = self._rate(gradients, self._velocity)
         if self.surface.multiplied_out:
             return moved.expand()
-        return moved if self._image_over_distance.free_symbols else self._short_rate(self._velocity)
+        if _image_over_distance(self.surface).free_symbols:
+            return moved
+        # an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1
+        y, along = sp.ImmutableMatrix(self.surface.image_coordinates), (gradients[-1, :] * self._velocity)[0]
+        image = _image_over_distance(self.surface) * self._velocity - y * along
+        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * along])
 
     def jacobian(self) -> sp.ImmutableMatrix:
         """Derivative of `rate` with respect to `coordinates`."""
@@ -151,7 +157,7 @@ class PerspectiveSystem:
 
     def derivation(self) -> Derivation:
         """Derivation of the rate from X' = A X + b, step by step."""
-        surface, motion = self.surface, self.motion
+        surface, motion, gradients = self.surface, self.motion, _gradients(self.surface)
         y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
         eta = sp.latex(surface.inverse_distance)
         ways = [f"{y_k} = {e}" for y_k, e in zip(surface.image_coordinates, surface.image, strict=True)]
@@ -163,7 +169,7 @@ class PerspectiveSystem:
             "The point moves:": (
                 equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
                 rates(POINT, motion.A * sp.ImmutableMatrix(POINT) + motion.b),
-                lambda found: self._rate(self._gradients, self._seen_on_the_ray(found)),
+                lambda found: self._rate(gradients, self._seen_on_the_ray(found)),
             ),
             f"It is seen on the {surface.name} surface:": (
                 rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}",
@@ -179,12 +185,12 @@ class PerspectiveSystem:
                     ]
                 ),
                 {f"m{k}": entry for k, entry in enumerate(surface.ray, 1)},
-                lambda ray: self._rate(self._gradients, self._velocity_along(ray)),
+                lambda ray: self._rate(gradients, self._velocity_along(ray)),
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
-                rf"J(m) = {sp.latex(self._image_gradient)},\quad \nabla l(m) = {sp.latex(self._distance_gradient)}",
+                rf"J(m) = {sp.latex(gradients[:-1, :])},\quad \nabla l(m) = {sp.latex(gradients[-1, :])}",
                 {
-                    f"the derivative of {way} with respect to {axis}": self._gradients[i, j]
+                    f"the derivative of {way} with respect to {axis}": gradients[i, j]
                     for i, way in enumerate(ways)
                     for j, axis in enumerate(POINT)
                 },
@@ -193,11 +199,11 @@ class PerspectiveSystem:
             "The velocity, times the inverse distance:": (
                 equals(rf"A m + b\,{eta}", self._velocity),
                 {f"the velocity along {axis}": entry for axis, entry in zip(POINT, self._velocity, strict=True)},
-                lambda found: self._rate(self._gradients, sp.ImmutableMatrix(found)),
+                lambda found: self._rate(gradients, sp.ImmutableMatrix(found)),
             ),
             "Image coordinates do not change with scale, so the inverse distance cancels:": (
                 rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",
-                rates(self.coordinates, self._rate(self._gradients, self._velocity)),
+                rates(self.coordinates, self._rate(gradients, self._velocity)),
                 sp.ImmutableMatrix,
             ),
             last: (
@@ -235,33 +241,18 @@ class PerspectiveSystem:
         *image, distance = gradients * velocity
         return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * distance])
 
-    def _short_rate(self, velocity: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """Rate for an image u / l with u linear in the point: y' = grad u . V - y (grad l . V), for l = 1."""
-        y = sp.ImmutableMatrix(self.surface.image_coordinates)
-        along = (self._distance_gradient * velocity)[0]
-        image = self._image_over_distance * velocity - y * along
-        return sp.ImmutableMatrix([*image, -self.surface.inverse_distance * along])
 
-    @cached_property
-    def _image_over_distance(self) -> sp.ImmutableMatrix:
-        """Gradient of the image times the distance; without symbols if that is linear in the point."""
-        y = sp.ImmutableMatrix(self.surface.image_coordinates)
-        return (self._image_gradient + y * self._distance_gradient).applyfunc(sp.cancel)
+@lru_cache(maxsize=64)  # surfaces are made anew again and again, with the same formulas
+def _gradients(surface: ImagingSurface) -> sp.ImmutableMatrix:
+    """Gradients of the image and the distance at X = m(y), where the distance is 1."""
+    gradients = sp.ImmutableMatrix([*surface.image, surface.distance]).jacobian(POINT)
+    ray = dict(zip(POINT, surface.ray, strict=True))
+    at_one = gradients.subs(surface.distance, 1).subs(dict(surface.roots))
+    return at_one.subs(ray, simultaneous=True).applyfunc(sp.cancel)
 
-    @cached_property
-    def _gradients(self) -> sp.ImmutableMatrix:
-        return self._image_gradient.col_join(self._distance_gradient)
 
-    @cached_property
-    def _image_gradient(self) -> sp.ImmutableMatrix:
-        return self._on_the_ray(sp.ImmutableMatrix(self.surface.image).jacobian(POINT))
-
-    @cached_property
-    def _distance_gradient(self) -> sp.ImmutableMatrix:
-        return self._on_the_ray(sp.ImmutableMatrix([self.surface.distance]).jacobian(POINT))
-
-    def _on_the_ray(self, gradient: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """Evaluate a gradient at X = m(y), where the distance is 1."""
-        at_one = gradient.subs(self.surface.distance, 1)
-        ray = dict(zip(POINT, self.surface.ray, strict=True))
-        return at_one.subs(dict(self.surface.roots)).subs(ray, simultaneous=True).applyfunc(sp.cancel)
+@lru_cache(maxsize=64)
+def _image_over_distance(surface: ImagingSurface) -> sp.ImmutableMatrix:
+    """Gradient of the image times the distance; without symbols if that is linear in the point."""
+    y, gradients = sp.ImmutableMatrix(surface.image_coordinates), _gradients(surface)
+    return (gradients[:-1, :] + y * gradients[-1, :]).applyfunc(sp.cancel)

@@ -25,19 +25,9 @@ def from_the_start(elapsed: Array, after: float) -> Flags:
 @checked
 @dataclass(frozen=True, eq=False)
 class Signal:
-    """Numbers known over time: constant, sampled, or given by a function.
+    """Numbers known over time, rows of samples (one for a constant) or a function of a time in seconds.
 
-    Parameters
-    ----------
-    samples : array of shape (K, n) or function of a time
-        Rows of values; one row stands for a constant.  A function takes a time in seconds and returns n values.
-    times : array of shape (K,), optional
-        When the rows were sampled, in seconds; between them the signal is linear.
-
-    Raises
-    ------
-    ValueError
-        If values are not finite, times do not increase strictly, or their numbers differ.
+    Between the times at which rows were sampled, the signal is linear.
     """
 
     samples: Array | Callable[[float], ArrayLike]
@@ -73,22 +63,7 @@ class Signal:
         return not callable(self.samples) and len(self.samples) == 1
 
     def at(self, times: ArrayLike) -> Array:
-        """Values at the given times.
-
-        Parameters
-        ----------
-        times : array of shape (T,)
-            Times in seconds.
-
-        Returns
-        -------
-        array of shape (T, n), or (1, n) for a constant signal
-
-        Raises
-        ------
-        ValueError
-            If a time lies outside the sampled ones, or a function returns values that are not finite.
-        """
+        """Return the values at times in seconds, shape (T, n), or (1, n) if constant; refuse times outside."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
         if callable(self.samples):
             return frozen(_rows(self.samples, times), "the signal's function values")
@@ -105,13 +80,7 @@ class Signal:
 
 @dataclass(frozen=True, eq=False)
 class OverTime:
-    """Function of time that returns its values at many times at once, for a run asks for ten thousands.
-
-    Parameters
-    ----------
-    rows : function
-        Takes times of shape (T,) and returns values of shape (T, n).
-    """
+    """Function of time that returns its rows at many times at once, for a run asks for ten thousands."""
 
     rows: Callable[[Array], Array]
 

@@ -63,19 +63,10 @@ class View(Protocol):
         """Quantity that `relative_error` is the error of, in words."""
 
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
-        """Largest relative error of the judged quantity, the same in any unit of length.
+        """Return the largest relative error of the judged quantity, the same in any unit of length, shape (K,).
 
-        Parameters
-        ----------
-        truth, estimate : arrays of shape (K, n)
-            Coordinates.
-        known : array of shape (K, p) or (1, p)
-            Parameters of the known motion at the same times.
-
-        Returns
-        -------
-        array of shape (K,)
-            Infinite where the estimate is infinitely far away or behind the camera, NaN where there is none.
+        It is infinite where the estimate is infinitely far away or behind the camera, NaN where there is none.  Known
+        are the parameters of the motion at the same times, shape (K, p) or (1, p).
         """
 
 

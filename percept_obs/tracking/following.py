@@ -27,21 +27,11 @@ Start = Mapping[str, float] | Sequence[float] | None
 
 
 class DoesNotFit(ValueError):
-    """An observer cannot follow this recording.
-
-    See Also
-    --------
-    track : Raises it.
-    """
+    """An observer cannot follow this recording."""
 
 
 class StepTooLong(UserWarning):
-    """The steps become too long for the fastest part of an observer, which will then chatter.
-
-    See Also
-    --------
-    track : Warns with it.
-    """
+    """The steps become too long for the fastest part of an observer, which will then chatter."""
 
 
 TOO_LONG = (
@@ -51,11 +41,9 @@ TOO_LONG = (
 """Message of `StepTooLong`, also of live labs."""
 
 
-def _can_follow(observer: Any) -> bool:
-    return follow.dispatch(type(observer)) is not follow.dispatch(object)
-
-
-AnyObserver = Annotated[Any, Kind("an observer of a form", _can_follow, "ibo(form)")]
+AnyObserver = Annotated[
+    Any, Kind("an observer of a form", lambda o: follow.dispatch(type(o)) is not follow.dispatch(object), "ibo(form)")
+]
 """Any observer that `follow` can run."""
 
 
@@ -153,13 +141,7 @@ def track(
 
 @singledispatch
 def follow(observer: Any, grid: TimeGrid, start: Any, believed: Motion | None, language: Language | None) -> Run:
-    """Let an observer follow a recording on a grid; each kind of observer registers its own function.
-
-    Raises
-    ------
-    DoesNotFit
-        If the observer cannot follow it, or is none.
-    """
+    """Let an observer follow a recording on a grid; each kind of observer registers its own function."""
     raise DoesNotFit(f"an observer is needed, such as ibo(form), not {observer!r}")
 
 
@@ -182,12 +164,13 @@ def _follow_one_point(
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
     arriving = np.empty((0, len(form.measured)))
     if observer.equations.update:
-        arriving = grid.arriving(samples)
+        arriving = np.full((len(grid.times), len(form.measured)), np.nan)
+        arriving[grid.index] = samples
         arriving[0, [name not in named for name in form.measured]] = np.nan  # the start already uses these samples
     table = Table(grid.steps, grid.held(filled=True)[..., columns], known, arriving)
     language = choose(language, len(grid.steps))
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
-    states = grid.at_samples(trace.states)
+    states = trace.states if grid.one_step_a_sample else trace.states[grid.index]
     at_samples = known if len(known) == 1 else known[EACH * grid.index]
     filled = recording.last_outputs[:, columns]
     estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed, language)

@@ -20,17 +20,10 @@ Hold = Literal["zero", "first", "exact"]
 
 @dataclass(frozen=True, eq=False)
 class TimeGrid:
-    """Integration steps along a recording.
+    """Integration steps along a recording: times of their N + 1 ends, and the index of the K samples among them.
 
-    Parameters
-    ----------
-    recording : Recording
-    times, index : arrays of shapes (N + 1,) and (K,)
-        Ends of the steps in seconds, and the positions of the samples among them, as from `step_grid`.
-    hold : "zero", "first" or "exact"
-        Signal that stands for the outputs between samples; see `track`.
-    longest_hold : float
-        Seconds after a sample from which on it is not held.
+    The signal stands for the outputs between samples by the `hold`, see `track`; after `longest_hold` seconds a sample
+    is no longer held.
     """
 
     recording: Recording
@@ -53,16 +46,6 @@ class TimeGrid:
     def instants(self) -> Array:
         """Times at which the steps need known signals, shape (N EACH + 1,)."""
         return instants(self.times)
-
-    def at_samples(self, rows: Array) -> Array:
-        """Rows at the samples, shape (K, ...), of those at the steps' ends, shape (N + 1, ...)."""
-        return rows if self.one_step_a_sample else rows[self.index]
-
-    def arriving(self, samples: Array) -> Array:
-        """Samples of shape (K, m) at the steps' ends, shape (N + 1, m); NaN where none arrives."""
-        arriving = np.full((len(self.times), samples.shape[1]), np.nan)
-        arriving[self.index] = samples
-        return arriving
 
     def held(self, filled: bool) -> Array:
         """Outputs at the instants of every step, shape (N, EACH + 1, ...), or (N, 1, ...) if they last for the step.
@@ -94,8 +77,8 @@ class TimeGrid:
 
 def time_grid(recording: Recording, step: float, hold: Hold, longest_hold: float) -> TimeGrid:
     """Divide a recording into steps no longer than given, one from each sample to the next where that is short."""
-    if recording.longest_interval <= step * (1 + STEP_ROUNDING):
-        return TimeGrid(recording, recording.time, recording.places, hold, longest_hold)
+    if recording.intervals.max() <= step * (1 + STEP_ROUNDING):
+        return TimeGrid(recording, recording.time, np.arange(len(recording.time)), hold, longest_hold)
     return TimeGrid(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 

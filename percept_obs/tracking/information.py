@@ -41,22 +41,11 @@ FINEST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Least-squares estimate from the samples of the last seconds.
+    """Least-squares estimate of the coordinates at the last sample, from the samples of the last seconds.
 
-    Parameters
-    ----------
-    estimate : array of shape (n,)
-        Least-squares coordinates at the last sample.
-    deviation : float
-        Relative standard deviation of what is judged, from the noise; infinite where samples tell nothing.
-    window : float
-        Length of the samples used, in seconds.
-    unexcited : float
-        Seconds at the end in which the samples tell nothing; 0 if every window tells something.
-    noise : array of shape (m,)
-        Standard deviation of the measured outputs, as given or that of the residuals.
-    longer : tuple of Information
-        Estimates from longer windows, which agree if the motion is as it is known.
+    The deviation is the relative standard deviation of what is judged, infinite where samples tell nothing; `unexcited`
+    are the seconds at the end in which they do.  The noise has the standard deviation of each output, as given or that
+    of the residuals.  Estimates from longer windows agree if the motion is as it is known.
     """
 
     estimate: Array
@@ -186,8 +175,7 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
 def _inflation(residuals: Array) -> float:
     """Factor by which a standard deviation grows where residuals are correlated.
 
-    With the correlation r of neighbours the effective sample size is N (1 - r)/(1 + r), as for a process of first
-    order.
+    With the correlation r of neighbours the effective sample size is N (1 - r)/(1 + r).
     """
     products = residuals[1:] * residuals[:-1]
     pairs, r = np.count_nonzero(products), float(products.sum() / max((residuals**2).sum(), np.finfo(float).tiny))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -72,6 +72,8 @@ class Run:
     hold: Hold
     resets: Array
     unobservable: Indices
+    remedy: ClassVar[str] = REMEDY
+    """Advice if it diverged."""
 
     @property
     def time(self) -> Array:
@@ -90,13 +92,7 @@ class Run:
 
     @property
     def truth(self) -> Array:
-        """True coordinates, shape (K, n).
-
-        Raises
-        ------
-        ValueError
-            If the recording has none.
-        """
+        """True coordinates, shape (K, n); raises ValueError if the recording has none."""
         if self.recording.truth is None:
             raise ValueError("the recording has no truth to compare with; give it one, or look at the innovation")
         return self.recording.truth
@@ -121,13 +117,7 @@ class Run:
 
     @cached_property
     def covariance(self) -> Array:
-        """Covariance of the estimate that the observer claims, shape (K, n, n).
-
-        Raises
-        ------
-        ValueError
-            If the observer claims none.
-        """
+        """Covariance of the estimate that the observer claims, shape (K, n, n); raises ValueError without."""
         observer = self.observer
         if observer.covariance is None:
             raise ValueError(f"the {observer.name} observer claims no covariance; the extended Kalman filter does")
@@ -288,11 +278,6 @@ class Run:
         difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
         agrees = difference <= tolerance + 2 * found.deviation
         return said("agrees" if agrees else "differs", difference=difference)
-
-    @property
-    def remedy(self) -> str:
-        """Advice if it diverged."""
-        return REMEDY
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:

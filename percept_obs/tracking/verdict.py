@@ -81,15 +81,9 @@ def for_the_page() -> dict[str, Any]:
 class Outcome:
     """Outcome of a run, from its error over time.
 
-    Parameters
-    ----------
-    kind : str
-        "converged", "late" (inside at the end, but not for long enough), "outside", "behind" (an infinite error: the
-        estimate is infinitely far away or behind the camera), "none" (no estimate) or "diverged".
-    settled : float
-        Seconds from the first sample until the error stays inside for good; infinite if it ends outside.
-    final : float
-        The last error.
+    The kind is "converged", "late" (inside at the end, but not for long enough), "outside", "behind" (an infinite
+    error: the estimate is infinitely far away or behind the camera), "none" (no estimate) or "diverged".  It settled
+    when, in seconds from the first sample, the error stays inside for good; infinite if it ends outside.
     """
 
     kind: str
@@ -106,24 +100,11 @@ class Outcome:
 class Trust:
     """Trust in the last estimate without a truth; its text continues a sentence.
 
-    Parameters
-    ----------
-    kind : str
-        "agrees" (with what the samples tell), "differs", "contradicted" (longer windows tell something else, so that
-        the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
-        estimate is infinitely far away or behind the camera) or "no estimate".
-    judged : str
-        Name of the estimated quantity.
-    length : float
-        Length of the run in seconds.
-    information : Information, optional
-        Information in the samples.
-    difference : float
-        Relative distance of the estimate to it; NaN where samples tell too little or contradict each other.
-    disagreement : float
-        See `Information.disagreement`.
-    claimed : float, optional
-        The relative standard deviation that the observer claims, if it claims one.
+    The kind is "agrees" (with what the samples tell), "differs", "contradicted" (longer windows tell something else, so
+    that the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
+    estimate is infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative
+    distance to the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard
+    deviation that the observer claims.
     """
 
     kind: str
@@ -186,9 +167,6 @@ def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str]
 def number(value: float, digits: int = 3) -> str:
     """Format a number for people: plain up to a million, and no zero with a sign.
 
-    Examples
-    --------
-    >>> from percept_obs.tracking.verdict import number
     >>> [number(value) for value in (0.05, 1234.0, -0.0, 2e6)]
     ['0.05', '1230', '0', '2e+06']
     """

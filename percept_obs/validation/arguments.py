@@ -143,22 +143,9 @@ def refuse_kind(function: str, argument: str, value: Any, annotation: Any) -> No
 
 
 def numbers(value: Any, name: str, *shape: int | str) -> NDArray[np.float64]:
-    """Array of real numbers; text is not read, and nothing is dropped.
+    """Array of real numbers, whose last dimensions are `shape`, as numbers or letters; `name` stands in messages.
 
-    Parameters
-    ----------
-    value : array
-    name : str
-        Its name in messages.
-    *shape : int or str
-        Its last dimensions, as numbers or letters; any when left out.
-
-    Raises
-    ------
-    WrongKind
-        If it is something else.
-    ValueError
-        If it has another shape.
+    Text is not read, and nothing is dropped: `WrongKind` for anything else, ValueError for another shape.
     """
     if not (isinstance(value, np.ndarray) and value.dtype == np.float64) and not are_numbers(value):
         raise WrongKind(f"{name} is {described(value)}; expected real numbers")
@@ -196,14 +183,7 @@ def set_fields(frozen: Any, **values: Any) -> None:
 
 
 def positive(**values: float) -> None:
-    """Refuse numbers that are not positive and finite, each by its name.
-
-    Examples
-    --------
-    >>> positive(seconds=2.0, distance=0.0)
-    Traceback (most recent call last):
-    ValueError: distance is 0.0; it must be positive and finite
-    """
+    """Refuse numbers that are not positive and finite, each by its name."""
     for name, value in values.items():
         if not 0 < value < float("inf"):
             raise ValueError(f"{name} is {value}; it must be positive and finite")

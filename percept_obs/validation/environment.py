@@ -14,13 +14,7 @@ PACKAGE = __name__.partition(".")[0]
 
 
 def needed(extra: str, *modules: str) -> None:
-    """Refuse to go on without optional modules, and say which extra of this package brings them.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If one of them is missing.
-    """
+    """Raise ModuleNotFoundError if optional modules are missing, and say which extra of this package brings them."""
     missing = [module for module in modules if find_spec(module) is None]
     if missing:
         raise ModuleNotFoundError(
@@ -29,31 +23,15 @@ def needed(extra: str, *modules: str) -> None:
 
 
 def workers() -> int:
-    """Number of threads or processes to use: one a core, and one in a browser's Python.
-
-    Examples
-    --------
-    >>> workers() >= 1
-    True
-    """
+    """Number of threads or processes to use: one a core, and one in a browser's Python."""
     return 1 if sys.platform in ("emscripten", "wasi") else os.cpu_count() or 1
 
 
 def bar(things: Iterable[Any] | None = None, label: str = "", total: float | None = None, **options: Any) -> Any:
     """Progress bar in a notebook or a terminal that appears after two seconds and goes at the end.
 
-    Parameters
-    ----------
-    things : iterable, optional
-        Without them, call the bar's `update`.
-    label : str
-    total : float, optional
-        Number of things, where they do not tell.
-    **options
-        As tqdm takes them, such as ``unit``.
+    Without things to count, call its `update`; `total` is for those that do not tell their number.
 
-    Examples
-    --------
     >>> [2 * k for k in bar([1, 2, 3], "doubling")]
     [2, 4, 6]
     """

@@ -14,19 +14,9 @@ from percept_obs.validation.arguments import WrongKind, described
 
 
 def expression(value: Any, name: str) -> sp.Expr:
-    """Number or expression as sympy's.
+    """Real number of Python, numpy or sympy, or expression, as sympy's; `name` stands in messages.
 
-    Parameters
-    ----------
-    value : real number of Python, numpy or sympy, or expression
-        Text is refused, for sympy would run it as code.
-    name : str
-        Its name in messages.
-
-    Raises
-    ------
-    WrongKind
-        If it is something else, such as text, complex, infinite or not a number.
+    Raises `WrongKind` for anything else, such as infinity, or text, which sympy would run as code.
     """
     if isinstance(value, np.ndarray) and not value.ndim:
         value = value[()]
@@ -50,23 +40,7 @@ def derived(values: Iterable[Any], name: str) -> tuple[sp.Basic, ...]:
 
 
 def matrix(values: Any, name: str, rows: int | None = None, columns: int | None = None) -> sp.ImmutableMatrix:
-    """Matrix, or column, of what `expression` takes as sympy's.
-
-    Parameters
-    ----------
-    values : array, nested sequences or sympy matrix
-    name : str
-        Its name in messages.
-    rows, columns : int, optional
-        Its shape; its own when left out.
-
-    Raises
-    ------
-    WrongKind
-        If an entry is neither a number nor an expression.
-    ValueError
-        If it has another shape.
-    """
+    """Matrix, or column, of what `expression` takes as sympy's; a ValueError if it has another shape than given."""
     symbolic = isinstance(values, sp.MatrixBase)
     array = np.array(values.tolist() if symbolic else values, dtype=object)
     if symbolic or array.ndim < 2:

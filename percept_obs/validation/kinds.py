@@ -49,28 +49,14 @@ EXAMPLES = MappingProxyType(
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of values; it also annotates what no class stands for, as ``Annotated[..., Kind(...)]``.
+    """A kind of values; it also annotates what no class stands for, as ``Annotated[..., Kind(...)]``."""
 
-    Parameters
-    ----------
-    label : str
-        Its name in messages.
-    fits : function of a value
-        Return True if a value is of this kind.
-    example : str
-        Code that makes such a value.
-    by_type : bool
-        Whether the type of a value, or of an array's entries, decides; then a call is checked once a type.
-    entries, alternatives : tuples of Kind
-        Kinds of a sequence's entries, and of a union's members.
-    """
-
-    label: str
+    label: str  # name in messages
     fits: Callable[[Any], bool]
-    example: str = ""
-    by_type: bool = False
-    entries: tuple[Kind, ...] = ()
-    alternatives: tuple[Kind, ...] = ()
+    example: str = ""  # code that makes such a value
+    by_type: bool = False  # whether the type of a value, or of an array's entries, decides
+    entries: tuple[Kind, ...] = ()  # kinds of a sequence's entries
+    alternatives: tuple[Kind, ...] = ()  # kinds of a union's members
 
 
 def are_numbers(value: Any) -> bool:
@@ -107,17 +93,17 @@ def _are_expressions(value: Any) -> bool:
     return all(map(_is_expression, entries))
 
 
-def _is_coefficient(value: Any) -> bool:
-    return are_numbers(value) or callable(value) or _are_expressions(value)
-
-
 def _is_integer(value: Any) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
 
 
 Entries = Annotated[Any, Kind("an array of real numbers or of sympy expressions", _are_expressions)]
 Coefficients = Annotated[
-    Any, Kind("an array of real numbers, a function of time, or an array of sympy expressions", _is_coefficient)
+    Any,
+    Kind(
+        "an array of real numbers, a function of time, or an array of sympy expressions",
+        lambda v: are_numbers(v) or callable(v) or _are_expressions(v),
+    ),
 ]
 """Coefficients of a motion."""
 

@@ -14,22 +14,9 @@ class TooMuchWork(ValueError):
 
 
 def limit(amount: float, unit: str, remedy: str, most: float = MOST_NUMBERS) -> None:
-    """Refuse work before it begins.
+    """Raise `TooMuchWork` before it begins for more than `most` units such as "numbers of 3 states at 1e+09 instants".
 
-    Parameters
-    ----------
-    amount : float
-    unit : str
-        Such as "numbers of 3 states at 1e+09 instants".
-    remedy : str
-        What to change.
-    most : float
-        `MOST_NUMBERS`, or another of this module's limits.
-
-    Raises
-    ------
-    TooMuchWork
-        If the amount is more than the limit.
+    The remedy says what to change.
     """
     if not amount <= most:
         raise TooMuchWork(f"this would be {amount:.3g} {unit}, and at most {most:.3g} are allowed; {remedy}")

@@ -5,16 +5,10 @@ to the screen that shows, of the text with this letter, the formula as mathemati
 not right is put into words only after a pause, on purpose; the mark of a right line comes with the feedback.
 """
 
-import shutil
 import statistics
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from jupyter_harness import jupyterlab, lab_page
-from lab_browser import open_lab, rested
+from bench_lab import in_jupyterlab, rested
+from lab_browser import open_lab
 
 WATCH = """() => {
     const [lab] = window.perceptObsLabs;
@@ -53,25 +47,17 @@ CASES = {
 
 def main(delays=(200, 100)):
     """Type each line at two paces, in milliseconds a letter, and report."""
-    places = [Path(tempfile.mkdtemp()) for _ in range(3)]
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    try:
-        with jupyterlab(places[0], places[1]) as server, lab_page(chromium, server, places[2]) as page:
-            for title, (arguments, name, text) in CASES.items():
-                for delay in delays:
-                    open_lab(page, places[0], "bench.ipynb", arguments, "derivation_desk")
-                    page.evaluate(WATCH)
-                    page.locator(f'[data-control="line rate 6 {name}"]').press_sequentially(text, delay=delay)
-                    rested(page)
-                    found = sorted(page.evaluate("window.latencies"))
-                    assert len(found) == len(text)
-                    middle, worst = statistics.median(found), found[int(0.95 * len(found))]
-                    print(
-                        f"{title:46} a letter each {delay} ms: key to feedback {middle:5.1f} ms, 95 % {worst:5.1f} ms"
-                    )
-    finally:
-        for place in places:
-            shutil.rmtree(place, ignore_errors=True)
+    with in_jupyterlab() as (page, folder):
+        for title, (arguments, name, text) in CASES.items():
+            for delay in delays:
+                open_lab(page, folder, "bench.ipynb", arguments, "derivation_desk")
+                page.evaluate(WATCH)
+                page.locator(f'[data-control="line rate 6 {name}"]').press_sequentially(text, delay=delay)
+                rested(page)
+                found = sorted(page.evaluate("window.latencies"))
+                assert len(found) == len(text)
+                middle, worst = statistics.median(found), found[int(0.95 * len(found))]
+                print(f"{title:46} a letter each {delay} ms: key to feedback {middle:5.1f} ms, 95 % {worst:5.1f} ms")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,10 @@
 """Many runs of (35), y1 alone, without noise: an ensemble beside C, numpy, one run a thread, scipy and others.
 
-    python tests/benchmarks/bench_ensemble.py [--runs 1024] [--duration 80] [--rounds 5] [--page FILE] [--million]
-    python tests/benchmarks/bench_ensemble.py --dask 30 [--rounds 5]
+    python tests/benchmarks/bench_ensemble.py [--runs 1024] [--duration 80] [--rounds 5] [--page FILE]
 
 Every round runs each of them once on the same work, so that a busy machine slows all alike; the table has medians of
 CPU seconds and their ratios to the ensemble's, and may be written as a page of the site.  What is not installed is left
-out and named.  With --dask, work of so many CPU seconds on threads and on four workers instead.  Exits with 1 if a bar
-is not kept.
+out and named.  Exits with 1 if a bar is not kept.
 """
 
 from __future__ import annotations
@@ -21,22 +19,11 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
-from other_packages import BATCH, Work, contenders
+from measured import exit_code, interleaved
+from other_packages import BATCH, contenders, together_of
 
-from percept_obs import (
-    Camera,
-    PerspectiveSystem,
-    Uniform,
-    affine,
-    ensemble,
-    ibo,
-    pinhole,
-    record,
-    scenarios,
-    track,
-    with_point,
-)
-from percept_obs.compile import Table, solve
+from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, record, scenarios, track
+from percept_obs.compile import solve
 from percept_obs.studies import chunks
 
 SCENARIO = scenarios.ma2005_eq35()
@@ -58,12 +45,12 @@ The ensemble also makes the samples of the camera, holds each one until the next
 times. All others integrate point and observer as one system and stop at the last state; the last column shows how far
 their estimates agree. C is sympy's print of the same expressions, by `gcc -O3 -march=native -ffast-math -fopenmp-simd`.
 C, numpy and numba take the classical Runge-Kutta method with the step of the camera, diffrax takes a method of order 5
-with the same step, and the others choose their steps for a relative error of 1e-8. scipy, python-control and JiTCODE
-made one run, heyoka as many as a vector holds; their times are multiplied.
+with the same step, and the others choose their steps for a relative error of 1e-8. scipy made one
+run, heyoka as many as a vector holds; their times are multiplied.
 
 To repeat it, install what is to be compared, and write this page anew:
 
-    pip install control jitcode heyoka diffrax
+    pip install heyoka diffrax
     python tests/benchmarks/bench_ensemble.py --page percept_obs/site/texts/speed.md
 """
 
@@ -85,52 +72,6 @@ def by_the_number(runs):
     return cost
 
 
-def on_a_cluster(work, rounds):
-    """An ensemble of so many CPU seconds on this machine's threads and on four of Dask's workers, in turns."""
-    import distributed
-
-    over = {"gain": np.linspace(1, 30, 100), "noise": np.linspace(0, 0.02, 10)}
-
-    def run(seeds, client=None, **settings):
-        camera = Camera(STEP, Uniform(0.01))
-        begin, cpu = time.perf_counter(), spent(client)
-        ensemble(SCENARIO, ibo(BOTH), over, seeds, 20, camera, language="numba", client=client, **settings)
-        return np.array([time.perf_counter() - begin, spent(client) - cpu])
-
-    def spent(client):
-        """CPU seconds of this process and of all workers so far."""
-        return time.process_time() + (sum(client.run(time.process_time).values()) if client else 0.0)
-
-    run(1)
-    seeds = max(1, round(work / run(10)[1] * 10))
-    with (
-        distributed.LocalCluster(n_workers=4, threads_per_worker=1, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        first, small = (run(1, client, chunk=250) for _ in range(2))
-        took = np.array([[run(seeds), run(seeds, client)] for _ in range(rounds)])
-    threads, workers = np.median(took, axis=0)
-    ratios = np.median(took[:, 0] / took[:, 1], axis=0)
-    print("seconds of wall clock and of CPU; new workers import and load")
-    print("  1,000 runs on four new workers: {:.2f} {:.2f}; again: {:.2f} {:.2f}".format(*first, *small))
-    print("  {:,} runs on threads: {:.2f} {:.2f}; on workers: {:.2f} {:.2f}".format(1000 * seeds, *threads, *workers))
-    print("  threads' over workers': wall {:.2f}, CPU {:.2f}".format(*ratios))
-    kept = ratios[0] >= 0.9
-    print(f"{'kept' if kept else 'NOT KEPT':9} four workers no slower than 0.9 of the threads: {ratios[0]:.2f}")
-    return 0 if kept else 1
-
-
-def timed(rounds, contenders):
-    """Median CPU seconds of each, every round running all of them in turn."""
-    found = {name: [] for name in contenders}
-    for _ in range(rounds):
-        for name, run in contenders.items():
-            begin = time.process_time()
-            run()
-            found[name].append(time.process_time() - begin)
-    return {name: float(np.median(times)) for name, times in found.items()}
-
-
 def table_of(whole, final, runs):
     """Rows of Markdown, the fastest first: what, CPU seconds, runs a second, times the ensemble, final estimate."""
     yield "| what | CPU s | runs a CPU s | times the ensemble | estimate at the end |"
@@ -146,29 +87,16 @@ def main() -> int:
     parser.add_argument("--duration", type=float, default=80.0)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--page", type=Path, help="write the table as a page of the site")
-    parser.add_argument("--million", action="store_true", help="a million runs of 20 s as well, about 20 CPU seconds")
-    parser.add_argument(
-        "--dask", type=float, help="instead, work of so many CPU seconds on threads and on four workers"
-    )
     options = parser.parse_args()
-    if options.dask:
-        return on_a_cluster(options.dask, options.rounds)
-    per_run = [by_the_number(count) for count in (10**3, 10**3, 10**4, 10**5, *([10**6] if options.million else []))]
-    runs, steps = options.runs // BATCH * BATCH, round(options.duration / STEP)
-    observer = ibo(FORM)
-    together = with_point(observer)
+    per_run = [by_the_number(count) for count in (10**3, 10**3, 10**4, 10**5)]
+    runs, observer = options.runs // BATCH * BATCH, ibo(FORM)
     gains = np.array([observer.gain_values[observer.gains[0].symbol], *np.linspace(1.0, 30.0, runs - 1)])
-    start = np.array([*record(SCENARIO, 1).truth[0], 0.0, 0.0, 0.0])
-    (gain,) = (each.symbol for each in together.gains if each.name == "gain")
-    values = SCENARIO.motion.values | {each.symbol: each.value for each in together.gains if each.symbol != gain}
-    flow = tuple(e.subs(values) for e in together.equations.flow)
-    work = Work(together.equations.state, gain, flow, start, gains, STEP * np.arange(steps + 1))
-    table = Table(np.diff(work.times), np.zeros((steps, 3, 0)), SCENARIO.motion.known(0.0), np.zeros((steps + 1, 0)))
+    together, work, table = together_of(SCENARIO, observer, gains, options.duration, STEP)
 
     def one_after_the_other():
         numbers = {each.symbol: each.value for each in together.gains}
         for k in reversed(range(0, runs, 16)):
-            trace = solve(together.equations, start, table, [*(numbers | {gain: gains[k]}).values()], "numba")
+            trace = solve(together.equations, work.start, table, [*(numbers | {work.gain: gains[k]}).values()], "numba")
         return trace.states[-1:].T
 
     def many():
@@ -178,8 +106,8 @@ def main() -> int:
         others, missing = contenders(work, folder)
         every = {"ensemble": (many, 1), "one run after the other in numba": (one_after_the_other, 16)} | others
         found, *ends = [run() for run, _ in every.values()]  # compiled, for the time does not count
-        took = timed(options.rounds, {name: run for name, (run, _) in every.items()})
-    whole = {name: seconds * every[name][1] for name, seconds in took.items()}
+        took = interleaved(options.rounds, {name: run for name, (run, _) in every.items()})
+    whole = {name: float(np.median(seconds)) * every[name][1] for name, seconds in took.items()}
     final = {name: f"{end[5, 0]:.10f}" for name, end in zip([*every][1:], ends, strict=True)}
     final.pop("vectorised numpy")  # it did not come to the end
     lines = [*table_of(whole, final, runs)]
@@ -208,9 +136,7 @@ def main() -> int:
         bars[f"at most 1.3 times C with OpenMP SIMD: {own / c:.2f}"] = own <= 1.3 * c
         bars[f"one run at most 1.0 times C: {alone / whole['C, one lane']:.2f}"] = alone <= whole["C, one lane"]
     assert np.isfinite(found.final).all()
-    for bar, kept in bars.items():
-        print(f"{'kept' if kept else 'NOT KEPT':9} {bar}")
-    return 0 if all(bars.values()) else 1
+    return exit_code(bars)
 
 
 if __name__ == "__main__":

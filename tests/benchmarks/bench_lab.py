@@ -1,11 +1,10 @@
 """Speed of labs that draw while the hand drags, and that open, in JupyterLab.
 
-    python tests/benchmarks/bench_lab.py [--alone | --saved | --opening] [part of a name]
+    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
 
 With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
-JupyterLab, with ``--saved`` in the page that a lab saves itself into, and with ``--opening`` only how long a lab takes
-to open: from the key that runs a cell to the first picture, and to the answer to the first switch, which asks for
-texts that nothing has needed before.
+JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
+picture, and to the answer to the first switch, which asks for texts that nothing has needed before.
 
 A configuration is dragged five times, and medians are told.  Before each drag the lab is put back to what it opened
 with and shows all of its time, so that each drag begins where the one before it did, and where it is dear.
@@ -98,11 +97,7 @@ def _places(count: int) -> dict[str, Any]:
 
 OBSERVER = {
     "three charts of two and three lines": {**THREE, "kept": {}},
-    "three charts of five and six lines": {
-        **THREE,
-        "observers": [*TWO, "extended_kalman"],
-        "kept": {"observers": TWO},
-    },
+    "three charts of five and six lines": {**THREE, "observers": [*TWO, "extended_kalman"], "kept": {"observers": TWO}},
     "thousands of resets": {**THREE, **NOISY, "observers": TWO},
     **{f"{name} alone, three charts": {**THREE, "observers": [name]} for name in BY_NAME},
 }
@@ -218,6 +213,7 @@ def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
     imports, _, cell = OPEN.replace("observer_lab", case.lab).format(arguments=arguments).partition("lab = ")
     write_notebook(folder, "bench.ipynb", imports, f"lab = {cell}", "ready = True", BUSY)
     page.bring_to_front()
+    page.goto("about:blank")  # so that JupyterLab opens anew
     open_notebook(page, "bench.ipynb")
     page.locator(".jp-Cell").first.click()
     page.keyboard.press("Shift+Enter")
@@ -247,36 +243,37 @@ def measure_opening(page: Any, folder: Path) -> None:
         )
 
 
-def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
-    """Measure configurations with an idle kernel, and some with a busy one."""
+@contextmanager
+def in_jupyterlab() -> Any:
+    """A page of a JupyterLab of its own, and the folder of its notebooks."""
     places = [Path(tempfile.mkdtemp()) for _ in range(3)]
     try:
         with jupyterlab(*places[:2]) as server, lab_page(found_chromium(), server, places[2]) as page:
-            if opening:
-                measure_opening(page, places[0])
-            with reference_page(page.context) as reference:
-                for title, case in wanted.items():
-                    open_in_jupyterlab(page, places[0], case)
-                    handle = HANDLES[case.lab]
-                    measure(title, page, reference, handle)
-                    if title in BESIDE_A_BUSY_KERNEL:
-                        measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
+            yield page, places[0]
     finally:
         for place in places:
             shutil.rmtree(place, ignore_errors=True)
 
 
+def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
+    """Measure configurations with an idle kernel, and some with a busy one."""
+    with in_jupyterlab() as (page, folder):
+        if opening:
+            measure_opening(page, folder)
+        with reference_page(page.context) as reference:
+            for title, case in wanted.items():
+                open_in_jupyterlab(page, folder, case)
+                handle = HANDLES[case.lab]
+                measure(title, page, reference, handle)
+                if title in BESIDE_A_BUSY_KERNEL:
+                    measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
+
+
 def open_alone(context: Any, lab: Any) -> Any:
-    """A page without JupyterLab, and without Python but for an answer."""
-    return lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
-
-
-def open_saved(context: Any, lab: Any) -> Any:
-    """The page that a lab saves itself into, opened from the disk."""
-    with tempfile.TemporaryDirectory() as folder:
-        lab.save(Path(folder) / "lab.html")
-        page = context.new_page()
-        page.goto((Path(folder) / "lab.html").as_uri())
+    """A lab at rest in a page without JupyterLab, and without Python but for an answer."""
+    page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+    page.wait_for_function(lab_alone.DRAWN)
+    rested(page, 60)
     return page
 
 
@@ -291,14 +288,11 @@ def launched() -> Any:
         browser.close()
 
 
-def measure_alone(wanted: dict[str, Case], opened: Callable[[Any, Any], Any]) -> None:
+def measure_alone(wanted: dict[str, Case]) -> None:
     """Measure configurations in pages without JupyterLab, which open at once."""
     with launched() as context, reference_page(context) as reference:
         for title, case in wanted.items():
-            lab = getattr(labs, case.lab)(**case.settings)
-            page = opened(context, lab)
-            page.wait_for_function(lab_alone.DRAWN)
-            rested(page, 60)
+            page = open_alone(context, getattr(labs, case.lab)(**case.settings))
             measure(title, page, reference, HANDLES[case.lab])
             page.close()
 
@@ -309,8 +303,8 @@ def main(*arguments: str) -> None:
     wanted = {title: case for title, case in CASES.items() if all(name in title for name in names)}
     if not wanted:
         raise SystemExit(f"nothing is called {' '.join(names)!r}; there are:\n" + "\n".join(CASES))
-    if "--alone" in arguments or "--saved" in arguments:
-        measure_alone(wanted, open_saved if "--saved" in arguments else open_alone)
+    if "--alone" in arguments:
+        measure_alone(wanted)
     elif "--opening" in arguments:
         measure_in_jupyterlab({}, opening=True)
     else:

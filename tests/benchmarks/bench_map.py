@@ -12,7 +12,7 @@ import statistics
 import sys
 from typing import Any
 
-from bench_lab import SECONDS, drag, lab_alone, launched, open_alone, rested, spent
+from bench_lab import SECONDS, drag, launched, open_alone, rested, spent
 
 from percept_obs.labs import observer_lab
 
@@ -62,10 +62,10 @@ def main(rounds: int = 5) -> None:
     untouched, firsts, drags = [], [], []
     with launched() as context:
         for _ in range(rounds):
-            page = opened(context)
+            page = open_alone(context, observer_lab("ma2005_eq35"))
             untouched.append(first_map(page))
             page.close()
-            page = opened(context)
+            page = open_alone(context, observer_lab("ma2005_eq35"))
             page.click("summary:has-text('Map over two settings')")
             page.wait_for_timeout(1000)
             rested(page, 60)
@@ -79,14 +79,6 @@ def main(rounds: int = 5) -> None:
         print(f"first map, {what}: {took:.0f} ms, main thread {main_thread:.0f} ms, {cells:.0f} places a side")
     maps, pictures = (statistics.median(one[name] for one in drags) for name in ("maps", "rate"))
     print(f"while a hand drags: {maps:.1f} maps a second, the lab {pictures:.1f} pictures a second")
-
-
-def opened(context: Any) -> Any:
-    """A lab at rest in a page of its own."""
-    page = open_alone(context, observer_lab("ma2005_eq35"))
-    page.wait_for_function(lab_alone.DRAWN)
-    rested(page, 60)
-    return page
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import time
 import timeit
 
 import numpy as np
+from measured import exit_code
 
 from percept_obs import linear, luenberger, record, track
 from percept_obs.points import PointsForm, PointsScenario
@@ -23,11 +24,6 @@ from percept_obs.points.scenarios import moving_body
 
 COUNTS = (1, 2, 4, 8, 16, 32, 64)
 STEPS = 6000
-
-
-def best_of(function, repeats):
-    """Least time of several calls, in seconds."""
-    return min(timeit.repeat(function, number=1, repeat=repeats))
 
 
 def full(states):
@@ -44,10 +40,14 @@ def loop(recording, observer):
     tables = (np.full(STEPS, 0.01), known, np.linalg.inv(observer.P.at(0.0)), images)
     law = (False, 0.0, 0.0, np.zeros((n, n)))
     form_arrays = arrays(form, np.arange(n), np.arange(form.points))
-    path, _, diverged = advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba")
+
+    def run():
+        return advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba")
+
+    path, _, diverged = run()
     assert diverged is None
     assert np.linalg.norm(path[-1] - recording.truth[-1]) < np.linalg.norm(path[0] - recording.truth[0])
-    return best_of(lambda: advance(form_arrays, law, np.zeros(n), np.eye(n), *tables, "numba"), 5)
+    return min(timeit.repeat(run, number=1, repeat=5))
 
 
 def main() -> int:
@@ -65,8 +65,8 @@ def main() -> int:
         def follow(recording=recording, observer=observer):
             return track(recording, observer, language="numba")
 
-        first[points] = best_of(follow, 1)
-        later[points] = best_of(follow, 3)
+        first[points] = min(timeit.repeat(follow, number=1, repeat=1))
+        later[points] = min(timeit.repeat(follow, number=1, repeat=3))
         alone[points] = loop(recording, observer) / STEPS
         print(
             f"{points:6d}  {3 * points:6d}   {first[points]:7.3f} s    {later[points]:7.3f} s   "
@@ -78,9 +78,7 @@ def main() -> int:
         bars[f"a step of {more} points costs at most {square:.0f} times one of {fewer}: {ratio:.1f}"] = ratio <= square
     extra = first[64] - later[64]
     bars[f"64 points compile nothing of their own: {extra:.2f} s more in the first run"] = extra < compiling / 4
-    for bar, kept in bars.items():
-        print(f"{'kept' if kept else 'NOT KEPT':9} {bar}")
-    return 0 if all(bars.values()) else 1
+    return exit_code(bars)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""Cost of one run: derivation and loops, the loop beside C, `track` around it, and every observer's operations.
+"""Cost of one run: derivation and loops, the loop beside C, and `track` around it.
 
-    python tests/benchmarks/bench_run.py [--rounds 101] [--part core c track operations]
+    python tests/benchmarks/bench_run.py [--rounds 101] [--part core c track]
 
 (35), 80 s at 100 Hz.  Every round runs each contender once, so that a busy machine slows all alike; medians of CPU
 time, and of the ratios of a round.  Exits with 1 if a bar is not kept.
@@ -9,8 +9,6 @@ time, and of the ratios of a round.  Exits with 1 if a bar is not kept.
 from __future__ import annotations
 
 import argparse
-import ast
-import inspect
 import os
 import subprocess
 import sys
@@ -19,34 +17,17 @@ import time
 from unittest import mock
 
 import numpy as np
-import sympy as sp
-from bench_ensemble import BOTH, FORM, SCENARIO, STEP, alone_on_a_core
-from other_packages import Work, in_c
+from bench_ensemble import BOTH, FORM, SCENARIO, STEP
+from measured import exit_code, interleaved, ratio
+from other_packages import in_c, together_of
 from scipy.integrate import solve_ivp
 
-from percept_obs import ibo, record, track, with_point
-from percept_obs.compile import Table, kernels, machine_code, solve, source, vector_functions
+from percept_obs import ibo, record, track
+from percept_obs.compile import kernels, machine_code, solve, source
 from percept_obs.observers import OBSERVERS
 from percept_obs.tracking import following
 
 DURATION = 80.0
-RUNS = 1024
-
-
-def interleaved(rounds, contenders):
-    """CPU seconds of each, shape (rounds,), every round running all of them in turn."""
-    found = {name: np.empty(rounds) for name in contenders}
-    for k in range(rounds):
-        for name, run in contenders.items():
-            begin = time.process_time()
-            run()
-            found[name][k] = time.process_time() - begin
-    return found
-
-
-def ratio(found, above, below):
-    """The median over the rounds of what one took to what another took."""
-    return float(np.median(found[above] / found[below]))
 
 
 DERIVATION = """
@@ -60,16 +41,13 @@ print(time.perf_counter() - begin)
 
 def core(rounds):
     """Derivation in a fresh process, compiling, and the loop of point and observer beside scipy's RK45."""
-    together, times = with_point(ibo(FORM)), STEP * np.arange(round(DURATION / STEP) + 1)
+    together, work, table = together_of(SCENARIO, ibo(FORM), np.ones(1), DURATION, STEP)
     derivation = float(subprocess.check_output([sys.executable, "-c", DERIVATION]))
-    start = [*record(SCENARIO, 1).truth[0], 0.0, 0.0, 0.0]
-    steps = len(times) - 1
-    table = Table(np.diff(times), np.zeros((steps, 3, 0)), SCENARIO.motion.known(0.0), np.zeros((steps + 1, 0)))
     gains, flow = [gain.value for gain in together.gains], together.lambdify(SCENARIO.motion)
     contenders = {
-        "scipy RK45": lambda: solve_ivp(flow, (0, DURATION), start, "RK45", times),
-        "Python": lambda: solve(together.equations, start, table, gains, "python"),
-        "numba": lambda: solve(together.equations, start, table, gains, "numba"),
+        "scipy RK45": lambda: solve_ivp(flow, (0, DURATION), work.start, "RK45", work.times),
+        "Python": lambda: solve(together.equations, work.start, table, gains, "python"),
+        "numba": lambda: solve(together.equations, work.start, table, gains, "numba"),
     }
     with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, NUMBA_CACHE_DIR=folder):
         kernels._compiled.cache_clear()  # so that the loop is compiled here
@@ -102,21 +80,15 @@ def loop_of(equations, start, table, gains):
 
 def beside_c(rounds):
     """The loop of point and observer together, and the call around it, beside the same expressions in C."""
-    together, steps = with_point(ibo(FORM)), round(DURATION / STEP)
-    start = np.array([*record(SCENARIO, 1).truth[0], 0.0, 0.0, 0.0])
-    table = Table(np.full(steps, STEP), np.zeros((steps, 3, 0)), SCENARIO.motion.known(0.0), np.zeros((steps + 1, 0)))
-    numbers = {gain.symbol: gain.value for gain in together.gains}
-    (gain,) = (each.symbol for each in together.gains if each.name == "gain")
-    values = SCENARIO.motion.values | {symbol: value for symbol, value in numbers.items() if symbol != gain}
-    flow = tuple(e.subs(values) for e in together.equations.flow)
-    runs = np.full(16, numbers[gain])
-    work = Work(together.equations.state, gain, flow, start, runs, STEP * np.arange(steps + 1))
+    observer = ibo(FORM)
+    together, work, table = together_of(SCENARIO, observer, np.full(16, observer.gains[0].value), DURATION, STEP)
+    numbers = [gain.value for gain in together.gains]
     with tempfile.TemporaryDirectory() as folder:
-        in_machine_code, _ = in_c(work, folder, 1, len(runs))
+        in_machine_code, _ = in_c(work, folder, 1, len(work.gains))
         contenders = {
             "C": in_machine_code,
-            "loop": loop_of(together.equations, start, table, [*numbers.values()]),
-            "call": lambda: solve(together.equations, start, table, [*numbers.values()], "numba"),
+            "loop": loop_of(together.equations, work.start, table, numbers),
+            "call": lambda: solve(together.equations, work.start, table, numbers, "numba"),
         }
         ends = [contenders["C"]()[:, 0], contenders["call"]().states[-1]]
         found = interleaved(rounds, contenders)
@@ -150,46 +122,10 @@ def around_the_loop(rounds):
     return {f"track at most 1.3 times its loop, identifier-based: {found:.2f}": found <= 1.3}
 
 
-def arithmetic(*functions):
-    """How many operations and comparisons stand in the text of functions, without those of constants alone."""
-    nodes = [node for each in functions for node in ast.walk(ast.parse(inspect.getsource(each)))]
-    found = [node for node in nodes if isinstance(node, ast.BinOp | ast.Compare)]
-    return sum(any(isinstance(inside, ast.Name) for inside in ast.walk(node)) for node in found)
-
-
-def operations(rounds):
-    """Many runs of 20 s side by side: what an operation of each observer's flow costs."""
-    contenders, calls, counts = {}, {}, {}
-    inside = arithmetic(vector_functions.tanh, vector_functions.parts)
-    for make in OBSERVERS:
-        one = make(BOTH)
-        over = {one.gains[0].name: np.full(RUNS, one.gains[0].value)}
-        contenders[make.key] = lambda one=one, over=over: alone_on_a_core(
-            SCENARIO, one, over, duration=20, language="numba"
-        )
-        contenders[make.key]()
-        shared, left = sp.cse([*one.equations.flow])
-        flow = [*left, *(e for _, e in shared)]
-        calls[make.key] = sum(e.count(sp.tanh) for e in flow)
-        counts[make.key] = sp.count_ops(flow) + (inside - 1) * calls[make.key]
-    found = interleaved(max(3, rounds // 20), contenders)
-    each = {key: times / (RUNS * 2000 * 4 * counts[key]) for key, times in found.items()}
-    ratios = {key: ratio(each, key, "identifier_based") for key in each}
-    for key, times in found.items():
-        cost, nanoseconds = 1e6 * np.median(times) / RUNS, 1e9 * np.median(each[key])
-        as_one = ratios[key] * counts[key] / (counts[key] - (inside - 1) * calls[key])
-        said = f"{counts[key]:4d} operations of {nanoseconds:.3f} ns: {ratios[key]:.2f}"
-        print(f"  {key:26} {cost:6.1f} us, {said}" + f", {as_one:.2f} with tanh as one" * (calls[key] > 0))
-    print(f"  a hyperbolic tangent counts as the {inside} operations of its text")
-    slowest = max(ratios, key=lambda key: ratios[key])
-    return {f"no observer above 3 times the IBO an operation: {slowest} {ratios[slowest]:.2f}": ratios[slowest] <= 3}
-
-
 PARTS = {
     "core": ("Point and observer together, y1 alone", core),
     "c": ("One run of point and observer together, y1 alone", beside_c),
     "track": ("track, both outputs", around_the_loop),
-    "operations": ("Operations, both outputs", operations),
 }
 
 
@@ -203,9 +139,7 @@ def main() -> int:
         title, measure = PARTS[part]
         print(f"\n{title}")
         bars |= measure(options.rounds)
-    for bar, kept in bars.items():
-        print(f"{'kept' if kept else 'NOT KEPT':9} {bar}")
-    return 0 if all(bars.values()) else 1
+    return exit_code(bars)
 
 
 if __name__ == "__main__":

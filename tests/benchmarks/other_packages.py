@@ -9,7 +9,6 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
-from contextlib import chdir
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,6 +16,9 @@ from pathlib import Path
 import numpy as np
 import sympy as sp
 from scipy.integrate import solve_ivp
+
+from percept_obs import record, with_point
+from percept_obs.compile import Table
 
 BATCH = 16
 ERROR = 1e-8
@@ -40,6 +42,18 @@ class Work:
 
     def function(self, modules):
         return sp.lambdify([self.state, self.gain], self.flow, modules, cse=True)
+
+
+def together_of(scenario, observer, gains, duration, step):
+    """Point and observer as one system, the work that others do on it with its first gain varied, and its table."""
+    together, steps = with_point(observer), round(duration / step)
+    varied = observer.gains[0].symbol
+    values = scenario.motion.values | {each.symbol: each.value for each in together.gains if each.symbol != varied}
+    flow = tuple(e.subs(values) for e in together.equations.flow)
+    start = np.array([*record(scenario, 1).truth[0], 0.0, 0.0, 0.0])
+    work = Work(together.equations.state, varied, flow, start, gains, step * np.arange(steps + 1))
+    known = scenario.motion.known(0.0)
+    return together, work, Table(np.full(steps, step), np.zeros((steps, 3, 0)), known, np.zeros((steps + 1, 0)))
 
 
 def runge_kutta(flow, state, step, steps):
@@ -66,44 +80,6 @@ def scipy_rk45(work):
     def run():
         found = solve_ivp(lambda t, s: flow(s, gain), (0, work.times[-1]), work.start, "RK45", work.times, rtol=ERROR)
         return found.y[:, -1:]
-
-    return run, len(work.gains)
-
-
-def control(work):
-    """python-control, whose simulation is scipy's."""
-    import control
-
-    flow, gain = work.function("math"), work.gains[0]
-    states = [str(symbol) for symbol in work.state]
-    system = control.nlsys(lambda t, s, u, p: np.array(flow(s, gain)), inputs=0, outputs=states, states=states)
-
-    def run():
-        found = control.input_output_response(
-            system, work.times, 0, work.start, solve_ivp_method="RK45", solve_ivp_kwargs={"rtol": ERROR}
-        )
-        return found.states[:, -1:]
-
-    return run, len(work.gains)
-
-
-def jitcode(work):
-    """JiTCODE: generated C, stepped by scipy's old Fortran code."""
-    import jitcode as package
-    import symengine
-
-    names = {symbol: sp.Symbol(f"s{k}") for k, symbol in enumerate(work.state)}
-    own = {symengine.Symbol(f"s{k}"): package.y(k) for k in range(len(names))}
-    flow = [symengine.sympify(e.xreplace({**names, work.gain: sp.Float(work.gains[0])})).subs(own) for e in work.flow]
-    solver = package.jitcode(flow, verbose=False)
-    solver.compile_C(extra_compile_args=["-O3", "-march=native", "-ffast-math"])
-
-    def run():
-        solver.set_integrator("dopri5", rtol=ERROR, atol=ERROR)
-        solver.set_initial_value(work.start, 0.0)
-        for time in work.times[1:]:
-            found = solver.integrate(time)
-        return found[:, None]
 
     return run, len(work.gains)
 
@@ -210,12 +186,6 @@ def contenders(work, folder):
     found = {"vectorised numpy": vectorised_numpy(work), "scipy, RK45": scipy_rk45(work)}
     if shutil.which("gcc"):
         found |= {"C, OpenMP SIMD": in_c(work, folder, BATCH, 1), "C, one lane": in_c(work, folder, 1, 16)}
-    others = {
-        "python-control, RK45": ("control", control),
-        "JiTCODE, dopri5": ("jitcode", jitcode),
-        "heyoka, Taylor series": ("heyoka", heyoka),
-        "diffrax, Dopri5": ("diffrax", diffrax),
-    }
-    with chdir(folder):  # JiTCODE compiles where one stands
-        found |= {name: make(work) for name, (module, make) in others.items() if find_spec(module)}
+    others = {"heyoka, Taylor series": ("heyoka", heyoka), "diffrax, Dopri5": ("diffrax", diffrax)}
+    found |= {name: make(work) for name, (module, make) in others.items() if find_spec(module)}
     return found, [module for module, _ in others.values() if not find_spec(module)]

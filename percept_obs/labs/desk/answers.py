@@ -38,24 +38,12 @@ MARKS = {
 
 @dataclass(frozen=True)
 class Entry:
-    """A line that somebody typed.
+    """A line that somebody typed."""
 
-    Parameters
-    ----------
-    markup : str
-        The line as MathML.
-    reading : Reading or None
-        The line as a formula, unless it cannot be read.
-    refusal : str
-        Reason why it cannot be read.
-    position : int
-        Place of that, counted in characters from 0.
-    """
-
-    markup: str
-    reading: Reading | None = None
-    refusal: str = ""
-    position: int = 0
+    markup: str  # the line as MathML
+    reading: Reading | None = None  # the line as a formula, unless it cannot be read
+    refusal: str = ""  # reason why it cannot be read
+    position: int = 0  # place of that, counted in characters from 0
 
 
 @lru_cache(maxsize=1024)
@@ -223,23 +211,11 @@ def _label(name: str) -> str:
 def witness_of(
     sheet: Sheet, rows: Sequence[int], texts: Mapping[int, str], system: PerspectiveSystem, point: Sequence[float]
 ) -> dict[str, Any] | None:
-    """Return the motion of the image at a point, by the typed lines and by the true ones.
+    """Return the motion of the image at a point, in 1/s, by the lines that are typed and by the true ones.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    rows : sequence of int
-        Lines of the step that is shown.
-    texts : mapping of rows to texts
-    system : PerspectiveSystem
-    point : three floats
-        y1, y2 and the inverse distance.
-
-    Returns
-    -------
-    dict or None
-        "true" and "mine" in 1/s, with None for what is not typed or has no value; None if these lines are no image's
-        motion, or it cannot be drawn in a plane.
+    The point is y1, y2 and the inverse distance, and `rows` are the lines of the step that is shown.  None stands for
+    what is not typed or has no value, or for all, where these lines are no image's motion or it cannot be drawn in a
+    plane.
     """
     lines = sheet.goal.lines
     image = [row for name in sheet.image for row in rows if lines[row].name == name]

@@ -50,16 +50,12 @@ class DerivationDesk(Lab):
                 "settings by their names"
             )
         self._given = system
-        opening = SCHEMA.opening
+        opening, given = SCHEMA.opening, None
         if system is not None:
-            opening["outputs"] = list(system.output_choices[0])
-        super().__init__("desk_lab", settings, opening, opening, given=self._given_for_the_page())
+            given = {"outputs": [list(names) for names in system.output_choices]}
+            opening["outputs"] = given["outputs"][0]
+        super().__init__("desk_lab", settings, opening, opening, given=given)
         self.analysis = self.analyse()
-
-    def _given_for_the_page(self) -> Settings | None:
-        if self._given is None:
-            return None
-        return {"outputs": [list(names) for names in self._given.output_choices]}
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -101,11 +97,9 @@ class DerivationDesk(Lab):
         except ValueError as error:
             return {"problem": str(error)}
         system, outputs = self.system()
-        return {"title": _title(system, outputs), **answer_to(sheet, settings, system)}
+        seen = f"{system.motion.name} motion on the {system.surface.name} surface"
+        title = f"{seen}, {' and '.join(outputs)} measured"
+        return {"title": title, **answer_to(sheet, settings, system)}
 
 
 derivation_desk = DerivationDesk
-
-
-def _title(system: PerspectiveSystem, outputs: tuple[str, ...]) -> str:
-    return f"{system.motion.name} motion on the {system.surface.name} surface, {' and '.join(outputs)} measured"

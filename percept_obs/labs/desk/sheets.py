@@ -31,24 +31,12 @@ PARTS = {
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """A derivation to fill in.
+    """A derivation to fill in."""
 
-    Parameters
-    ----------
-    given : list of str
-        Known formulas as MathML.
-    derivation : Derivation
-        The values of its steps are to be filled in.
-    goal : Target
-        Target of the lines, one for each value.
-    image : tuple of str
-        Names of the lines that are the image's motion.
-    """
-
-    given: list[str]
-    derivation: Derivation
-    goal: Target
-    image: tuple[str, ...] = ()
+    given: list[str]  # known formulas as MathML
+    derivation: Derivation  # the values of its steps are to be filled in
+    goal: Target  # target of the lines, one for each value
+    image: tuple[str, ...] = ()  # names of the lines that are the image's motion
 
     @cached_property
     def numbered(self) -> Target:
@@ -70,13 +58,7 @@ class Sheet:
 
 @lru_cache(maxsize=64)
 def sheet_of(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str, part: str) -> Sheet:
-    """Return the derivation to fill in.
-
-    Raises
-    ------
-    ValueError
-        If there is no such observer for these outputs.
-    """
+    """Return the derivation to fill in; a ValueError says if there is no such observer for these outputs."""
     return _MAKE[part](system, outputs, observer)
 
 

@@ -26,13 +26,7 @@ def system_of(motion: str, surface: str) -> PerspectiveSystem:
 
 @lru_cache
 def observer_of(system: PerspectiveSystem, outputs: tuple[str, ...], name: str) -> Observer:
-    """Return an observer of a system with these measured outputs.
-
-    Raises
-    ------
-    ValueError
-        If there is none for these outputs.
-    """
+    """Return an observer of a system; a ValueError says if there is none for these measured outputs."""
     return OBSERVERS[name](system.measure(*outputs))
 
 

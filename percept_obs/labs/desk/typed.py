@@ -28,20 +28,7 @@ _ENDS = {closing for closing, _, _ in _BRACKETS.values()} | {"_LINE", "END"}
 
 
 def typed_markup(tokens: list[Token], letters: Mapping[str, sp.Symbol] = MappingProxyType({})) -> str:
-    """Return MathML of a formula's tokens; it never fails.
-
-    Parameters
-    ----------
-    tokens : list of Token
-        From `Target.words`; the last one is "END".
-    letters : mapping of names without underscores to symbols
-
-    Examples
-    --------
-    >>> from percept_obs.checking.reading import words_of
-    >>> typed_markup(words_of("x/2"))
-    '<mrow><mfrac><mrow><mi>x</mi></mrow><mrow><mn>2</mn></mrow></mfrac></mrow>'
-    """
+    """Return MathML of a formula's tokens, the last of which is "END"; it never fails.  Letters have no underscores."""
     return _Writer(tokens, letters).line()
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -125,7 +124,8 @@ class ObserverLab(Lab):
         seen = [*given, *(s.surface for s in scenes.values()), *(_seen_on(n, r) for n, r in tracks.items())]
         self._registry, names = registry_of(seen, users, asked or STANDARD["observers"])
         if given:
-            settings = _shaped(given[0], names[0]) | settings
+            shape = numbers_of(given[0], names[0]) if isinstance(given[0], ImagingSurface) else {}
+            settings = shape | settings
             surface = names[0]
         on = dict(zip((*scenes, *tracks), names[len(given) :], strict=True))
         self._tables = {n: t for n, s in scenes.items() if not typed_text(s.motion) and (t := table_of(s))}
@@ -135,13 +135,15 @@ class ObserverLab(Lab):
         opening = str(self.schema["scenario"].read("scenario", scenario))
         fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
         chosen = {"observers": asked, "surface": surface}
+        standard = STANDARD | {name: self.schema[name].opening for name in ("gains", "switches")}
+        sampled = {n: {"track": table_for_the_page(motion)} for n, motion in self._tables.items()}
         super().__init__(
             "observer_lab",
             {**settings, **{name: value for name, value in chosen.items() if value is not None}},
-            {**STANDARD, **self._own_opening(), **fit, "scenario": opening},
-            {**STANDARD, **self._own_opening()},
+            {**standard, **fit, "scenario": opening},
+            standard,
             texts=self._registry.packed,
-            scenarios={n: {"title": s.name, **known[n], **self._sampled(n)} for n, s in scenes.items()},
+            scenarios={n: {"title": s.name, **known[n], **sampled.get(n, {})} for n, s in scenes.items()},
             recordings={
                 n: track_for_the_page(recording, tracks[n].motion.name, on[n], self._registry)
                 for n, recording in self._recordings.items()
@@ -161,16 +163,6 @@ class ObserverLab(Lab):
                 f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording"
             )
         self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
-
-    def _own_opening(self) -> Settings:
-        return {name: self.schema[name].opening for name in ("gains", "switches")}
-
-    def _sampled(self, name: str) -> Settings:
-        return {"track": table_for_the_page(self._tables[name])} if name in self._tables else {}
-
-    def run(self) -> dict[str, Run]:
-        """Runs of the same settings in Python, by the observers' names."""
-        return self.runs(self.settings)
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -247,11 +239,15 @@ class ObserverLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        recording, start, believed = self.recorded(settings), _start(settings), _believed(settings)
-        return {
-            name: track(recording, self._tuned(settings, name), start, settings["hold"], believed, language="python")
-            for name in settings["observers"]
-        }
+        recording, chosen, other = self.recorded(settings), settings["start"], settings["believed"]
+        start = {"own": None, "zero": [0.0] * 3, "chosen": chosen["values"]}[chosen["mode"]]
+        believed = affine(other["A"], other["b"]) if other else None
+        found = {}
+        for name in settings["observers"]:
+            observer, _ = self._chosen(settings, name)
+            tuned = observer.with_gains(**{gain.name: settings["gains"][name][gain.name] for gain in observer.gains})
+            found[name] = track(recording, tuned, start, settings["hold"], believed, language="python")
+        return found
 
     def recorded(self, settings: Settings) -> Recording:
         """Recording of the camera, as far as the point stays in front of it."""
@@ -264,23 +260,8 @@ class ObserverLab(Lab):
         way = str(settings["switches"].get(name, ""))
         return self._registry.observer(settings["surface"], settings["outputs"], name, way), way
 
-    def _tuned(self, settings: Settings, name: str) -> Observer:
-        """An observer with the gains of the settings."""
-        observer, values = self._chosen(settings, name)[0], settings["gains"][name]
-        return observer.with_gains(**{gain.name: values[gain.name] for gain in observer.gains})
-
 
 observer_lab = ObserverLab
-
-
-def runs(settings: Settings) -> dict[str, Run]:
-    """Runs of settings of the package's own lab, by the observers' names."""
-    return _plain_lab().runs(settings)
-
-
-@lru_cache(maxsize=1)
-def _plain_lab() -> ObserverLab:
-    return ObserverLab()
 
 
 def _seen_on(name: str, recording: Recording) -> ImagingSurface:
@@ -300,11 +281,6 @@ def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
             f"of its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
         )
     return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
-
-
-def _shaped(given: Any, name: str) -> Settings:
-    """The settings of a surface of the package that was given with numbers."""
-    return numbers_of(given, name) if isinstance(given, ImagingSurface) else {}
 
 
 def _numbers(settings: Settings) -> np.ndarray:
@@ -330,13 +306,3 @@ def _simulated(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> R
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])
     return record_while_seen(scenario, camera, settings["seed"])
-
-
-def _believed(settings: Settings) -> Motion | None:
-    """The motion that observers believe; None for the true one."""
-    return affine(settings["believed"]["A"], settings["believed"]["b"]) if settings["believed"] else None
-
-
-def _start(settings: Settings) -> list[float] | None:
-    """Estimates at the first sample, unless they are the observers' own."""
-    return {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]

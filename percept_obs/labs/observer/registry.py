@@ -20,7 +20,6 @@ from percept_obs.labs.observer.texts import (
     observer_on,
     surface_for_the_page,
 )
-from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.printed import Parts, Texts, part, with_texts
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.labs.shared.user_observers import (
@@ -42,22 +41,12 @@ FALLBACK = "identifier_based"
 
 @dataclass(frozen=True, eq=False)
 class Registry:
-    """Surfaces and observers by their names.
+    """Surfaces and observers by their names."""
 
-    Parameters
-    ----------
-    user_surfaces : mapping of names to imaging surfaces with numbers
-    user_observers : mapping of names to observers
-    asked : names of observers
-        The package's observers that are printed on the user's surfaces, for all of them take many seconds.
-    origins : mapping of names to texts
-        Imports of the user's surfaces in copied code.
-    """
-
-    user_surfaces: Mapping[str, ImagingSurface]
+    user_surfaces: Mapping[str, ImagingSurface]  # with numbers
     user_observers: Mapping[str, UserObserver]
-    asked: tuple[str, ...]
-    origins: Mapping[str, Texts]
+    asked: tuple[str, ...]  # the package's observers that are printed on the user's surfaces; all take many seconds
+    origins: Mapping[str, Texts]  # imports of the user's surfaces in copied code
 
     @cached_property
     def surfaces(self) -> dict[str, ImagingSurface]:
@@ -83,10 +72,6 @@ class Registry:
     def observer(self, surface: str, outputs: Iterable[str], name: str, way: str = "") -> Observer:
         """An observer with its default gains."""
         return observer_on(self.observers[name], self.surfaces[surface], tuple(outputs), way)
-
-    def with_every_gain(self, name: str) -> Observer:
-        """An observer with the switch that has all gains."""
-        return with_all_gains(self.examples(name))
 
     def examples(self, name: str) -> dict[str, Observer]:
         """An observer with each of its switches, of the first form that it fits."""
@@ -154,11 +139,7 @@ def registry_of(
 ) -> tuple[Registry, list[str]]:
     """The registry of a lab with a user's surfaces and observers, and the names of these surfaces.
 
-    Parameters
-    ----------
-    surfaces : sequence of imaging surfaces, or functions that give one
-    observers : mapping of names to observers
-    asked : names of observers that the lab opens with
+    A surface may be a function that gives one; `asked` are the names of the observers that the lab opens with.
     """
     found: dict[str, ImagingSurface] = {}
     origins: dict[str, Texts] = {}

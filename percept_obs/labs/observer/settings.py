@@ -7,7 +7,8 @@ import numpy as np
 
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
-from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over
+from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over, own_gains
+from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
 from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
@@ -39,13 +40,9 @@ def _translation(about: str = "") -> Row:
 
 
 def as_settings(scenario: Scenario, surface: str = "") -> Settings:
-    """Settings of a scenario: motion, point, surface and duration; a motion that varies is taken at time 0.
+    """Settings of a scenario: motion, point, duration, and its surface under the lab's name for it, if there is one.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    surface : str
-        The lab's name of its surface; the surface's own when left out.
+    A motion that varies is taken at time 0.
     """
     motion = scenario.motion
     numbers = dict(zip(motion.parameters, motion.known(0.0)[0].tolist(), strict=True))
@@ -83,9 +80,9 @@ SCHEMA = Schema(
     switches=Group({n: Choice(own, WAYS[n]) for n, own in OWN_SWITCH.items()}, partial=True, about="by observers"),
     believed=Optional(Group({"A": _matrix(), "b": _translation()}), about="None, or the motion that observers believe"),
     noise=noise(size=Number(0.0, 0, 1, (0, 0.05), 0.0005, label="bound or σ")),
-    dropout=DROPOUT,
     seed=SEED,
-    period=Number(0.01, 1e-3, 1, (0.002, 0.2), unit="s"),
+    period=Number(0.01, 1e-3, 1, (0.002, 0.2), unit="s", topic="camera"),
+    dropout=DROPOUT,
     hold=Choice("zero", HOLDS),
     start=Group(
         {
@@ -94,8 +91,8 @@ SCHEMA = Schema(
         },
         about='a mapping of mode, "own", "zero" or "chosen", and the chosen values',
     ),
-    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW),
-    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD),
+    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW, topic="pictures"),
+    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD, topic="pictures"),
     pictures=Names(["distance", "error", "excitation"], PICTURES, label="Time charts", about="those that are shown"),
     bound=Names([], BOUND, label="The bound", least=0, about="where the least error that the noise leaves is drawn"),
     map=Group(
@@ -114,22 +111,18 @@ SCHEMA = Schema(
 def schema_of(registry: Registry, scenarios_and_recordings: Mapping[str, Any]) -> Schema:
     """Settings of a lab with the surfaces and observers of a registry."""
     switches = {n: Choice(make.switches[0], make.switches) for n, make in registry.observers.items() if make.switches}
+    standard = own_gains(registry.part()["observers"])
     return Schema(
         SCHEMA
         | {
             "scenario": Choice(STANDARD["scenario"], tuple(scenarios_and_recordings)),
             "surface": offering(SCHEMA["surface"], registry.surfaces),
             "observers": offering(SCHEMA["observers"], registry.observers),
-            "gains": gains(_gains_of(registry), registry.with_every_gain),
-            "over": over(_gains_of(registry), MAPPED),
+            "gains": gains(standard, lambda name: with_all_gains(registry.examples(name))),
+            "over": over(standard, MAPPED),
             "switches": Group(switches, partial=True),
         }
     )
-
-
-def _gains_of(registry: Registry) -> dict[str, dict[str, float]]:
-    printed = registry.part()["observers"].items()
-    return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
 
 
 def _drive() -> Settings:

@@ -71,26 +71,18 @@ def form_of(surface: str, outputs: tuple[str, ...]) -> CanonicalForm:
     return form_on(SURFACES[surface](), outputs).canonical_form()
 
 
-def observer_of(surface: str, outputs: tuple[str, ...], name: str, way: str = "") -> Observer:
-    """An observer of the package, as `observer_on` makes it."""
-    return observer_on(BY_NAME[name], SURFACES[surface](), outputs, way)
-
-
-def ways_of(name: str) -> dict[str, Observer]:
-    """An observer of the package for all image coordinates, with each of its switches."""
-    return {way: observer_of("pinhole", ("y1", "y2"), name, way) for way in WAYS[name]}
-
-
 @lru_cache
 def model_for_the_page() -> Texts:
     """Texts that do not depend on the form: the point's loop, the surfaces, the observers."""
+    pinhole = SURFACES["pinhole"]()
+    ways = {n: {way: observer_on(BY_NAME[n], pinhole, ("y1", "y2"), way) for way in each} for n, each in WAYS.items()}
     return {
         "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
         "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
         "surfaces": {
             name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
         },
-        "observers": {name: texts_of_observer(make, ways_of(name)) for name, make in BY_NAME.items()},
+        "observers": {name: texts_of_observer(make, ways[name]) for name, make in BY_NAME.items()},
     }
 
 

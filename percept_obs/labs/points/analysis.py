@@ -19,11 +19,7 @@ STILL = 1e-6
 def in_words(run: PointsRun, window: float) -> dict[str, Any]:
     """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed.
 
-    Parameters
-    ----------
-    run : PointsRun
-    window : float
-        Seconds of the Gramian's windows; a shorter run is one window.
+    The Gramian's windows last `window` seconds; a shorter run is one window.
     """
     recording = run.recording
     window = min(window, float(run.time[-1]))

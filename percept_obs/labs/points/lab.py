@@ -31,13 +31,7 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
-from percept_obs.points import (
-    FirstSight,
-    PointsRun,
-    PointsScenario,
-    UnseenDirection,
-    luenberger,
-)
+from percept_obs.points import FirstSight, PointsRun, PointsScenario, UnseenDirection, luenberger
 from percept_obs.points.form import JUDGED, PointsForm, points_form
 from percept_obs.points.gramian import VERDICTS as GRAMIAN_VERDICTS
 from percept_obs.points.manoeuvre import Manoeuvre, velocities
@@ -111,10 +105,6 @@ class PointsLab(Lab):
             unseen=UNSEEN,
         )
 
-    def run(self) -> PointsRun:
-        """The run of the same settings in Python."""
-        return run_of(self.settings, self._form)
-
     def typed_for_the_page(self, text: str) -> Settings:
         """Texts of a typed P, or of each state's coefficients under a typed motion."""
         if gives_P(text):
@@ -181,6 +171,32 @@ class PointsLab(Lab):
         beyond = [refusal] if (refusal := too_much(moved)) else beyond
         return {"sentences": beyond, "bound": None} if beyond else in_words(self.run(), settings["window"])
 
+    def recorded(self, settings: Settings) -> Recording:
+        """Recording of the settings' points."""
+        form = form_of_settings(settings, self._form)
+        state = state_of(form, settings["points"]).tolist()
+        scenario = PointsScenario("from the lab", form, state, settings["duration"])
+        noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
+        camera = Camera(settings["period"], noise, settings["dropout"], settings["view"])
+        recording = record(scenario, camera=camera, seed=settings["seed"])
+        for point, times in enumerate(settings["hidden"]):
+            if times is not None:
+                recording = recording.without(times[0], times[1], point)
+        return recording
+
+    def runs(self, settings: Settings) -> PointsRun:
+        """The run of settings."""
+        recording = self.recorded(settings)
+        form = points_form(recording)
+        assert recording.truth is not None
+        begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None
+        if settings["start"] == "error":
+            begin = recording.truth[0] - settings["error"] * np.resize(ERROR, form.states)
+        observer = luenberger(form, weight_of(settings, form.states))
+        run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"], language="python")
+        assert isinstance(run, PointsRun)
+        return run
+
 
 points_lab = PointsLab
 
@@ -203,31 +219,3 @@ def form_of_settings(settings: Settings, own: PointsForm | None = None) -> Point
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnseenDirection)  # the lab says so in its own place
         return form_of(settings["state"], len(settings["points"]), _manoeuvre(settings), typed)
-
-
-def recording_of(settings: Settings, own: PointsForm | None = None) -> Recording:
-    """Recording of the settings' points."""
-    form = form_of_settings(settings, own)
-    state = state_of(form, settings["points"]).tolist()
-    scenario = PointsScenario("from the lab", form, state, settings["duration"])
-    noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
-    camera = Camera(settings["period"], noise, settings["dropout"], settings["view"])
-    recording = record(scenario, camera=camera, seed=settings["seed"])
-    for point, times in enumerate(settings["hidden"]):
-        if times is not None:
-            recording = recording.without(times[0], times[1], point)
-    return recording
-
-
-def run_of(settings: Settings, own: PointsForm | None = None) -> PointsRun:
-    """The run of settings."""
-    recording = recording_of(settings, own)
-    form = points_form(recording)
-    assert recording.truth is not None
-    begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None
-    if settings["start"] == "error":
-        begin = recording.truth[0] - settings["error"] * np.resize(ERROR, form.states)
-    observer = luenberger(form, weight_of(settings, form.states))
-    run = track(recording, observer, begin, hold=settings["hold"], step=settings["step"], language="python")
-    assert isinstance(run, PointsRun)
-    return run

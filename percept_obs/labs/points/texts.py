@@ -47,14 +47,7 @@ def form_of(state: str, points: int, manoeuvre: Manoeuvre, typed: Typed | None =
 
 
 def state_of(form: PointsForm, places: Any) -> np.ndarray:
-    """The smallest state whose points are at these places, shape (n,).
-
-    Parameters
-    ----------
-    form : PointsForm
-    places : array of shape (p, 3)
-        Metres, in the camera's frame.
-    """
+    """The smallest state, shape (n,), whose points are at places of shape (p, 3), in metres in the camera's frame."""
     return np.linalg.pinv(form.blocks.reshape(-1, form.states)) @ np.ravel(places)
 
 
@@ -111,19 +104,12 @@ def _state_for_the_page(name: str) -> Texts:
     return {
         "coefficients": coefficients_for_the_page(name, velocities()),
         "width": len(form.layout.expressions),
-        "layouts": [_layout(form, extra, points) for points in range(1, MOST_POINTS + 1)],
+        "layouts": [_layout(form, 3 * points + extra, points) for points in range(1, MOST_POINTS + 1)],
     }
 
 
 def own_state_for_the_page(form: PointsForm) -> Texts:
-    """The one layout of a user's form, and its coefficients.
-
-    Raises
-    ------
-    ValueError
-        If the page cannot move it: its motion is not known, a function that is not printed, samples that do not suit a
-        run, or couples vectors of three states.
-    """
+    """The one layout of a user's form, and its coefficients; a ValueError if the page cannot move it."""
     motion, n = form.motion, form.states
     rows, columns = form.layout.rows, form.layout.columns
     if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():
@@ -144,24 +130,19 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
         )
     if form.surface != SURFACE:
         raise ValueError(f"the form is seen on the {form.surface.name}; the lab of many points has a pinhole")
-    layout = {**_arrays(form, n, form.points), "names": list(form.names)}
     return {
         "coefficients": function_source(given, expressions),
         "width": len(expressions),
-        "layouts": [*[None] * (form.points - 1), layout],
+        "layouts": [*[None] * (form.points - 1), _layout(form, n, form.points)],
         **({"samples": samples_for_the_page(motion)} if sampled else {}),
     }
 
 
-def _layout(form: PointsForm, extra: int, points: int) -> Texts:
-    """Positions of a state's coefficients when it has so many of the points."""
-    states = 3 * points + extra
-    return {**_arrays(form, states, points), "names": list(form.names[:states])}
-
-
-def _arrays(form: PointsForm, states: int, points: int) -> Texts:
+def _layout(form: PointsForm, states: int, points: int) -> Texts:
+    """Positions of a state's coefficients when it has so many of the points, and the states' names."""
     found = arrays(form, np.arange(states), np.arange(points))
-    return {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
+    plain = {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
+    return {**plain, "names": list(form.names[:states])}
 
 
 def _numbers(matrix: sp.ImmutableMatrix) -> list[list[float]]:

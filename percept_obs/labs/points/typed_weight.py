@@ -47,13 +47,6 @@ def gives_P(text: str) -> bool:
 def read_weight(text: str) -> Diagonal:
     """Read a P such as ``P = 1 + exp(-t)`` or ``P = [1, 1, 4]``; P on the right is the number that the lab sets.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be read, with the place, or is neither a number nor a diagonal of three.
-
-    Examples
-    --------
     >>> read_weight("q = exp(-t); P = [1, 1, 1 + q]")
     (1, 1, 1 + exp(-t))
     """

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from percept_obs.labs.shared.printed import part
+from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Choice, GainsOf, Group, Kind, Names, Number, Optional, Whole
 from percept_obs.observers import Observer
 
@@ -30,10 +30,9 @@ def gains(standard: Mapping[str, Mapping[str, float]], observer_of: Callable[[st
     return Group(groups, partial=True, about="for each observer, its gains by name")
 
 
-def standard_gains(kind: str) -> dict[str, dict[str, float]]:
-    """The gains that the observers of a lab have of their own, as they were printed for its page."""
-    printed = part(kind)["observers"].items()
-    return {name: {gain["name"]: gain["value"] for gain in observer["gains"]} for name, observer in printed}
+def own_gains(observers: Mapping[str, Texts]) -> dict[str, dict[str, float]]:
+    """The gains that observers have of their own, from what is printed of them for the page."""
+    return {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in observers.items()}
 
 
 def noise(**sizes: Number) -> Group:
@@ -43,13 +42,9 @@ def noise(**sizes: Number) -> Group:
 
 
 def over(gains: Mapping[str, Iterable[str]], places: Sequence[str]) -> Group:
-    """A map over two settings: what it shows, of which observer, and the places of both.
+    """A map over two settings: what it shows, of which observer, and the places of both: its gains, and others.
 
-    Parameters
-    ----------
-    gains : mapping of observers' names to names of gains
-    places : sequence of str
-        What else it may go over; it opens with the first gain and the first of these.
+    It opens with the first gain and the first of the other places.
     """
     axes = [f"gains.{name}.{gain}" for name, names in gains.items() for gain in names]
     shown = {
@@ -62,6 +57,8 @@ def over(gains: Mapping[str, Iterable[str]], places: Sequence[str]) -> Group:
 
 
 SHOWS = ("nothing", "settling", "error")
-SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random")
-DROPOUT = Number(0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost")
+SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random", topic="camera")
+DROPOUT = Number(
+    0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost", topic="camera"
+)
 KEPT = Optional(Whole(), about="None, or the settings of the run that is kept to compare with")

@@ -23,16 +23,7 @@ Matrices = dict[str, Any]
 def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str, Any]]:
     """An observer's equations as MathML, a line each: with all terms, and without those of gains that may be 0.
 
-    Parameters
-    ----------
-    make : function of a form
-    **switch : str
-        Which switch it is made with, if it has several.
-
-    Returns
-    -------
-    list of {"zero": names of gains, "lines": MathML}
-        In the order in which they are to be tried: the last one is without zeros.
+    They are to be tried in their order; the last ones are without zeros.
     """
     if make in IN_MATRICES:
         observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
@@ -61,14 +52,7 @@ def abstract_form() -> CanonicalForm:
 
 
 def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
-    """A line for each of an observer's equations.
-
-    Parameters
-    ----------
-    observer : Observer
-    zero : sequence of sympy symbols
-        Gains that are 0, so that their terms are left out.
-    """
+    """A line for each of an observer's equations, without the terms of gains that are 0."""
     form, equations = observer.form, observer.equations
     letters = {gain.name: gain.symbol for gain in observer.gains}
     derived = {

@@ -54,13 +54,7 @@ NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
 
 def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recording:
-    """Recording of a camera until the point leaves the half-space in front of it.
-
-    Raises
-    ------
-    BehindCamera
-        If it leaves at once.
-    """
+    """Recording until the point leaves the half-space in front of the camera; BehindCamera if it leaves at once."""
     try:
         return record(scenario, camera=camera, seed=seed)
     except BehindCamera:  # not asked for beforehand, for that takes as long as recording
@@ -99,21 +93,10 @@ class Lab(anywidget.AnyWidget):
 
     The page sends `settings` and `summary` together when the hand rests; Python answers with `analysis`, which carries
     the summary's serial.  Nothing is sent as a message of its own, so that a busy kernel skips to the latest state.
-    A lab of its own has a `schema`, and says more in `refuse` and `analyse`.
 
-    Parameters
-    ----------
-    settings : dict
-        Settings to open with, where they differ from `opening`; and the `face` that the page opens with, "first" for
-        the first screen or "workbench".
-    opening : dict
-        Complete settings to open with.
-    standard : dict
-        Settings that every preset begins with.
-    texts : bytes
-        Printed texts of the page, where they are not those of the package.
-    **model
-        Data of the page besides its texts.
+    A lab of its own has a `schema`, and says more in `refuse` and `analyse`.  It is made with its `kind`, the user's
+    settings and perhaps the `face` that the page opens with ("first" for the first screen, or "workbench"), complete
+    settings to open with, standard ones, printed texts where they are not those of the package, and other data.
     """
 
     _esm = BUNDLE
@@ -202,6 +185,14 @@ class Lab(anywidget.AnyWidget):
     def _read(self, change: Mapping[str, Any]) -> None:
         if change["new"].strip() and len(change["new"]) <= MOST_READ:
             self._write(change["new"])
+
+    def run(self) -> Any:
+        """Runs of the present settings in Python, by the observers' names; of many points the run of all of them."""
+        return self.runs(self.settings)
+
+    def runs(self, settings: Settings) -> Any:
+        """Runs of settings, as `run` gives them."""
+        raise NotImplementedError
 
     def analyse(self) -> Settings:
         """Analysis of the present settings, which the page shows when the hand rests."""

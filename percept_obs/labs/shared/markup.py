@@ -17,13 +17,9 @@ BETTER = (
 
 
 def formula(left: object, right: object, letters: Mapping[str, sp.Symbol] | None = None) -> str:
-    """The equation ``left = right`` as MathML.
+    """The equation ``left = right`` as MathML, of expressions or MathML.
 
-    Parameters
-    ----------
-    left, right : sympy objects, or MathML text
-    letters : mapping of names to symbols, optional
-        The page highlights a letter, and puts its number in, by its name.
+    The page highlights a letter, and puts its number in, by its name.
     """
     sides = [side if isinstance(side, str) else markup(side, letters) for side in (left, right)]
     return f"<mrow>{sides[0]}<mo>=</mo>{sides[1]}</mrow>"

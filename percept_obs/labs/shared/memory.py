@@ -33,8 +33,6 @@ def kept_by_reads(function: F) -> F:
     A result is used again where the settings that it read have the same values, and the other arguments are the same
     objects.
 
-    Examples
-    --------
     >>> made = kept_by_reads(lambda settings: [settings["a"]])
     >>> first = made({"a": 1, "b": 2})
     >>> made({"a": 1, "b": 3}) is first, made({"a": 2, "b": 2}) is first
@@ -51,8 +49,8 @@ def kept_by_reads(function: F) -> F:
                 return value
         noted = _Noted(settings)
         value = function(noted, *others)
-        for name in noted.names:
-            settings[name]
+        if isinstance(settings, _Noted):
+            settings.names |= noted.names
         kept.append((noted, others, value))
         return value
 

@@ -14,13 +14,7 @@ from percept_obs.observers.parts import first_seen, hats
 
 
 def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:
-    """Facts, gains and equations of an observer, in the letters of the paper.
-
-    Parameters
-    ----------
-    ways : mapping of names of switches to observers
-    equations : mapping of the same names to equations
-    """
+    """Facts, gains and equations of an observer in the letters of the paper, by the names of its switches."""
     whole = with_all_gains(ways)
     about = whole.about
     return {

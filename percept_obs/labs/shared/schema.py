@@ -21,22 +21,13 @@ Settings = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """A kind of setting.
+    """A kind of setting."""
 
-    Parameters
-    ----------
-    opening : object
-        The value to open with.
-    label, unit : str
-        The page's words for it.
-    about : str
-        Its meaning, for the docstring of the lab.
-    """
-
-    opening: Any = None
-    label: str = ""
+    opening: Any = None  # the value to open with
+    label: str = ""  # the page's words for it
     unit: str = ""
-    about: str = ""
+    about: str = ""  # its meaning, for the docstring of the lab
+    topic: str = ""  # the part of the panel that shows a number, unless the panel places it itself
 
     @property
     def expected(self) -> str:
@@ -67,29 +58,16 @@ class Kind:
 
 @dataclass(frozen=True)
 class Number(Kind):
-    """A number that opens with a value and may be anything from `low` to `high`.
-
-    Parameters
-    ----------
-    opening, low, high : float
-    usual : two floats, optional
-        The part of the range that a slider has.
-    step : float, optional
-        A slider's; it is logarithmic without one.
-    whole, zero : bool
-        Whether only whole numbers are allowed, and whether 0 is.
-    reason : str
-        The reason for a bound, for the error message.
-    """
+    """A number that opens with a value and may be anything from `low` to `high`."""
 
     opening: float = 0.0
     low: float = -1e3
     high: float = 1e3
-    usual: tuple[float, float] | None = None
-    step: float | None = None
+    usual: tuple[float, float] | None = None  # the part of the range that a slider has
+    step: float | None = None  # a slider's; it is logarithmic without one
     whole: bool = False
-    zero: bool = True
-    reason: str = ""
+    zero: bool = True  # whether 0 is allowed
+    reason: str = ""  # for a bound, in the error message
 
     def _expected(self) -> str:
         kind = "a whole number" if self.whole else "a number"
@@ -303,13 +281,7 @@ class Schema(dict[str, Kind]):
         return deepcopy({name: kind.opening for name, kind in self.items()})
 
     def read(self, settings: object, opening: Settings) -> Settings:
-        """Settings as plain data, completed by the opening ones.
-
-        Raises
-        ------
-        ValueError
-            If there is no such setting, or a value is not of its kind.
-        """
+        """Settings as plain data, completed by the opening ones; a ValueError if one is unknown or not of its kind."""
         if not isinstance(settings, Mapping):
             raise ValueError(f"settings are {reprlib.repr(settings)}; they must be a mapping of {', '.join(self)}")
         unknown = ", ".join(sorted(str(name) for name in settings if name not in self))

@@ -33,20 +33,11 @@ def typed_setting(example: str) -> Text:
 
 @dataclass(frozen=True)
 class Typed:
-    """A typed motion.
-
-    Parameters
-    ----------
-    text : str
-    symbols : tuple of symbols
-        The numbers that a lab sets.
-    expressions : tuple of expressions
-        One for each symbol, in `TIME` and the symbols.
-    """
+    """A typed motion."""
 
     text: str
-    symbols: tuple[sp.Symbol, ...]
-    expressions: tuple[sp.Expr, ...]
+    symbols: tuple[sp.Symbol, ...]  # the numbers that a lab sets
+    expressions: tuple[sp.Expr, ...]  # one for each symbol, in `TIME` and the symbols
 
     @property
     def changed(self) -> dict[str, sp.Expr]:
@@ -85,23 +76,11 @@ class Typed:
 
 
 def read_motion(text: str, blocks: Blocks) -> Typed:
-    """Read a motion.
+    """Read a motion of lines such as "a12 = 0.4 cos(2t); b3 = b3 + 0.1 t", or of a whole block, "b = [sin(t), 0, 1]".
 
-    Parameters
-    ----------
-    text : str
-        Lines such as "a12 = 0.4 cos(2t); b3 = b3 + 0.1 t", or of a whole block, "b = [sin(t), 0, 1]".  A line may
-        also name something to be used in the next ones, "q = 2t".
-    blocks : mapping of letters to matrices of symbols
-        Their entries are the numbers that a lab sets, and may be given.
+    A line may also name something to be used in the next ones, "q = 2t".  The blocks' entries, symbols of the numbers
+    that a lab sets, may be given; a ValueError says, with the place, what cannot be read, or is given twice.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be read, with the place, or gives something else, or twice.
-
-    Examples
-    --------
     >>> b = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
     >>> read_motion("b1 = b1 + sin(2t)", {"b": b}).expressions
     (b1 + sin(2*t), b2, b3)

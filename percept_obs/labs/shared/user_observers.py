@@ -21,20 +21,11 @@ from percept_obs.system.forms import PartitionedSystem
 
 @dataclass(frozen=True, eq=False)
 class UserObserver:
-    """An observer of a user, with the interface of `Family`.
+    """An observer of a user, with the interface of `Family`."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in settings and in Python.
-    make : function of a form
-    form : PartitionedSystem, optional
-        The only form that it fits, if it was given as an `Observer`.
-    """
-
-    name: str
-    make: Callable[..., Observer]
-    form: PartitionedSystem | None = None
+    name: str  # in settings and in Python
+    make: Callable[..., Observer]  # of a form
+    form: PartitionedSystem | None = None  # the only one that it fits, if it was given as an `Observer`
 
     @property
     def switches(self) -> tuple[str, ...]:
@@ -107,19 +98,8 @@ def origin(value: object, name: str) -> Texts:
 def read_observers(values: Sequence[Any], known: Mapping[str, Any]) -> tuple[list[str], dict[str, UserObserver]]:
     """Names of the observers that a lab is to open with, and those of the user by their names.
 
-    Parameters
-    ----------
-    values : sequence of names, functions of a form, or observers
-    known : mapping of names to functions of a form
-        The lab's own observers.
+    Values are names, functions of a form, or observers; `known` are the lab's own.
 
-    Raises
-    ------
-    ValueError
-        If a value is none of these, or two have one name.
-
-    Examples
-    --------
     >>> from percept_obs import ibo
     >>> read_observers(["sliding_mode", ibo], {"identifier_based": ibo})
     (['sliding_mode', 'identifier_based'], {})

@@ -36,18 +36,10 @@ def motion_work(motion: Motion, duration: float, period: float) -> float:
 
 
 def solver_calls(known: Callable[[Array], Array] | None, duration: float, fastest: float, motion: Motion) -> float:
-    """About how often a solver calls a motion that varies.
+    """About how often a solver calls a motion that varies, and at least at its samples, over a duration in seconds.
 
-    Parameters
-    ----------
-    known : function of times, optional
-        Gives the numbers that may swing fast at T times, shape (T, n).
-    duration : float
-        In seconds.
-    fastest : float
-        Largest sum of the absolute values of a row of A, in 1/s.
-    motion : Motion
-        Its samples, if it has any, are calls at least.
+    `known` gives the numbers that may swing fast, and `fastest` is the largest sum of the absolute values of a row of
+    A.
     """
     frequency = 0.0
     if known is not None:
@@ -68,15 +60,7 @@ def too_much(work: float, duration: float = np.inf, period: float = 0.0) -> str:
 
 
 def within_reach(steps: float, states: Mapping[str, float], before: float = 0.0) -> tuple[list[str], list[str]]:
-    """Names of the observers that Python runs, and a sentence on the others.
-
-    Parameters
-    ----------
-    steps : float
-    states : mapping of names to numbers of states
-    before : float
-        Work that is done before any observer runs.
-    """
+    """Names of the observers, of so many states, that Python runs after other work, and a sentence on the rest."""
     names, work = [], before
     for name, count in states.items():
         if work + steps * count <= MOST_WORK:

@@ -6,14 +6,13 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.common_settings import gains, offering, over
+from percept_obs.labs.shared.common_settings import gains, offering, over, own_gains
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
@@ -22,7 +21,6 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.analysis import late_errors
 from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
@@ -43,7 +41,7 @@ from percept_obs.system.surfaces import BehindCamera, pinhole
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, for_the_page
+from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, for_the_page
 from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
@@ -99,12 +97,12 @@ class StructureLab(Lab):
         settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
+        self._makers = {**ours, **self._user_observers}
         if asked is not None:
             settings["observers"] = asked
         self._added = _printed_with(self._user_observers)
         printed = self._part("")["observers"]
-        standard = {name: {gain["name"]: gain["value"] for gain in told["gains"]} for name, told in printed.items()}
-        standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in standard.items()}
+        standard = {name: values | STANDARD_GAINS.get(name, {}) for name, values in own_gains(printed).items()}
         named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(
             SCHEMA
@@ -129,13 +127,19 @@ class StructureLab(Lab):
             mostSteps=MOST_STEPS,
         )
 
-    def run(self) -> dict[str, Run]:
-        """Runs of the same settings in Python, by the observers' names."""
-        return self.runs(self.settings)
-
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        return runs(settings, self._user_observers, self._samples)
+        unknowns = unknowns_of(settings, self._samples)
+        recording = _recorded(settings, unknowns, _used(settings, self._samples))
+        start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
+        observers = {
+            name: _made(self._makers[name], unknowns).with_gains(**settings["gains"][name])
+            for name in settings["observers"]
+        }
+        return {
+            name: track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
+            for name, observer in observers.items()
+        }
 
     def _part(self, place: str) -> Texts:
         return self._added.get(place) or part("structure_lab", place)
@@ -175,15 +179,30 @@ class StructureLab(Lab):
                 found = self.runs({**settings, "observers": followed}) if followed else {}
         except (BehindCamera, ImpossibleChoice, TooMuchWork) as error:
             return {"sentences": [str(error)]}
-        lines = [line for name, run in found.items() for line in late_errors(_title(name, run), run)]
+        titles = {name: OBSERVERS[name][0] if name in OBSERVERS else run.observer.name for name, run in found.items()}
+        lines = [line for name, run in found.items() for line in _late_errors(titles[name], run)]
         return {"sentences": [*lines, *beyond]}
 
 
 structure_lab = StructureLab
 
 
-def _title(name: str, run: Run) -> str:
-    return OBSERVERS[name][0] if name in OBSERVERS else run.observer.name
+def _late_errors(title: str, run: Run) -> list[str]:
+    """Sentences on the errors of the unknown quantities over the last tenth of the run."""
+    unknowns = run.recording.view
+    assert isinstance(unknowns, StructureAndMotion)
+    late = run.time >= run.time[-1] - SETTLED_PART * np.ptp(run.time)
+    found, true = (unknowns.quantities(values[late, 3:]) for values in (run.estimate, run.truth))
+    lines = []
+    for name, values in found.items():
+        error = (values - true[name])[np.isfinite(values)]
+        unit = "1/m" if name == "d_s" else "m/s"
+        if len(error):
+            off = f"{error.mean():+.2g} {unit} on average and scatters by {error.std():.2g}"
+            lines.append(f"{title}, last tenth of the run: {name} is off by {off}.")
+        else:
+            lines.append(f"{title}, last tenth of the run: no estimate of {name}.")
+    return lines
 
 
 def _example(make: UserObserver) -> Observer:
@@ -246,28 +265,6 @@ def _made(make: Callable[[CanonicalForm], Observer], unknowns: StructureAndMotio
     return make(unknowns.form)
 
 
-def runs(
-    settings: Settings,
-    own: Mapping[str, UserObserver] = MappingProxyType({}),
-    samples: Motion | None = None,
-) -> dict[str, Run]:
-    """Runs of settings by the observers' names, with the user's observers and samples."""
-    unknowns = unknowns_of(settings, samples)
-    recording = _recorded(settings, unknowns, _used(settings, samples))
-    start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
-    found = {}
-    for name in settings["observers"]:
-        make = OBSERVERS[name][1] if name in OBSERVERS else own[name]
-        observer = _made(make, unknowns).with_gains(**settings["gains"][name])
-        found[name] = track(recording, observer, start, settings["hold"], step=settings["step"], language="python")
-    return found
-
-
-def _swings(settings: Settings) -> bool:
-    swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
-    return bool(swings or settings["motion"].strip())
-
-
 def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     """The true motion: the samples, or else constant unless a velocity swings or is typed."""
     if samples:
@@ -278,7 +275,8 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
         rows = _velocities(settings, times)
         return typed.rows(times, rows) if typed else rows
 
-    if _swings(settings):
+    swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
+    if swings or typed:
         return replace(rigid(), signal=Signal(OverTime(known)))
     (still,) = known(np.zeros(1))
     with warnings.catch_warnings():

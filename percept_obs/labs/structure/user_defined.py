@@ -21,14 +21,6 @@ Given = StructureAndMotion | PartitionedSystem | StructureScenario | Motion
 def opening_of(given: Given) -> tuple[Settings, Motion | None]:
     """Settings that a lab opens with, and its velocities in samples, if there are some.
 
-    Raises
-    ------
-    ValueError
-        If it is none of these, or the lab cannot have it.
-
-    Examples
-    --------
-    >>> from percept_obs.structure import StructureAndMotion
     >>> opening_of(StructureAndMotion(("d_s", "v_p1"), zero=("v_p2",)))[0]["unknown"]
     ['d_s', 'v_p1']
     """
@@ -80,22 +72,8 @@ def _of_motion(motion: Motion, duration: float | None = None) -> tuple[Settings,
 
 
 def sampled(motion: Motion, duration: float | None = None) -> Motion | None:
-    """The samples of velocities that vary; None of constant ones.
+    """The samples of velocities that vary, every 10 ms of a duration if they are functions; None of constant ones.
 
-    Parameters
-    ----------
-    motion : Motion
-        From `rigid`, with numbers.
-    duration : float, optional
-        Seconds up to which a function of time is sampled, every 10 ms; none is taken without it.
-
-    Raises
-    ------
-    ValueError
-        If it is another motion, or its samples do not suit a run.
-
-    Examples
-    --------
     >>> sampled(rigid([0, 0, 0], [0.1, 0, 0], [0, 0, 0])) is None
     True
     >>> sampled(rigid([0, 0, 0], [[0.1, 0, 0], [0.3, 0, 0]], [0, 0, 0], times=[0, 2])).known(1)[0, 3].item()

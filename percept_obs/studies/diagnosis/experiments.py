@@ -31,22 +31,10 @@ PASSES = 20
 
 @dataclass(frozen=True)
 class Experiment:
-    """One mistake, and how to undo it.
+    """Mistake of a value, and how to undo it; the sentence says it in words.
 
-    Parameters
-    ----------
-    key : str
-        Such as "time offset".
-    sentence : function of a value
-        Says the mistake in words.
-    values : tuple of float
-        Values that are tried; the best one is refined between its neighbours if it is `continuous`.
-    undo : function of a recording and a value
-        Returns the recording without the mistake.
-    none : float
-        The value that changes nothing; NaN if the values number alternatives.
-    smallest : float
-        Smallest difference from `none` that is worth naming.
+    The best of the values is refined between its neighbours if the mistake is `continuous`.  The value `none` changes
+    nothing, and is NaN if values number alternatives; `smallest` is the smallest difference from it worth naming.
     """
 
     key: str

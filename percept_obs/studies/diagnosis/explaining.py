@@ -23,13 +23,7 @@ FAR = 1e3
 
 @dataclass(frozen=True, eq=False)
 class Explained:
-    """Residuals of a recording's samples when one point explains them best.
-
-    Parameters
-    ----------
-    residuals : array of shape (K, m)
-        NaN where a sample was lost.
-    """
+    """Residuals of samples when one point explains them best, shape (K, m); NaN where a sample was lost."""
 
     residuals: Array
 
@@ -57,7 +51,7 @@ class Explained:
 
 
 def explain(recording: Recording) -> Explained:
-    """Find the point, in front of the camera or infinitely far away, that explains all samples best.
+    """Return what the point, in front of the camera or infinitely far away, leaves that explains all samples best.
 
     The unknowns are its image coordinates and inverse distance at the middle sample.  Images do not change with the
     length of a ray, so that a point infinitely far away needs no other formula.
@@ -66,10 +60,6 @@ def explain(recording: Recording) -> Explained:
     ----------
     recording : Recording
         Of a single point.
-
-    Returns
-    -------
-    Explained
 
     See Also
     --------

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -22,12 +22,7 @@ X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
 
 class BehindCamera(ValueError):
-    """A point is not in front of the imaging surface, so it has no image there.
-
-    See Also
-    --------
-    ImagingSurface : Refuses such points.
-    """
+    """A point is not in front of the imaging surface, so it has no image there."""
 
 
 @checked
@@ -143,17 +138,12 @@ class ImagingSurface(OnePoint):
         return self.distance in POINT
 
     def project(self, points: ArrayLike) -> Array:
-        """Coordinates of points of space: their image and inverse distance.
+        """Return the image coordinates and then the inverse distance in 1/m of points of space, shape (..., n).
 
         Parameters
         ----------
         points : array of shape (..., 3)
             Points in metres, in the camera's frame.
-
-        Returns
-        -------
-        array of shape (..., n)
-            Image coordinates and then the inverse distance in 1/m.
 
         Raises
         ------
@@ -195,18 +185,15 @@ class ImagingSurface(OnePoint):
         return np.asarray(coordinates, dtype=float)[..., -1]
 
     def locate(self, coordinates: ArrayLike) -> Array:
-        """Points of space from their coordinates: the ray over the inverse distance.
+        """Return points of space in metres, shape (..., 3), from their coordinates: the ray over the inverse distance.
+
+        They are infinite in every coordinate where the inverse distance is not positive, for such a point is not in
+        front of the camera.
 
         Parameters
         ----------
         coordinates : array of shape (..., n)
             Image coordinates and then the inverse distance in 1/m.
-
-        Returns
-        -------
-        array of shape (..., 3)
-            Points in metres; infinite in every coordinate where the inverse distance is not positive,
-            for such a point is not in front of the camera.
 
         Raises
         ------
@@ -252,12 +239,24 @@ class ImagingSurface(OnePoint):
         return vectorised(symbols, expressions, self.values)(*np.moveaxis(values, -1, 0))
 
     def _refuse_a_wrong_ray(self) -> None:
-        point = dict(zip(POINT, map(sp.Rational, ("0.2", "0.3", "1.7")), strict=True))
-        shape = {symbol: sp.Rational(k + 2, 7) for k, symbol in enumerate(self.parameters)}
-        seen = {s: e.subs(point | shape) for s, e in zip(self.image_coordinates, self.image, strict=True)}
-        found = [sp.N((entry * self.distance).subs(point | shape | seen)) for entry in self.ray]
-        if not all(f.is_number and abs(f - p) < 1e-9 for f, p in zip(found, point.values(), strict=True)):
+        found = _found_again(self.image, self.distance, self.ray, self.parameters)
+        if not all(f.is_number and abs(f - p) < 1e-9 for f, p in zip(found, SOME_POINT, strict=True)):
             raise ValueError(
-                f"on the surface {self.name!r} the point {tuple(map(float, point.values()))} is seen along the ray "
+                f"on the surface {self.name!r} the point {tuple(map(float, SOME_POINT))} is seen along the ray "
                 f"to {tuple(found)}; the ray at the image of a point, times its distance, must be the point"
             )
+
+
+SOME_POINT = tuple(map(sp.Rational, ("0.2", "0.3", "1.7")))
+
+
+@lru_cache(maxsize=64)  # surfaces are made anew again and again, with the same formulas
+def _found_again(
+    image: tuple[sp.Expr, ...], distance: sp.Expr, ray: tuple[sp.Expr, ...], parameters: tuple[sp.Symbol, ...]
+) -> tuple[sp.Expr, ...]:
+    """Point on the ray at the image of a point, at its distance; parameters get some numbers."""
+    point = dict(zip(POINT, SOME_POINT, strict=True))
+    shape = {symbol: sp.Rational(k + 2, 7) for k, symbol in enumerate(parameters)}
+    images = sp.symbols(f"y1:{len(image) + 1}", real=True)
+    seen = {s: e.subs(point | shape) for s, e in zip(images, image, strict=True)}
+    return tuple(sp.N((entry * distance).subs(point | shape | seen)) for entry in ray)

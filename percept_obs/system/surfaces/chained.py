@@ -6,12 +6,7 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 
 
 def chained() -> ImagingSurface:
-    """Image plane Y = 1: the slope X/Y, then Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69).
-
-    Returns
-    -------
-    ImagingSurface
-        With the outputs y1 and y2.
+    """Return the image plane Y = 1: y1 = X/Y, y2 = Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69).
 
     See Also
     --------

@@ -32,10 +32,10 @@ class zeta(Intermediate):
 
 @checked
 def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> ImagingSurface:
-    """Ellipsoid X^T Q X = 1 around the camera's centre: y = (X, Y) / l, inverse distance 1/l, l = sqrt(X^T Q X).
+    """Return the ellipsoid X^T Q X = 1 around the camera's centre: y = (X, Y) / l, l = sqrt(X^T Q X).
 
-    With two outputs it sees the side that faces the camera, with the third, Z/l, all around (Ma 2005, remark in
-    section 5, p. 72).
+    With two outputs it sees the side that faces the camera, with the third, Z/l, all around (Ma 2005, remark in section
+    5, p. 72).  The inverse distance 1/l is last, as on every surface.
 
     Parameters
     ----------
@@ -43,11 +43,6 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
         Symmetric and positive definite, without unit; symbols q11, q12, ... q33 when left out.
     outputs : 2 or 3
         Image coordinates X/l, Y/l, and also Z/l, which follows from y^T Q y = 1 but for its sign.
-
-    Returns
-    -------
-    ImagingSurface
-        With the inverse distance last, as on every surface.
 
     Raises
     ------

@@ -6,12 +6,7 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 
 
 def pinhole() -> ImagingSurface:
-    """Image plane Z = 1: y = (X/Z, Y/Z), inverse depth 1/Z (Ma 2005, (3), p. 64).
-
-    Returns
-    -------
-    ImagingSurface
-        With the outputs y1 and y2.
+    """Return the image plane Z = 1: y = (X/Z, Y/Z), inverse depth 1/Z (Ma 2005, (3), p. 64).
 
     See Also
     --------

@@ -13,7 +13,7 @@ from percept_obs.validation import checked
 
 @checked
 def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSurface:
-    """General image plane n . X = 1 (Ma 2005, (5)-(8), p. 64).
+    """Return a general image plane n . X = 1, with the parameters n1, n2, n3 (Ma 2005, (5)-(8), p. 64).
 
     Parameters
     ----------
@@ -21,11 +21,6 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
         Normal vector n with n3 not zero; symbols n1, n2, n3 when left out.
     outputs : 2 or 3
         Image coordinates X/l, Y/l, and also Z/l, with l = n . X.  The third follows from n . y = 1.
-
-    Returns
-    -------
-    ImagingSurface
-        With n1, n2, n3 as its parameters.
 
     Raises
     ------

@@ -11,7 +11,7 @@ from percept_obs.validation import checked
 
 @checked
 def sphere(outputs: int = 2) -> ImagingSurface:
-    """Unit sphere: stereographic projection y = (X, Y) / (R + Z), or the unit direction y = (X, Y, Z) / R.
+    """Return the unit sphere: stereographic projection y = (X, Y) / (R + Z), or the unit direction y = (X, Y, Z) / R.
 
     The inverse range is 1/R.  The first sees every direction but straight back, the second every direction (Ma 2005,
     remark in section 5, p. 72).
@@ -20,11 +20,6 @@ def sphere(outputs: int = 2) -> ImagingSurface:
     ----------
     outputs : 2 or 3
         3 for the unit direction, whose coordinates depend on each other: y . y = 1.
-
-    Returns
-    -------
-    ImagingSurface
-        Without parameters.
 
     Raises
     ------

@@ -13,24 +13,19 @@ from percept_obs.validation import checked
 
 @checked
 def unified(xi: float | None = None) -> ImagingSurface:
-    """Unified model of central catadioptric and fisheye cameras: y = (X, Y) / l, inverse distance 1/l, l = Z + xi R.
+    """Return the unified model of central catadioptric and fisheye cameras: y = (X, Y) / l, l = Z + xi R.
 
     R is the range.  A point is projected to the unit sphere, and from there to a plane, seen from xi behind the
     sphere's centre.  xi = 0 is the pinhole, 1 a parabolic mirror or the stereographic projection, 0 to 1 a hyperbolic
     mirror; many fisheye lenses have xi above 1.
 
     It sees what lies within arccos(-xi) of the optical axis, or within arccos(-1 / xi) if xi is above 1, where the
-    image folds back.
+    image folds back.  Its inverse distance is 1/l.
 
     Parameters
     ----------
     xi : float, optional
         Parameter of the mirror or lens, 0 or more; the symbol xi when left out.
-
-    Returns
-    -------
-    ImagingSurface
-        With xi as its parameter.
 
     Raises
     ------

@@ -124,6 +124,7 @@
  * @property {number} [above]      a limit that is itself not allowed
  * @property {boolean} [whole]     whether only whole numbers are allowed
  * @property {boolean} [nonzero]
+ * @property {string} [topic]      part of the panel that shows it, unless the panel places it itself
  * @property {Record<string, string>} [choices]  words for each value; where they are missing the model knows them
  * @property {any} [entries]       schemas of a list's or a group's parts
  * @property {number} [rows]       of a matrix

@@ -2,13 +2,12 @@
 // nobody.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distanceError, settlingTime } from "../src/common/model/errors.js";
+import { distanceError } from "../src/common/model/errors.js";
 import { Latest } from "../src/common/model/latest.js";
 import { moduleText } from "../src/common/model/modules.js";
 import { constantPath } from "../src/common/model/path.js";
 import { Memory } from "../src/common/model/memory.js";
 import { serve } from "../src/common/model/serving.js";
-import { packed } from "../src/common/model/packing.js";
 import { partIn } from "../src/common/model/space.js";
 import { thinned } from "../src/common/model/thinned.js";
 import { entriesOf, textsOfP } from "../src/points/model/sparse.js";
@@ -19,9 +18,8 @@ function asking() {
   const [tasks, told] = [[], []];
   const results = { of: (settings, whole) => ({ shown: { settings, whole, here: true }, ghost: null }) };
   const latest = new Latest(results, (error) => told.push(error));
-  const spares = [];
-  latest.beside = { ask: ({ spare, ...task }) => [tasks.push(task), spares.push(spare)] };
-  return { latest, tasks, told, spares };
+  latest.beside = { ask: (task) => tasks.push(task) };
+  return { latest, tasks, told };
 }
 
 test("while one task is under way only the latest of the others waits", () => {
@@ -42,39 +40,6 @@ test("while one task is under way only the latest of the others waits", () => {
   assert.deepEqual(tasks[2], { settings: third, whole: true, sight: undefined });
   assert.equal(latest.want(third, false), true);
   assert.deepEqual(told, [undefined, undefined]);
-});
-
-test("a result's buffer goes back when a later result is in the pictures, and not before", () => {
-  const { latest, spares } = asking();
-  const rooms = [1, 2, 3].map((size) => new ArrayBuffer(size));
-  const answer = (k) => latest.want({ gain: k }, false) || latest.take({ shown: { whole: false }, room: rooms[k] });
-  answer(0);
-  latest.drawn();
-  answer(1);
-  answer(2);
-  assert.deepEqual(spares, [[], [], []]);
-  latest.drawn();
-  latest.want({ gain: 3 }, false);
-  assert.deepEqual(spares[3], rooms.slice(0, 2));
-});
-
-test("a packed result is the same one in one buffer, which is used again if it is large enough", () => {
-  const time = Float64Array.of(0, 1, 2);
-  const result = {
-    time,
-    runs: [{ name: "one", error: Float64Array.of(NaN), at: Int32Array.of(7), bound: null, gaps: [[0, 1]] }],
-    again: time,
-  };
-  const first = packed(result, []);
-  assert.deepEqual(first.data, result);
-  assert.equal(first.data.time, first.data.again);
-  for (const array of [first.data.time, first.data.runs[0].error, first.data.runs[0].at])
-    assert.equal(array.buffer, first.room);
-  const small = new ArrayBuffer(8);
-  const second = packed({ time: time.map((value) => -value) }, [small, first.room]);
-  assert.equal(second.room, first.room);
-  assert.deepEqual([...second.data.time], [-0, -1, -2]);
-  assert.notEqual(packed({ time }, [small]).room, small);
 });
 
 test("a ghost stays until another one comes, and an error ends the waiting for an answer", async () => {
@@ -121,12 +86,11 @@ test("while a hand moves fewer samples are drawn: of those in sight most, each a
     bound: null,
     whole: true,
   };
-  const room = (_, length) => new Float64Array(length);
   for (const sight of [
     { low: 0, high: 90, cursor: 33.335 },
     { low: 20, high: 28, cursor: 21 },
   ]) {
-    const found = thinned(result, sight, room);
+    const found = thinned(result, sight);
     const [run] = found.runs;
     const at = Array.from(found.time, (value) => Math.round(100 * value));
     assert.equal(found.whole, false);
@@ -154,19 +118,13 @@ test("while a hand moves fewer samples are drawn: of those in sight most, each a
     assert.ok(Math.max(...gaps.map(([, gap]) => gap)) <= (sight.low ? 1 : 12));
   }
   const few = { time: time.subarray(0, 300), whole: true };
-  assert.equal(thinned(few, { low: 0, high: 3, cursor: null }, room), few);
+  assert.equal(thinned(few, { low: 0, high: 3, cursor: null }), few);
 });
 
 /** A worker's side that is spoken to as a page would, with copies; it gives all that it has answered. */
 async function served(messages) {
   const answers = [];
-  const scope = {
-    postMessage(answer, transfer) {
-      const { room, ...told } = structuredClone(answer, { transfer });
-      assert.equal(room instanceof ArrayBuffer, "shown" in told);
-      answers.push(told);
-    },
-  };
+  const scope = { postMessage: (answer) => answers.push(structuredClone(answer)) };
   const runs = [];
   class Engine {
     run(settings, functions, whole) {
@@ -334,5 +292,4 @@ test("an estimate without one of its coordinates has no error, and one behind th
   const estimate = Float64Array.of(0, 1, NaN, 1, Infinity, 1, 0, -1);
   const error = distanceError([2, 2, 2, 2], [1, 1, 1, -1], estimate, 2);
   assert.deepEqual([...error], [1, NaN, NaN, Infinity]);
-  assert.equal(settlingTime([3, 4, 5], [NaN, 0.01, 0.02], 0.05), 1);
 });

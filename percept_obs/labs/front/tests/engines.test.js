@@ -1,7 +1,6 @@
 // Laws of the page's engines: what Gramians, restarts, gaps, bands and limits must be, whatever Python makes of them.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { settlingTime } from "../src/common/model/errors.js";
 import { Memory } from "../src/common/model/memory.js";
 import { knownAt } from "../src/common/model/tables.js";
 import { Runner } from "../src/common/model/runner.js";
@@ -241,11 +240,6 @@ test("the focus of expansion is put at a place without a change of the distance"
 
 test("what is no number is told as Python tells it", () => {
   assert.deepEqual([NaN, Infinity, -Infinity].map((value) => short(value)), ["nan", "inf", "-inf"]);
-});
-
-test("an error that is as large as the tolerance is not yet within it", () => {
-  assert.equal(settlingTime([5, 6, 7], [1, 0.04, 0.05], 0.05), Infinity);
-  assert.equal(settlingTime([5, 6, 7], [1, 0.05, 0.04], 0.05), 2);
 });
 
 test("a motion that was sampled changes evenly between its samples", () => {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { keptScale, linearScale, logScale, spread } from "../src/common/model/scales.js";
 import { indicesIn, storyOf, Timeline, zoomed } from "../src/common/model/timeline.js";
-import { spansInside } from "../src/observer/model/measures.js";
+import { spansOf } from "../src/common/model/tables.js";
 import { decades, distancesAround, rangeAround } from "../src/common/page/chart_parts.js";
 
 const WHOLE = { low: 0, high: 80 };
@@ -70,7 +70,8 @@ test("scales hold what is in sight: the level too, and both ends of a distance t
   assert.equal(rangeAround([near, far], (l) => l === near)(bounds).high, 15);
 });
 
-test("the times inside a circle begin and end with the samples there", () => {
-  const rows = Float64Array.of(-2, 0, 9, -0.5, 0, 9, 0.5, 0, 9, 2, 0, 9, 0, 0, 9);
-  assert.deepEqual(spansInside([0, 1, 2, 3, 4], rows, 3, [0, 0, 1]), [[1, 2], [4, 4]]);
+test("spans begin and end with the samples that have one key", () => {
+  const keys = [0, 1, 1, 2, 0, 2];
+  const spans = [{ first: 1, last: 2, key: 1 }, { first: 3, last: 3, key: 2 }, { first: 5, last: 5, key: 2 }];
+  assert.deepEqual(spansOf(keys.length, (k) => keys[k]), spans);
 });

@@ -12,7 +12,7 @@ import { uniformFrom } from "../src/common/model/random.js";
 import { linearScale, logScale, readable, short, spread } from "../src/common/model/scales.js";
 import { held, interpolate, lastSamples, stepGrid } from "../src/common/model/tables.js";
 import { inWords, mainly } from "../src/points/model/directions.js";
-import { spansOf } from "../src/points/model/measures.js";
+import { absencesOf } from "../src/points/model/measures.js";
 import { eigen, pseudoInverse, spectrum } from "../src/points/model/symmetric.js";
 import { loadHere } from "./load_here.js";
 
@@ -55,10 +55,10 @@ test("a constant w gathers in proportion to the window", () => {
   for (const value of found.smallest) assert.ok(Math.abs(value - 2) < 1e-12);
 });
 
-test("the error has settled from the sample after the last one outside", () => {
-  assert.equal(settlingTime([5, 6, 7], [1, 0.01, 0.01], 0.05), 1);
-  assert.equal(settlingTime([5, 6, 7], [0, 0, 0], 0.05), 0);
-  assert.equal(settlingTime([5, 6, 7], [0, 0, NaN], 0.05), Infinity);
+test("an error has settled from the sample after the last one that is as large as the tolerance or none", () => {
+  const found = (...errors) => settlingTime([5, 6, 7], (k) => errors[k], 0.05);
+  assert.deepEqual([found(1, 0.01, 0.01), found(0, 0, 0), found(0, 0, NaN), found(NaN, 0, 0)], [1, 0, Infinity, 1]);
+  assert.deepEqual([found(1, 0.04, 0.05), found(1, 0.05, 0.04)], [Infinity, 2]);
 });
 
 test("numbers are written as Python writes them", () => {
@@ -143,7 +143,7 @@ test("directions are told as Python tells them", () => {
 
 test("the spans in which a point is not seen end with the next image of it", () => {
   const outputs = [0, 0, NaN, NaN, NaN, NaN, 1, 1];
-  assert.deepEqual(spansOf([0, 1, 2, 3], outputs, 1, 0), [{ first: 1, last: 2, begin: 1, end: 3 }]);
+  assert.deepEqual(absencesOf([0, 1, 2, 3], outputs, 1, 0), [{ first: 1, last: 2, begin: 1, end: 3 }]);
 });
 
 test("a value in the settings is read and changed by its place, and nothing else is", () => {

@@ -7,7 +7,7 @@ import { Scene } from "../common/page/scene.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
-import { PRESETS, settingsOf } from "./model/presets.js";
+import { PRESETS } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
 import { ImagePlane } from "./page/image_plane.js";
@@ -39,7 +39,7 @@ export class PointsLab extends Lab {
 
   constructor(widget, place, model) {
     const shown = { names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: PRESETS, settingsOf, ...shown });
+    super(widget, model, { words: WORDS, presets: PRESETS, ...shown });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];

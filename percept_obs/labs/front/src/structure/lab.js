@@ -1,7 +1,7 @@
 // The lab of structure and motion: what is known, what can therefore be estimated, and how the estimates converge.
 
 import { withoutRefused } from "../common/model/kernels.js";
-import { same, settingsAfter as settingsOf } from "../common/model/settings.js";
+import { same } from "../common/model/settings.js";
 import { summaryOf } from "../common/model/words.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { ImagePlane } from "../common/page/image_plane.js";
@@ -28,7 +28,7 @@ export class StructureLab extends Lab {
 
   constructor(widget, place, model) {
     const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: PRESETS, settingsOf, labels: LABELS, chartOf, ...words });
+    super(widget, model, { words: WORDS, presets: PRESETS, labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,

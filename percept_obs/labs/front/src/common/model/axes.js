@@ -1,6 +1,7 @@
 // @ts-check
 // Settings as axes of a map: their range and how they are named, read and changed; and the places between their ends.
 
+import { derived } from "./derived.js";
 import { schemaAt, schemaOf } from "./schema.js";
 import { changeAt, switchOf, valueAt } from "./settings.js";
 
@@ -22,19 +23,18 @@ import { changeAt, switchOf, valueAt } from "./settings.js";
 const DECADE = 10;
 const DIGITS = 4;
 
-/** Schemas of models, which a hand that moves would read anew for every axis. */
-const schemas = new WeakMap();
-
-function schemaFor(model) {
-  if (!schemas.has(model)) schemas.set(model, schemaOf(model.schema, {}));
-  return schemas.get(model);
-}
-
 const withUnit = (label, unit) => (unit && unit !== "1" ? `${label} in ${unit.replaceAll("^2", "²")}` : label);
 
-/** An axis of a setting that is a number; `meant` says where it has a meaning. */
-export function axisAt(model, place, label, meant = (_settings) => true) {
-  const { low, high, log, unit } = /** @type {any} */ (schemaAt(schemaFor(model), place));
+/** Functions that make the axis of a number, and those of the numbers in a row; `meant` says where it has a meaning. */
+export function axesAt(model) {
+  const at = (place, label, meant) => axisAt(model, place, label, meant);
+  const each = (place, labels, meant) => labels.map((label, k) => at(`${place}.${k}`, label, meant));
+  return { at, each };
+}
+
+function axisAt(model, place, label, meant = (_settings) => true) {
+  const schema = derived(model, "schema", () => schemaOf(model.schema, {}));
+  const { low, high, log, unit } = /** @type {any} */ (schemaAt(schema, place));
   return {
     ...{ place, label: withUnit(label, unit), low, high, log, records: !/^(start|believed)/.test(place) },
     get: (settings) => (meant(settings) ? valueAt(settings, place) : undefined),
@@ -49,14 +49,8 @@ export function gainAxes({ observers }, name) {
   return gains.map(({ name: gain, low, high, unit }) => {
     const place = `gains.${name}.${gain}`;
     return {
-      ...{
-        place,
-        label: withUnit(gain.replaceAll("_", " "), unit),
-        low,
-        high,
-        log: low > 0 && high / low >= DECADE,
-        records: false,
-      },
+      ...{ place, label: withUnit(gain.replaceAll("_", " "), unit), low, high, records: false },
+      log: low > 0 && high / low >= DECADE,
       get: (settings) => (ways[switchOf(settings, name)].includes(gain) ? settings.gains[name][gain] : undefined),
       put: (settings, value) => ({ ...settings, ...changeAt(settings, place, value) }),
     };

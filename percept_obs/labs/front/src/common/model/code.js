@@ -9,9 +9,16 @@ export function list(values) {
 }
 
 /** Lines of imports: names by the module that has them; nothing of a module that none is wanted of. */
-export function imports(wanted) {
+function imports(wanted) {
   const lines = Object.entries(wanted).map(([place, names]) => [place, [...names].sort().join(", ")]);
   return lines.filter(([, names]) => names).map(([place, names]) => `from ${place} import ${names}\n`).join("");
+}
+
+/** The text of lines of Python, with imports of what is wanted and of what their text shows that they need. */
+export function script(wanted, lines) {
+  const text = lines.join("\n");
+  const modules = [["math.", "import math"], ["np.", "import numpy as np"]].filter(([sign]) => text.includes(sign));
+  return `${modules.map(([, line]) => `${line}\n\n`).join("")}${imports(wanted)}\n${text}\n`;
 }
 
 /** Duration until the point leaves, which may be shorter than the one of the settings. */

@@ -27,13 +27,8 @@ export function settled(settling, length, part) {
   return length - settling >= part * length;
 }
 
-/** When the error entered the tolerance for good, in seconds since the first sample. */
-export function settlingTime(time, error, tolerance) {
-  return settlingFrom(time, (k) => error[k], tolerance);
-}
-
-/** Settling time from errors that are computed from the last one back, as far as needed. */
-export function settlingFrom(time, errorAt, tolerance) {
+/** Seconds until errors, which are read from the last one back, entered the tolerance for good. */
+export function settlingTime(time, errorAt, tolerance) {
   let inside = time.length;
   while (inside > 0 && errorAt(inside - 1) < tolerance) inside--;
   if (inside === time.length) return Infinity;

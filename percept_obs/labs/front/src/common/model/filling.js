@@ -1,29 +1,22 @@
 // @ts-check
-// Maps over two settings, filled cell by cell: the latest one that was asked for, beside the page or in small slices in
-// it.
+// Maps over two settings, filled cell by cell: the latest that was asked for, in a worker, or in the page in slices.
 
 import { planOf, valueIn } from "./axes.js";
 import { EACH_CELL, fillCell, orderOf, settingsAt, THEN } from "./cells.js";
-import { modelOf } from "./texts.js";
+import { answering } from "./serving.js";
 
 /** Milliseconds between two parts of a map that are told. */
 const BETWEEN_PARTS = 90;
-/**
- * Milliseconds after a first picture in which a hand that moves asks for the next map: nothing finer is begun, and the
- * page has its turn.
- */
+/** Milliseconds after a first picture in which a hand that moves may ask for the next map: nothing finer is begun. */
 const REST = 40;
-
-/**
- * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first
- *   picture has
- * @typedef {{id: number, cells: number, from: number, values: Float64Array, cost: number}} Part
- *   Numbers of cells of a map with so many cells a side, and the milliseconds that one took.
- */
 
 /**
  * @typedef {{model: any, kernels: any, engine: any, runs: any, axesOf: any}} Lab
  *   `engine` keeps of a run what a cell holds, and that of `runs` all of it
+ * @typedef {{id: number, settings: any, base: any, first: number}} Task  `first` is how many cells a side the first
+ *   picture has
+ * @typedef {{id: number, cells: number, from: number, values: Float64Array, cost: number}} Part
+ *   Numbers of cells of a map with so many cells a side, and the milliseconds that one took.
  */
 
 export class Filling {
@@ -94,13 +87,8 @@ export class Filling {
         spent += now - before;
         const whole = k + 1 === cells * cells;
         if (whole || (cells > first && now - since > BETWEEN_PARTS)) {
-          this.tell({
-            id,
-            cells,
-            from,
-            values: values.slice(EACH_CELL * from, EACH_CELL * (k + 1)),
-            cost: spent / (k + 1),
-          });
+          const part = values.slice(EACH_CELL * from, EACH_CELL * (k + 1));
+          this.tell({ id, cells, from, values: part, cost: spent / (k + 1) });
           [from, since] = [k + 1, now];
         }
         if (now - began < this.slice && !whole) continue;
@@ -124,36 +112,12 @@ export function breath() {
   });
 }
 
-/**
- * Fill maps in a worker; `computing` gives what computes for a lab by its kind. The first message opens a lab, each of
- * the others has a task.
- */
+/** Fill maps in a worker; each message after the first has a task. */
 export function serveMaps(computing, scope) {
-  /** @type {Lab | null} */
-  let lab = null;
-  /** @type {Filling | null} */
-  let filling = null;
-
-  async function open({ kind, texts, model: given }) {
-    const { Kernels, Engine, CellEngine, axesOf } = computing(kind);
-    const model = await modelOf(texts, given);
-    lab = { model, axesOf, kernels: new Kernels(model), engine: new CellEngine(model), runs: new Engine(model) };
-    filling = new Filling(lab, (part) => scope.postMessage(part, [part.values.buffer]), { slice: 12, pause: breath });
-    scope.postMessage({ ready: true });
-  }
-
-  function fill({ written, ...task }) {
-    if (lab) Object.assign((lab.model.written ??= {}), written);
-    return filling?.take(task);
-  }
-
-  scope.onmessage = ({ data }) => {
-    const done =
-      "follow" in data
-        ? filling?.follow(data).then((found) => scope.postMessage(found))
-        : "id" in data
-          ? fill(data)
-          : open(data);
-    done?.catch((error) => scope.postMessage({ error: error.message }));
-  };
+  answering(computing, scope, (model, { Kernels, Engine, CellEngine, axesOf }) => {
+    const lab = { model, axesOf, kernels: new Kernels(model), engine: new CellEngine(model), runs: new Engine(model) };
+    const tell = (part) => scope.postMessage(part, [part.values.buffer]);
+    const filling = new Filling(lab, tell, { slice: 12, pause: breath });
+    return async (task) => ("follow" in task ? scope.postMessage(await filling.follow(task)) : filling.take(task));
+  });
 }

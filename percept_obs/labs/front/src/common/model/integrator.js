@@ -6,5 +6,4 @@ export const PLACES = [0, 1, 1, 2];
 export const LONGEST_STEP = 0.01;
 export const PLANT_STEP = 0.0025;
 export const STEP_ROUNDING = 0.0001;
-export const LARGEST_STEP_RATE = 2.0;
 export const LARGEST_SQUARED_STATE = 1e+300;

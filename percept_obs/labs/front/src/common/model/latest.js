@@ -1,16 +1,10 @@
 // @ts-check
-// The latest result of settings that a hand moves: found here, or beside the page, where one task at a time is under
-// way.
+// The latest result of settings that a hand moves: found here, or in a worker, where one task at a time is under way.
 
 /** @typedef {import("./thinned.js").Sight} Sight */
-/**
- * @typedef {{settings: any, whole: boolean, sight?: Sight, spare?: ArrayBuffer[]}} Task
- *   Settings whose whole result is wanted, or only what is drawn in a sight, and buffers for the result.
- */
+/** @typedef {{settings: any, whole: boolean, sight?: Sight}} Task  whose whole result is wanted, or what is in sight */
 
-/**
- * The latest result.  Once there is a worker, of all tasks that wait only the latest is sent.
- */
+/** The latest result.  Once there is a worker, of all tasks that wait only the latest is sent. */
 export class Latest {
   constructor(results, onFound) {
     this.results = results;
@@ -27,10 +21,6 @@ export class Latest {
     this.waiting = null;
     /** @type {((answer: {error?: string}) => void)[]} */
     this.listeners = [];
-    /** @type {ArrayBuffer[]} of results that may still be in a picture; the last is that of the latest */
-    this.rooms = [];
-    /** @type {ArrayBuffer[]} of results that nobody needs */
-    this.spare = [];
   }
 
   /** True if the latest result is of these settings. */
@@ -57,25 +47,19 @@ export class Latest {
   send() {
     if (this.asked || !this.waiting || !this.beside) return;
     [this.asked, this.waiting] = [this.waiting, null];
-    this.beside.ask({ ...this.asked, spare: this.spare.splice(0) });
-  }
-
-  /** The latest result is in all pictures, so that those before it are needed no more. */
-  drawn() {
-    this.spare.push(...this.rooms.splice(0, this.rooms.length - 1));
+    this.beside.ask(this.asked);
   }
 
   /**
    * Take an answer from beside the page; without a new ghost the last one stays.
    *
-   * @param {{error?: string, shown?: any, room?: ArrayBuffer, ghost?: any}} answer
+   * @param {{error?: string, shown?: any, ghost?: any}} answer
    */
-  take({ error, shown, room, ...more }) {
+  take({ error, shown, ...more }) {
     if (!this.asked) return;
     const { settings } = this.asked;
     this.asked = null;
     if (shown) this.shown = { ...shown, settings };
-    if (room) this.rooms.push(room);
     if ("ghost" in more) this.ghost = more.ghost && { ...more.ghost, settings: settings.kept };
     if (this.waiting && this.has(this.waiting)) this.waiting = null;
     this.send();

@@ -1,7 +1,7 @@
 // Texts that sympy printed become functions: each group is one module, imported once and kept.
 
 /** Import a module's text; a Blob's address works in JupyterLab, in Voila and from a file. */
-export async function importText(text) {
+async function importText(text) {
   const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
   try {
     return await import(/* @vite-ignore */ address);

@@ -38,9 +38,8 @@ export function constantPath(start, rates, grid, index, points) {
 }
 
 /**
- * Motion of a position over a time: the rows of a matrix and beside it those of a vector, from the images of 0 and
- * to the
- * unit vectors.  The position itself is left out, since its rounding would add up over the steps.
+ * Motion of a position over a time: the rows of a matrix and beside it those of a vector, from the images of 0 and to
+ * the unit vectors. The position itself is left out, since its rounding would add up over the steps.
  */
 export function stepOf(time, size, rates, term) {
   const pieces = Math.max(1, Math.ceil((size * time) / REACH));

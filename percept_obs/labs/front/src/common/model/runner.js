@@ -4,7 +4,7 @@
 import { columnOf } from "./derived.js";
 import { settlingTime } from "./errors.js";
 import { Memory } from "./memory.js";
-import { arriving, EACH, held, lastSamples } from "./tables.js";
+import { arriving, EACH, held, instants, lastSamples, spansOf } from "./tables.js";
 
 /** Base class of the engines that run observers. */
 export class Runner {
@@ -22,6 +22,12 @@ export class Runner {
    */
   relativeError(_result, _estimate) {
     throw new Error("a lab says what its verdicts judge");
+  }
+
+  /** The signal without noise at the instants of a grid's steps, a column each. */
+  exact(settings, grid, functions) {
+    const make = (read) => /** @type {any} */ (this).camera.exact(read, functions, instants(grid));
+    return this.memory.once("exact", settings, make, grid);
   }
 
   /** Inputs of all observers of a run: steps, held outputs, samples as they arrive, known numbers. */
@@ -82,14 +88,30 @@ export class Runner {
       order: this.order.indexOf(name),
       estimate,
       deviation: functions.variances ? readDeviations(functions, kernel, states, inputs, width) : null,
-      resets: timesOf(resets, grid),
-      gaps: gapsOf(lacking, time),
+      resets: grid.filter((_, k) => resets[k]),
+      gaps: spansOf(time.length, (k) => lacking[k]).map(({ first, last, key }) => [time[first], time[last], key]),
       gapReasons: kernel.gapReasons,
       divergedAt: diverged < 0 ? null : grid[diverged],
       error,
-      settling: error && settlingTime(time, error, result.tolerance),
+      settling: error && settlingTime(time, (k) => error[k], result.tolerance),
     };
   }
+}
+
+/** Rows of values of a printed function of columns and known numbers; `rowOf` says in which row these stand. */
+export function evaluated(evaluate, columns, { rows, width, varying }, size, rowOf = (k) => k) {
+  const outputs = columns.length;
+  const found = new Float64Array(size * columns[0].length);
+  const [x, out] = [new Float64Array(outputs + width), new Float64Array(size)];
+  x.set(rows.subarray(0, width), outputs);
+  for (let k = 0; k < columns[0].length; k++) {
+    for (let m = 0; m < outputs; m++) x[m] = columns[m][k];
+    const row = varying ? rowOf(k) * width : 0;
+    if (varying) for (let p = 0; p < width; p++) x[outputs + p] = rows[row + p];
+    evaluate(x, out);
+    for (let i = 0; i < size; i++) found[k * size + i] = out[i];
+  }
+  return found;
 }
 
 /**
@@ -98,14 +120,8 @@ export class Runner {
  */
 export function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
-  const inputs = [
-    ...columns.map((values) => values[0]),
-    ...parameters,
-    ...gains,
-    ...asked,
-    ...columns.map(() => (own ? 1 : 0)),
-  ];
-  return functions.start(inputs, new Float64Array(kernel.states));
+  const [first, given] = [columns.map((values) => values[0]), columns.map(() => (own ? 1 : 0))];
+  return functions.start([...first, ...parameters, ...gains, ...asked, ...given], new Float64Array(kernel.states));
 }
 
 /** A function that fills in what the estimate at a sample follows from: outputs, what is known, gains, the state. */
@@ -145,17 +161,6 @@ function readEstimates(functions, kernel, states, inputs, gains, { width, time, 
   }
 }
 
-/** The times of every gap's first and last sample, and its number, where a hidden coordinate has no estimate. */
-function gapsOf(lacking, time) {
-  const found = [];
-  for (let k = 0; k < time.length; k++) {
-    if (!lacking[k]) continue;
-    if (lacking[k] === lacking[k - 1]) found.at(-1)[1] = time[k];
-    else found.push([time[k], time[k], lacking[k]]);
-  }
-  return found;
-}
-
 /** The standard deviations that are claimed at the samples. */
 function readDeviations(functions, kernel, states, { index }, width) {
   const deviation = new Float64Array(index.length * width);
@@ -167,12 +172,4 @@ function readDeviations(functions, kernel, states, { index }, width) {
     for (let c = 0; c < width; c++) deviation[k * width + c] = Math.sqrt(Math.max(0, out[c]));
   }
   return deviation;
-}
-
-function timesOf(resets, grid) {
-  let count = 0;
-  for (let k = 0; k < resets.length; k++) if (resets[k]) count++;
-  const found = new Float64Array(count);
-  for (let k = 0, at = 0; at < count; k++) if (resets[k]) found[at++] = grid[k];
-  return found;
 }

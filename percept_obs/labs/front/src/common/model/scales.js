@@ -37,7 +37,7 @@ export function readable(value, digits = 3) {
 }
 
 /** Distance between ticks that divides a span into about so many round parts. */
-export function roundStep(span, parts) {
+function roundStep(span, parts) {
   const rough = span / Math.max(1, parts);
   const power = 10 ** Math.floor(Math.log10(rough));
   const factor = [1, 2, 5].find((f) => f * power >= rough * 0.999) ?? 10;

@@ -1,5 +1,4 @@
-// Settings of a lab: kinds and ranges of Python's schema, with the page's words; types.js says what each
-// holds.
+// Settings of a lab: kinds and ranges of Python's schema, with the page's words; types.js says what each holds.
 
 /** Holds of the outputs between samples. */
 export const HOLD = { choices: { zero: "the last sample", first: "a line to the next", exact: "the exact signal" } };
@@ -24,10 +23,10 @@ export function schemaAt(schema, place) {
 }
 
 const MAKE = {
-  number: ({ label, unit, low: least, high: most, usual, step, whole, zero }, words, name) => {
+  number: ({ label, unit, low: least, high: most, usual, step, whole, zero, topic }, words, name) => {
     const [low, high] = usual ?? [least, most];
     const said = { label: label ?? name, unit, low, high, step, log: step === undefined };
-    return { kind: "number", ...said, least, most, whole, nonzero: zero === false, ...words };
+    return { kind: "number", ...said, least, most, whole, nonzero: zero === false, topic, ...words };
   },
   choice: ({ label, names }, words, name) => ({
     kind: "choice",
@@ -40,16 +39,8 @@ const MAKE = {
     const [first] = entries;
     if (first.kind === "row") {
       const [{ step, low: least, high: most }] = first.entries;
-      return {
-        kind: "matrix",
-        label,
-        rows: entries.length,
-        columns: first.entries.length,
-        step,
-        least,
-        most,
-        ...words,
-      };
+      const columns = first.entries.length;
+      return { kind: "matrix", label, rows: entries.length, columns, step, least, most, ...words };
     }
     const called = (text, entry) => text?.replace("{}", entry.label) ?? entry.label;
     const named = (entry) => ({ name: called(words.name, entry), label: called(words.label, entry) });

@@ -40,13 +40,15 @@ export function presetsOf(presets) {
   }));
 }
 
-/** The settings of a preset's act: the standard ones, whatever the lab was opened with, and the act's changes. */
-export function settingsAfter(act, standard) {
-  const changed = { ...structuredClone(standard), ...structuredClone(act.changes), kept: null };
-  if (!standard.gains) return changed;
-  changed.gains = structuredClone(standard.gains);
-  for (const [name, gains] of Object.entries(act.changes.gains ?? {})) Object.assign(changed.gains[name], gains);
-  return changed;
+/**
+ * The settings of a preset's act: the standard ones, whatever the lab was opened with, with the act's changes; and
+ * those of the run that it keeps beside it, with changes of its own.
+ */
+export function settingsOf({ changes, beside = null }, standard) {
+  const gains = { ...standard.gains };
+  for (const [name, changed] of Object.entries(changes.gains ?? {})) gains[name] = { ...gains[name], ...changed };
+  const kept = beside ? settingsOf({ changes: beside }, standard) : null;
+  return structuredClone({ ...standard, ...changes, ...(standard.gains && { gains }), kept });
 }
 
 /** Sentence on the changes from some settings to others, with a lab's names of them. */

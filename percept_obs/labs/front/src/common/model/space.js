@@ -1,9 +1,7 @@
 // @ts-check
 // The geometry of a scene in the camera's X, Y, Z: how it is looked at, how much of it, and where a point comes to lie.
 
-/**
- * View of a scene when it opens: from the side and a little from above, so that depths do not hide each other.
- */
+/** View of a scene when it opens: from the side and a little from above, so that depths do not hide each other. */
 export const OPENING_LOOK = { turn: 0.95, tilt: 0.35 };
 
 const STEEPEST = Math.PI / 2;

@@ -1,5 +1,4 @@
-// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way
-// back.
+// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way back.
 
 import { same } from "./settings.js";
 
@@ -47,6 +46,11 @@ export class State {
 
   get preset() {
     return this.now.preset;
+  }
+
+  /** The settings before a preset, to which it leads back. */
+  get before() {
+    return this.preset?.before ?? this.settings;
   }
 
   /** Take changes of a hand that may go on; those of the same settings are one step until release(). */
@@ -114,8 +118,7 @@ export class State {
 
   /** Ask a preset's question, over the settings that it is about. */
   ask(name, settings) {
-    const before = this.preset?.before ?? this.settings;
-    this.step({ settings, preset: { name, act: -1, before, of: settings, said: null } });
+    this.step({ settings, preset: { name, act: -1, before: this.before, of: settings, said: null } });
   }
 
   /** Say what one expects. */
@@ -124,13 +127,12 @@ export class State {
   }
 
   act(act, settings) {
-    const before = this.preset?.before ?? this.settings;
-    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before, of: settings } });
+    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before: this.before, of: settings } });
   }
 
   /** Close the preset, and go back to the settings before it. */
   leave() {
-    this.step({ settings: this.preset?.before ?? this.settings, preset: null });
+    this.step({ settings: this.before, preset: null });
   }
 
   reset(settings) {

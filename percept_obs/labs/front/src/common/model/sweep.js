@@ -4,9 +4,7 @@
 import { cellAt, planOf, shareOf, valueIn } from "./axes.js";
 import { baseOf, DIVERGED, EACH_CELL, FIRST, FOLLOWED, NOT_YET, orderOf, THEN } from "./cells.js";
 
-/**
- * Milliseconds in which the first picture of a map is to be there, and what a cell takes as long as that is not known.
- */
+/** Milliseconds in which a map's first picture is to be there, and what a cell takes as long as that is not known. */
 const SOON = 40;
 const SLOW = 4;
 const LAST = THEN[THEN.length - 1];
@@ -14,7 +12,8 @@ const LAST = THEN[THEN.length - 1];
 /**
  * @typedef {ReturnType<typeof planOf>} Plan
  * @typedef {{cells: number, values: Float64Array, done: number}} Level  rows of cells, with how many are filled
- * @typedef {{key: string, plan: Plan, base: any, tolerance: number, duration: number, levels: Level[]}} Found
+ * @typedef {{key: string, axes: string, plan: Plan, base: any, tolerance: number, duration: number,
+ *   levels: Level[]}} Found
  */
 
 export class Sweep {
@@ -57,11 +56,12 @@ export class Sweep {
     const plan = planOf(settings, this.model, this.axesOf, functions);
     const { observer, across, up } = plan;
     const base = across && up ? baseOf(settings, plan, functions) : null;
-    const key = JSON.stringify([base, observer, across?.place, up?.place]);
+    const axes = JSON.stringify([observer, across?.place, up?.place]);
+    const key = JSON.stringify([base, axes]);
     this.plan = plan;
     if (key === this.key || !this.filler) return;
     const { found } = this;
-    if (found && (!base || !sameAxes(found.plan, plan))) {
+    if (found && (!base || found.axes !== axes)) {
       this.found = null;
       this.sent.clear();
     }
@@ -70,7 +70,7 @@ export class Sweep {
     if (!base) return;
     // Another worker may fill the same map.
     const levels = found?.key === key ? found.levels : [];
-    this.sent.set(this.id, { key, plan, base, tolerance, duration: settings.duration, levels });
+    this.sent.set(this.id, { key, axes, plan, base, tolerance, duration: settings.duration, levels });
     const first = FIRST.findLast((cells) => cells * cells * this.cost < SOON) ?? FIRST[0];
     this.filler.ask({ id: this.id, settings, base, first });
   }
@@ -101,11 +101,6 @@ export class Sweep {
     for (const earlier of this.sent.keys()) if (earlier < id) this.sent.delete(earlier);
     this.cost = cost;
     this.found = found;
-    this.add(found, { cells, from, values });
-  }
-
-  /** Add a part to a map. */
-  add(found, { cells, from, values }) {
     let level = found.levels.find((each) => each.cells === cells);
     if (!level) {
       level = { cells, values: new Float64Array(EACH_CELL * cells * cells), done: 0 };
@@ -123,19 +118,10 @@ export class Sweep {
   }
 
   close() {
-    this.filler = this.found = null;
+    this.fill(null);
+    this.found = null;
     this.sent.clear();
-    this.settings = null;
-    this.key = "";
   }
-}
-
-function sameAxes(one, other) {
-  return (
-    [one, other].every((plan) => plan.across) &&
-    one.observer === other.observer &&
-    ["across", "up"].every((axis) => one[axis].place === other[axis].place)
-  );
 }
 
 /**
@@ -160,9 +146,7 @@ export function sharesOf({ across, up }, settings, functions) {
   return [across, up].map((axis) => shareOf(axis, axis.get(settings, functions)));
 }
 
-/**
- * Summary of a level: numbers of runs that settle, diverge, or are none, and the cells of least and greatest value.
- */
+/** Summary of a level: numbers of runs that settle, diverge, or are none, and the cells of least and greatest value. */
 export function countsOf({ values }, what) {
   const counts = { settled: 0, never: 0, diverged: 0, none: 0, least: -1, greatest: -1 };
   for (let at = 0; at < values.length; at += EACH_CELL) {

@@ -5,7 +5,7 @@ import { INSTANTS, PLANT_STEP, STEP_ROUNDING } from "./integrator.js";
 /** Rows that a step adds to a table of known signals; its end is the next one's start. */
 export const EACH = INSTANTS.length - 1;
 
-/** Divide the intervals between times into equal steps no longer than given; index says where the times stand. */
+/** The intervals between times in equal steps no longer than given; index says where in the grid the times stand. */
 export function stepGrid(times, longest) {
   const index = new Int32Array(times.length);
   const counts = new Int32Array(times.length - 1);
@@ -20,29 +20,24 @@ export function stepGrid(times, longest) {
     for (let j = 1; j < counts[k]; j++) grid[index[k] + j] = times[k] + interval * (j / counts[k]);
   }
   for (let k = 0; k < index.length; k++) grid[index[k]] = times[k];
-  return { grid, index };
+  return { grid, index, steps: differences(grid) };
 }
 
 export function differences(grid) {
   return grid.subarray(1).map((end, k) => end - grid[k]);
 }
 
-export function withSteps({ grid, index }) {
-  return { grid, index, steps: differences(grid) };
-}
-
 /**
  * The steps in which the truth moves: from time 0 on, with an end at each of the times, and at each of the breaks,
- * where
- * its motion has a kink; index says where time 0 and the times stand.
+ * where its motion has a kink; index says where time 0 and the times stand.
  */
 export function plantGrid(times, breaks = /** @type {number[]} */ ([])) {
   const last = times[times.length - 1];
   const places = [{ time: 0, wanted: true }, ...Array.from(times, (time) => ({ time, wanted: true }))];
   for (const time of breaks) if (time > 0 && time < last) places.push({ time, wanted: false });
   if (breaks.length) places.sort((one, other) => one.time - other.time);
-  const { grid, index } = stepGrid(Float64Array.from(places, ({ time }) => time), PLANT_STEP);
-  return withSteps({ grid, index: index.filter((_, k) => places[k].wanted) });
+  const { index, ...steps } = stepGrid(Float64Array.from(places, ({ time }) => time), PLANT_STEP);
+  return { ...steps, index: index.filter((_, k) => places[k].wanted) };
 }
 
 export function sampleTimes(period, duration) {
@@ -79,14 +74,14 @@ export function interpolate(places, times, values) {
 
 const fresh = (length) => new Float64Array(length);
 
-/** One column of a table of rows; `room` gives an array to put it into. */
-export function column(rows, width, which, room = fresh) {
-  const result = room(rows.length / width);
+/** One column of a table of rows. */
+export function column(rows, width, which) {
+  const result = new Float64Array(rows.length / width);
   for (let k = 0; k < result.length; k++) result[k] = rows[k * width + which];
   return result;
 }
 
-/** Each sample, or where it was lost (NaN) the last one before it. */
+/** Each sample, or where it was lost (NaN) the last one before it; `room` gives an array to put it into. */
 export function lastSamples(values, room = fresh) {
   const result = room(values.length);
   let last = NaN;
@@ -158,6 +153,18 @@ export function knownAt(motion, shape, places) {
   const columns = [...motion.columns.map((values) => interpolate(places, motion.times, values)), ...still];
   columns.forEach((values, p) => values.forEach((value, k) => (rows[k * width + p] = value)));
   return { rows, width, varying: true };
+}
+
+/** The spans in which a key of each sample stays the same and is not 0: their first and last sample, and the key. */
+export function spansOf(count, keyAt) {
+  const spans = /** @type {{first: number, last: number, key: any}[]} */ ([]);
+  for (let k = 0, before = 0; k < count; k++) {
+    const key = keyAt(k);
+    if (key && key === before) spans[spans.length - 1].last = k;
+    else if (key) spans.push({ first: k, last: k, key });
+    before = key;
+  }
+  return spans;
 }
 
 /** By how many seconds two times may differ and still be the same one, as slack_of() in Python. */

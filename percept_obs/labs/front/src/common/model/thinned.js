@@ -14,47 +14,29 @@ const ROWS = new Set([
   ...["images", "seenImages", "depths", "size", "errors", "relative", "worst"],
 ]);
 
-/**
- * Parts of 1 that lie apart however many there are, so that what changes with each sample is met at all of its phases.
- */
+/** Parts of 1 that lie apart however many there are: what changes with each sample is met at all of its phases. */
 const APART = (Math.sqrt(5) - 1) / 2;
 
 /**
- * A result with fewer samples, if it has many: of those in sight as many as can be told apart, of the others fewer. 
- * The
- * first and the last one stay, and those about the time that is read.
+ * A result with fewer samples, if it has many: of those in sight as many as can be told apart, of the others fewer.
+ * The first and the last one stay, and those about the time that is read.
  *
  * @param {any} result
  * @param {Sight} sight
- * @param {(part: string, length: number) => Float64Array} room  for the rows, until they are copied
  */
-export function thinned(result, sight, room) {
+export function thinned(result, sight) {
   const { time } = result;
   if (time.length <= LEAST) return result;
   const [from, to] = indicesIn(time, sight);
   const most = Math.max(LEAST, MOST / widthOf(result, time.length));
   if (time.length <= most) return result;
   const read = sight.cursor === null ? [] : indicesIn(time, { low: sight.cursor, high: sight.cursor });
-  const some = [
-    ...spaced(0, from, most),
-    ...spaced(from, to, most),
-    ...spaced(to, time.length, most),
-    ...read,
-    time.length - 1,
-  ];
+  const parts = [[0, from], [from, to], [to, time.length]];
+  const some = [...parts.flatMap(([begin, end]) => spaced(begin, end, most)), ...read, time.length - 1];
   const which = Int32Array.from(new Set(some)).sort();
   const picked = new Map();
   const pick = (rows) => {
-    if (!picked.has(rows))
-      picked.set(
-        rows,
-        rowsAt(
-          rows,
-          rows.length / time.length,
-          which,
-          room(`rows ${picked.size}`, (rows.length / time.length) * which.length),
-        ),
-      );
+    if (!picked.has(rows)) picked.set(rows, rowsAt(rows, rows.length / time.length, which));
     return picked.get(rows);
   };
   return { ...changed(result, pick), time: pick(time), whole: false };
@@ -87,7 +69,8 @@ function changed(value, pick, rows = false) {
   );
 }
 
-function rowsAt(rows, width, which, found) {
+function rowsAt(rows, width, which) {
+  const found = new Float64Array(width * which.length);
   for (let j = 0; j < which.length; j++) {
     for (let c = 0; c < width; c++) found[j * width + c] = rows[which[j] * width + c];
   }

@@ -64,25 +64,25 @@ export function percent(share, digits = 3) {
   return `${short(100 * share, digits)} %`;
 }
 
-export function readingAt(shown, cursor) {
+/** Values at a time, of the truth and of each run. */
+export function readingAt(shown, cursor, valuesOf = coordinatesAt) {
   const k = sampleAt(shown.time, cursor);
-  // Of many observers only the hidden coordinates: the measured ones differ little.
-  const told = shown.runs.length > MANY ? shown.hidden : shown.names.map((_, c) => c);
-  const row = (rows) => told.map((c) => `${shown.names[c]} = ${readable(rows[k * shown.width + c])}`).join(", ");
-  const parts = [`At ${readable(shown.time[k])} s`];
-  if (shown.truth) parts.push(`true ${row(shown.truth)}`);
-  for (const run of shown.runs) parts.push(`${run.title} ${row(run.estimate)}`);
-  return parts.join(" · ");
+  const row = (rows) => valuesOf(shown, rows, k).map(([name, value]) => `${name} = ${value}`).join(", ");
+  const truth = shown.truth ? [`true ${row(shown.truth)}`] : [];
+  const runs = shown.runs.map(({ title, estimate }) => `${title} ${row(estimate)}`);
+  return [`At ${readable(shown.time[k])} s`, ...truth, ...runs].join(" · ");
+}
+
+/** Coordinates at a sample; of many observers only the hidden ones, since the others differ little. */
+function coordinatesAt({ runs, hidden, names, width }, rows, k) {
+  const told = runs.length > MANY ? hidden : [...names.keys()];
+  return told.map((c) => [names[c], readable(rows[k * width + c])]);
 }
 
 /** The text equivalent of the image plane of a point. */
 export function imagePlaneInWords({ problem, time, truth, width, names, runs, foe, circle }) {
   if (problem) return problem;
-  const point = (rows, k = 0) =>
-    names
-      .slice(0, 2)
-      .map((name, c) => `${name} ${readable(rows[k * width + c])}`)
-      .join(", ");
+  const point = (rows, k = 0) => [0, 1].map((c) => `${names[c]} ${readable(rows[k * width + c])}`).join(", ");
   const end = time.length - 1;
   const parts = runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`);
   if (truth) parts.unshift(`the point goes from ${point(truth)} to ${point(truth, end)}`);

@@ -66,6 +66,11 @@ export class Fieldsets {
     return places.map((place) => this.number(place));
   }
 
+  /** Sliders for the numbers that the schema puts into a topic. */
+  numbersOf(name) {
+    return this.numbers(...Object.keys(this.schema).filter((place) => this.schema[place].topic === name));
+  }
+
   number(place, more) {
     return this.add(slider(this.bound(place, false, more)));
   }

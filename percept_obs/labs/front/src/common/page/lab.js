@@ -3,7 +3,7 @@
 import { Latest } from "../model/latest.js";
 import { within } from "../model/playback.js";
 import { Results } from "../model/results.js";
-import { changesInWords, same } from "../model/settings.js";
+import { changesInWords, same, settingsOf } from "../model/settings.js";
 import { readOf } from "../model/typed.js";
 import { verdict } from "../model/words.js";
 import { Address } from "./address.js";
@@ -25,7 +25,7 @@ const NULL = /** @type {any} */ (null);
  * `panel` before open(), names in `computing` the Kernels that make functions of settings and the Engine that makes
  * results of them, and gives these parts:
  *   words                       what the page calls the settings
- *   presets, settingsOf         points worth seeing, and the settings of an act
+ *   presets                     questions, with acts that answer them
  *   names, symbols              what settings are called in a sentence, and what letters stand for
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
  *   causesOf                    settings without one cause each, in a lab that can tell some
@@ -171,7 +171,7 @@ export class Lab extends LabBase {
   /** Ask a question, over the settings that it is about. */
   ask(name) {
     const { asks } = this.parts.presets.find((preset) => preset.name === name);
-    this.state.ask(name, this.parts.settingsOf({ changes: asks }, this.model.standard));
+    this.state.ask(name, settingsOf({ changes: asks }, this.model.standard));
     this.touched(true);
   }
 
@@ -183,7 +183,7 @@ export class Lab extends LabBase {
   }
 
   act(act, number) {
-    this.state.act(number, this.parts.settingsOf(act, this.model.standard));
+    this.state.act(number, settingsOf(act, this.model.standard));
     this.touched(true);
   }
 
@@ -369,7 +369,6 @@ export class Lab extends LabBase {
       const speaking = this.speaking && shown.whole;
       this.theme ??= { ...themeOf(this.view.root), picked: null };
       this.draw();
-      this.latest.drawn();
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {

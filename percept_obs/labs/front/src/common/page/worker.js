@@ -26,7 +26,7 @@ export function openWorker(widget, { ready, answer, gone = () => {} }, name = "r
   worker.onmessage = ({ data }) => {
     if (!data.ready) return answer(data);
     URL.revokeObjectURL(address);
-    return ready((task) => worker.postMessage(task, task.spare));
+    return ready((task) => worker.postMessage(task));
   };
   worker.postMessage({ kind, texts, model });
   return worker;

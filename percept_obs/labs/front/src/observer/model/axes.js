@@ -1,6 +1,6 @@
 // Axes of a map of the observer lab besides gains: settings, and combinations of several.
 
-import { axisAt } from "../../common/model/axes.js";
+import { axesAt } from "../../common/model/axes.js";
 import { shapeOf, varies } from "./camera.js";
 import { focusOf, translationTowards } from "./engine.js";
 
@@ -11,8 +11,7 @@ const inReach = (values) => values.every((value) => Math.abs(value) <= FARTHEST)
 
 export function axesOf(settings, model) {
   const recorded = settings.scenario in model.recordings;
-  const at = (place, label, meant) => axisAt(model, place, label, meant);
-  const each = (place, labels, meant) => labels.map((label, k) => at(`${place}.${k}`, label, meant));
+  const { at, each } = axesAt(model);
   const chosen = each(
     "start.values",
     ["start of ŷ1", "start of ŷ2", "start of ŷ3"],

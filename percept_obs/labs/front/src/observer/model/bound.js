@@ -1,7 +1,6 @@
 // The Cramer-Rao bound along the truth, the same numbers as cramer_rao() in Python.
 
-import { stepper } from "../../common/model/runge_kutta.js";
-import { EACH } from "../../common/model/tables.js";
+import { alongSteps } from "../../common/model/runge_kutta.js";
 
 const N = 3;
 
@@ -44,26 +43,22 @@ export function boundOf({ truth, outputs, measured, sampled, time }, { steps, in
 }
 
 /** A function that tells how small errors of the coordinates move over steps from a place on: Phi, row by row. */
-function transitions({ rows, width, varying }, flow) {
-  const state = new Float64Array(N + N * N);
-  const x = new Float64Array(N + width);
-  const F = new Float64Array(N + N * N);
+function transitions(table, flow) {
+  const [state, F] = [new Float64Array(N + N * N), new Float64Array(N + N * N)];
+  const x = new Float64Array(N + table.width);
   const Phi = state.subarray(N);
-  const step = stepper(state.length);
-  if (!varying) x.set(rows.subarray(0, width), N);
-  let at = 0;
-  const rate = (instant, stage, out) => {
+  x.set(table.rows.subarray(0, table.width), N);
+  const along = alongSteps(state.length, table, (row, stage, out) => {
     for (let c = 0; c < N; c++) x[c] = stage[c];
-    const row = (EACH * at + instant) * width;
-    if (varying) for (let p = 0; p < width; p++) x[N + p] = rows[row + p];
+    if (table.varying) for (let p = 0; p < table.width; p++) x[N + p] = table.rows[row + p];
     flow(x, F);
     for (let c = 0; c < N; c++) out[c] = F[c];
     product(F, stage, out, N);
-  };
-  return (start, steps, from, to) => {
+  });
+  return (start, ...steps) => {
     state.fill(0).set(start);
     for (let c = 0; c < N; c++) Phi[(N + 1) * c] = 1;
-    for (at = from; at < to; at++) step(state, steps[at], rate);
+    along(state, ...steps);
     return Phi;
   };
 }

@@ -1,8 +1,8 @@
 // The bound over the image, as percept_obs/observability/maps.py computes it and says what it means.
 
 import { LONGEST_STEP } from "../../common/model/integrator.js";
-import { stepper } from "../../common/model/runge_kutta.js";
-import { EACH, known, sampleTimes, withSteps, stepGrid } from "../../common/model/tables.js";
+import { alongSteps } from "../../common/model/runge_kutta.js";
+import { known, sampleTimes, stepGrid } from "../../common/model/tables.js";
 import { variancesOf } from "./bound.js";
 
 /** Intervals between the samples that a map is computed with; together they tell as much as those of the camera. */
@@ -52,25 +52,22 @@ export function mapAt({ y1, y2, resolution, relative }, place) {
 }
 
 /** Phi and what is moved, of X(t) = Phi X(0) + moved at times from 0 on. */
-export function displacements(motion, times) {
-  const { grid, index, steps } = withSteps(stepGrid(times, LONGEST_STEP));
-  const { rows, width, varying } = known(motion, [], grid);
-  const step = stepper(12);
+function displacements(motion, times) {
+  const { grid, index, steps } = stepGrid(times, LONGEST_STEP);
+  const table = known(motion, [], grid);
   const state = Float64Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0); // rows of Phi, each with what is moved behind it
   const Phi = new Float64Array(9 * times.length);
   const moved = new Float64Array(3 * times.length);
-  let at = 0;
-  const rate = (instant, stage, out) => {
-    const row = varying ? (EACH * at + instant) * width : 0;
+  const along = alongSteps(12, table, (row, stage, out) => {
     for (let i = 0; i < 3; i++) {
       for (let j = 0; j < 4; j++) {
-        out[4 * i + j] = j === 3 ? rows[row + 9 + i] : 0;
-        for (let k = 0; k < 3; k++) out[4 * i + j] += rows[row + 3 * i + k] * stage[4 * k + j];
+        out[4 * i + j] = j === 3 ? table.rows[row + 9 + i] : 0;
+        for (let k = 0; k < 3; k++) out[4 * i + j] += table.rows[row + 3 * i + k] * stage[4 * k + j];
       }
     }
-  };
+  });
   for (let k = 0; k < times.length; k++) {
-    for (; at < index[k]; at++) step(state, steps[at], rate);
+    if (k) along(state, steps, index[k - 1], index[k]);
     for (let i = 0; i < 3; i++) {
       for (let j = 0; j < 3; j++) Phi[9 * k + 3 * i + j] = state[4 * i + j];
       moved[3 * k + i] = state[4 * i + 3];

@@ -6,18 +6,11 @@ const CAUSES = [
   ["without noise", ({ noise }) => noise.size > 0 && { noise: { ...noise, size: 0 } }],
   ["with the bias of noise taken out", ({ gains, noise, observers }) => {
     const variance = noise.kind === "uniform" ? noise.size ** 2 / 3 : noise.size ** 2;
-    const biased = observers.filter((name) => gains[name].noise_variance === 0);
-    const cured = biased.map((name) => [name, { ...gains[name], noise_variance: variance }]);
-    return variance > 0 && cured.length > 0 && { gains: { ...gains, ...Object.fromEntries(cured) } };
+    const biased = variance > 0 ? observers.filter((name) => gains[name].noise_variance === 0) : [];
+    return withGains(gains, biased, () => ({ noise_variance: variance }));
   }],
-  ["with a bound of 100/m instead", ({ gains, observers }) => {
-    const bounded = observers.filter((name) => gains[name].bound < 100);
-    return (
-      bounded.length > 0 && {
-        gains: { ...gains, ...Object.fromEntries(bounded.map((name) => [name, { ...gains[name], bound: 100 }])) },
-      }
-    );
-  }],
+  ["with a bound of 100/m instead", ({ gains, observers }) =>
+    withGains(gains, observers.filter((name) => gains[name].bound < 100), () => ({ bound: 100 }))],
   ["with half the gain", scaled(0.5)],
   ["with twice the gain", scaled(2)],
   ["started at the first sample", ({ start }) => start.mode !== "own" && { start: { ...start, mode: "own" } }],
@@ -26,17 +19,16 @@ const CAUSES = [
   ["with the true motion believed", ({ believed }) => believed && { believed: null }],
 ];
 
+/** Changes of some observers' gains, if there are any. */
+function withGains(gains, names, change) {
+  const changed = names.map((name) => [name, { ...gains[name], ...change(gains[name]) }]);
+  return names.length > 0 && { gains: { ...gains, ...Object.fromEntries(changed) } };
+}
+
 function scaled(factor) {
   return /** @param {Record<string, any>} settings */ ({ gains, observers }) => {
     const chosen = observers.filter((name) => gains[name].gain !== undefined);
-    return (
-      chosen.length > 0 && {
-        gains: {
-          ...gains,
-          ...Object.fromEntries(chosen.map((name) => [name, { ...gains[name], gain: factor * gains[name].gain }])),
-        },
-      }
-    );
+    return withGains(gains, chosen, ({ gain }) => ({ gain: factor * gain }));
   };
 }
 

@@ -1,10 +1,8 @@
 // The engine of a map's cells: the same runs, of which nothing is kept but when they settle and how they end.
 
-import { errorOfOne, settlingFrom } from "../../common/model/errors.js";
+import { errorOfOne, settlingTime } from "../../common/model/errors.js";
 import { argumentsAt, startState } from "../../common/model/runner.js";
-import { Engine } from "./engine.js";
-
-const NOWHERE = { foe: null, foeTowards: null, circle: null };
+import { Engine, NOWHERE } from "./engine.js";
 
 export class CellEngine extends Engine {
   /** @type {{of: any[], inputs: any}} what was laid out last, and of what */
@@ -50,7 +48,7 @@ export class CellEngine extends Engine {
       functions.estimate(x, out);
       return errorOfOne(truth[(k + 1) * width - 1], out[width - 1], out, 0, width);
     };
-    const settling = settlingFrom(time, errorAt, tolerance);
+    const settling = settlingTime(time, errorAt, tolerance);
     return { divergedAt: null, settling, error: [errorAt(time.length - 1)] };
   }
 }

@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { userDefined, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { userDefined, durationOf, list, NOISES, script, trackings } from "../../common/model/code.js";
 import { switchOf } from "../../common/model/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../common/model/typed.js";
@@ -58,8 +58,7 @@ export function pythonOf(
   }
   const ours = settings.observers.filter((name) => !model.own[name]);
   const wanted = { percept_obs: names, "percept_obs.observers": ours, ...own.modules };
-  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
-  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
+  return script(wanted, lines);
 }
 
 /** Lines that make the motion, and what the copied code has to be given. */

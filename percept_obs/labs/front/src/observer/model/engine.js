@@ -3,19 +3,21 @@
 import { LONGEST_STEP } from "../../common/model/integrator.js";
 import { columnOf } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
-import { Runner } from "../../common/model/runner.js";
+import { evaluated, Runner } from "../../common/model/runner.js";
 import { switchOf } from "../../common/model/settings.js";
-import { instants, known, knownAt, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { known, knownAt, lastSamples, spansOf, stepGrid } from "../../common/model/tables.js";
 import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
-import { spansInside, windowed } from "./measures.js";
+import { windowed } from "./measures.js";
 import { divides, sharesOf, withoutNoise } from "./shares.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
 const INFINITY = 1e6;
 const NEARLY = 1e-9;
 const NONE = new Float64Array(0);
+/** What settings have whose translation points nowhere in the image. */
+export const NOWHERE = { foe: null, foeTowards: null, circle: null };
 
 export class Engine extends Runner {
   constructor(model) {
@@ -30,24 +32,22 @@ export class Engine extends Runner {
     const { coordinates: names } = this.model.surfaces[settings.surface];
     const form = this.model.forms[keyOf(settings)];
     const { measured, hidden } = form;
+    const { tolerance, settledPart, judged } = this.model;
     const result = {
       settings,
       ...this.camera.record(settings, functions),
       ...this.geometry(settings, functions, form),
       ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
-      tolerance: this.model.tolerance,
-      settledPart: this.model.settledPart,
-      judged: this.model.judged,
-      runs: [],
-      bound: null,
-      shares: null,
-      excitation: null,
-      inside: [],
-      whole: false,
+      ...{ tolerance, settledPart, judged, runs: [], inside: [] },
+      ...{ bound: null, shares: null, excitation: null, whole: false },
     };
     if (result.problem) return { ...result, whole: true };
     const { truth, time, circle } = result;
-    if (truth && circle) result.inside = spansInside(time, truth, 3, circle);
+    if (truth && circle) {
+      const [y1, y2, radius] = circle;
+      const isInside = (k) => (truth[3 * k] - y1) ** 2 + (truth[3 * k + 1] - y2) ** 2 < radius * radius;
+      result.inside = spansOf(time.length, isInside).map(({ first, last }) => [time[first], time[last]]);
+    }
     const inputs = this.inputs(settings, result, functions);
     const asked = estimatesAsked(settings, result, inputs);
     const kernelOf = (name) => form.observers[name][switchOf(settings, name)];
@@ -70,21 +70,15 @@ export class Engine extends Runner {
     const { time, measured } = result;
     const recorded = settings.scenario in this.model.recordings;
     const clock = recorded ? [time] : [settings.period, time.length];
-    const lines = memory.once("grid", settings, () => withSteps(stepGrid(time, LONGEST_STEP)), ...clock);
+    const lines = memory.once("grid", settings, () => stepGrid(time, LONGEST_STEP), ...clock);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
     const believe = (read) => {
       const { motion, shape } = this.camera.motion(read, functions);
       return known(read.believed ? constantMotion(read.believed) : motion, shape, lines.grid);
     };
     const table = memory.once("known", settings, believe, lines);
-    return this.layOut(
-      result,
-      lines,
-      table,
-      settings.hold,
-      exact && measured.map((c) => exact[c]),
-      settings.start.mode === "own",
-    );
+    const { hold, start } = settings;
+    return this.layOut(result, lines, table, hold, exact && measured.map((c) => exact[c]), start.mode === "own");
   }
 
   /** The least relative error that the noise leaves, where it is drawn and there is one. */
@@ -105,43 +99,22 @@ export class Engine extends Runner {
     return distanceError(right, found, estimate, width);
   }
 
-  exact(settings, grid, functions) {
-    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
-  }
-
   excitation({ settings, time, truth, outputs, measured, hidden }, functions) {
     const window = Math.min(settings.window, time[time.length - 1] - time[0]);
     if (!functions.w) return { window, time: NONE, smallest: NONE, begun: { time: NONE, smallest: NONE } };
     const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
     const { motion, shape } = this.camera.motion(settings, functions);
-    const table = knownAt(motion, shape, time);
-    const parameters = table.width;
-    const size = hidden.length * measured.length;
-    const w = this.room("w", size * time.length);
-    const x = new Float64Array(measured.length + parameters);
-    const out = new Float64Array(size);
-    if (!table.varying) x.set(table.rows, measured.length);
-    for (let k = 0; k < time.length; k++) {
-      for (let m = 0; m < measured.length; m++) x[m] = columns[m][k];
-      if (table.varying) for (let p = 0; p < parameters; p++) x[measured.length + p] = table.rows[k * parameters + p];
-      functions.w(x, out);
-      for (let i = 0; i < size; i++) w[k * size + i] = out[i];
-    }
+    const w = evaluated(functions.w, columns, knownAt(motion, shape, time), hidden.length * measured.length);
     return { window, ...windowed(time, w, hidden.length, measured.length, window) };
   }
 
   /** Where the translation points in the image, and where an instant tells too little. */
   geometry(settings, functions, form) {
-    const nowhere = { foe: null, foeTowards: null, circle: null };
-    if (varies(settings, this.model)) return nowhere;
+    if (varies(settings, this.model)) return NOWHERE;
     const foe = focusOf(settings, functions, this.model);
-    if (!foe) return { ...nowhere, foeTowards: towardsFoe(settings, functions) };
-    const found = { foe, foeTowards: null, circle: null };
-    if (!form.circle) return found;
-    return {
-      ...found,
-      circle: Array.from(functions.circle([...parametersOf(settings), settings.threshold], [0, 0, 0])),
-    };
+    if (!foe) return { ...NOWHERE, foeTowards: towardsFoe(settings, functions) };
+    const at = [...parametersOf(settings), settings.threshold];
+    return { ...NOWHERE, foe, circle: form.circle ? Array.from(functions.circle(at, [0, 0, 0])) : null };
   }
 }
 

@@ -58,18 +58,3 @@ export function windowed(time, w, hidden, measured, window) {
   const since = Float64Array.from(earlier, (_, k) => smallestEigenvalue(gathered.subarray(k * size, (k + 1) * size)));
   return { time: ends, smallest, begun: { time: earlier, smallest: since } };
 }
-
-/** Spans of time in which rows of y1, y2 and a third number are inside a circle of y1, y2 and radius. */
-export function spansInside(time, rows, width, [y1, y2, radius]) {
-  const spans = [];
-  let inside = false;
-  for (let k = 0; k < time.length; k++) {
-    const x = rows[k * width] - y1;
-    const y = rows[k * width + 1] - y2;
-    const now = x * x + y * y < radius * radius;
-    if (now && !inside) spans.push([time[k], time[k]]);
-    if (now) spans[spans.length - 1][1] = time[k];
-    inside = now;
-  }
-  return spans;
-}

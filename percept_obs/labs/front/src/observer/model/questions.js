@@ -1,7 +1,7 @@
 // Questions of the first screen.  What an answer claims is a condition on the result; `right` counts from 0.
 
 import { columnOf } from "../../common/model/derived.js";
-import { settingsAfter } from "../../common/model/settings.js";
+import { settingsOf } from "../../common/model/settings.js";
 
 const OBSERVER = "identifier_based";
 /** Metres from the camera at which the estimate starts. */
@@ -13,7 +13,7 @@ const BELIEVED = 1.5;
 /** A drive past standing things, with changes: settings that begin like those of the lab. */
 function drive(changes) {
   return ({ standard, drive: begun }) => {
-    const settings = settingsAfter({ changes }, { ...standard, ...begun });
+    const settings = settingsOf({ changes }, { ...standard, ...begun });
     const [X, Y, Z] = settings.X0;
     const guess = changes.guess ?? START;
     delete settings.guess;
@@ -150,7 +150,8 @@ export const QUESTIONS = [
       return { ...settings, believed, kept: settings };
     },
     kept: "true speed",
-    tells: "No. A point 1.5 times as far, passed 1.5 times as fast, looks the same. Every distance is 1.5 times too large.",
+    tells:
+      "No. A point 1.5 times as far, passed 1.5 times as fast, looks the same. Every distance is 1.5 times too large.",
     on: "chart",
     note: "1.5 times too far",
     spot: ({ shown }) => ({ time: shown.time[sampleAt(shown, 0.8)], own: sampleAt(shown, 0.8) }),

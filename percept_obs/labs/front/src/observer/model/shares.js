@@ -52,10 +52,7 @@ export function lateNoise({ added }) {
   return late.length ? late[Math.floor(late.length / 2)] : NaN;
 }
 
-/**
- * Change of the estimated inverse distance at each sample, less that of the true one, where it is
- * known.
- */
+/** Change of the estimated inverse distance at each sample, less that of the true one, where it is known. */
 export function stepOf({ truth, width }, { estimate }) {
   return derived(estimate, "step", () => {
     const [found, right] = [estimate, truth].map((rows) => rows && columnOf(rows, width, width - 1));

@@ -49,9 +49,7 @@ export function reasons(shown, model) {
     );
   }
   if (settings.believed) found.push("The observers believe another motion than the true one.");
-  if (settings.noise.size > 0) {
-    found.push(noiseInWords(shown));
-  }
+  if (settings.noise.size > 0) found.push(noiseInWords(shown));
   found.push(...boundInWords(shown));
   if (settings.bound.includes("map") && !noBound(settings, model)) {
     found.push(
@@ -73,7 +71,7 @@ function noiseInWords({ shares }) {
     return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
   return (
     `After ${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s noise adds ${percent(added, 2)} to the ` +
-    "error (filled in its chart). The thin dashed line is the error without noise: more gain lets it fall faster, and " +
+    "error (filled in its chart). The thin dashed line is the error without noise. More gain lets it fall faster and " +
     "lifts what noise adds."
   );
 }
@@ -95,10 +93,7 @@ function leastOf({ time, smallest }) {
 
 function nearestToFoe({ foe, truth, width, time }) {
   if (!foe || !truth?.length) return null;
-  let [least, at] = [Infinity, 0];
-  for (let k = 0; k < time.length; k++) {
-    const squared = (truth[k * width] - foe[0]) ** 2 + (truth[k * width + 1] - foe[1]) ** 2;
-    if (squared < least) [least, at] = [squared, k];
-  }
-  return { distance: Math.sqrt(least), time: time[at] };
+  const apart = time.map((_, k) => Math.hypot(truth[k * width] - foe[0], truth[k * width + 1] - foe[1]));
+  const distance = apart.reduce((least, value) => Math.min(least, value));
+  return { distance, time: time[apart.indexOf(distance)] };
 }

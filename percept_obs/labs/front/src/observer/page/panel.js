@@ -48,7 +48,6 @@ export class Panel extends Fieldsets {
     const noise = { label: "noise, bound or σ" };
     const hasMap = ({ bound }) => bound.includes("map");
     const map = ["map.seconds", "map.distance"].map((place) => this.numberIf(place, hasMap));
-    const windows = ["window", "threshold"];
     const body = [
       this.first(
         this.fieldset("Measured", this.outputs()),
@@ -59,11 +58,11 @@ export class Panel extends Fieldsets {
       topic("point", "The point and its motion", ...this.point()),
       topic(
         ...["camera", "Camera"],
-        this.simulated(this.choice("noise.kind"), ...this.numbers("seed", "period", "dropout")),
+        this.simulated(this.choice("noise.kind"), ...this.numbersOf("camera")),
         this.choice("hold", { possible: (value) => value !== "exact" || !this.track() }),
       ),
       topic("start", "Start and belief", ...this.belief()),
-      topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...map, ...this.numbers(...windows)),
+      topic("pictures", "Charts", this.pictures(), this.boxes("bound", "bound"), ...map, ...this.numbersOf("pictures")),
       mapTopic(this, axesOf),
     ];
     this.body = element("div", { class: "panel" }, ...body);

@@ -4,7 +4,7 @@ import { clockOf, errorOf, NO_BREAKS } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
 import { draws } from "../../common/model/random.js";
 import { instants } from "../../common/model/tables.js";
-import { ENTRIES, flowOf, kindsOf } from "./flow.js";
+import { ENTRIES, flowOf, kindsOf, placed } from "./flow.js";
 import { product, pseudoInverse } from "./symmetric.js";
 
 /** Records scenes; keeps in `memory` the parts that the next settings do not change. */
@@ -45,15 +45,13 @@ export class Camera {
   /** Images and depths of the points of states; no image behind the camera. */
   project({ layout, points, n }, states) {
     const { N, l } = this.model.block;
-    const { begins, axes, states: which, entries } = layout;
     const count = states.length / n;
     const images = new Float64Array(2 * points * count);
     const depths = new Float64Array(points * count);
     const xi = new Float64Array(3);
     for (let k = 0; k < count; k++) {
       for (let p = 0; p < points; p++) {
-        xi.fill(0);
-        for (let e = begins[p]; e < begins[p + 1]; e++) xi[axes[e]] += entries[e] * states[k * n + which[e]];
+        placed(layout, states, k * n, p, xi);
         const depth = l[0] * xi[0] + l[1] * xi[1] + l[2] * xi[2];
         const at = k * points + p;
         depths[at] = depth;

@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { imports, list, NOISES } from "../../common/model/code.js";
+import { list, NOISES, script } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { OWN } from "./kernels.js";
 import { readP, textOfP } from "./weight.js";
@@ -25,12 +25,9 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
   const names = new Set(["Camera", NOISES[settings.noise.kind], "PointsScenario", "luenberger", "record", "track"]);
   const [P, weights] = WEIGHTS[settings.weight](settings, typedP(model, settings, n));
   const helpers = new Set(weights);
-  const { turning, spin, input, velocity, noise, period, dropout, duration, seed, view } = settings;
-  const start = rounded(truth.subarray(0, n));
+  const { noise, period, dropout, duration, seed, view } = settings;
+  const start = Array.from(truth.subarray(0, n), (value) => Number(value.toPrecision(12)));
   const lines = [
-    ...(own
-      ? []
-      : [`moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`]),
     ...(textOfP(settings) ? [`P = ${settings.size}`] : []),
     ...(own ? [] : movedAs(settings, model)),
     ...formOf(settings, points, names, helpers),
@@ -61,14 +58,16 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
       sympy: model.written[settings.motion].functions,
     }),
   };
-  const math = String(P).includes("math.") ? "import math\n\n" : "";
-  const numpy = settings.start === "error" || String(P).includes("np.") ? "import numpy as np\n\n" : "";
-  return `${math}${numpy}${imports(wanted)}\n${lines.join("\n")}\n`;
+  return script(wanted, lines);
 }
 
 /** Motion of camera and body, with the typed changes. */
 function movedAs(settings, { written }) {
-  const lines = ["turning, velocity, spinning = moves.velocities"];
+  const { turning, spin, input, velocity } = settings;
+  const lines = [
+    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`,
+    "turning, velocity, spinning = moves.velocities",
+  ];
   if (!isTyped(settings)) return lines;
   const { sympy } = written[settings.motion];
   const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
@@ -87,15 +86,9 @@ function formOf({ state }, points, names, helpers) {
   if (state === "independent") {
     names.add("rigid");
     helpers.add("independent_points");
-    return [
-      `form = independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), ${points})`,
-    ];
+    return [`form = independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), ${points})`];
   }
   const helper = { body: "rigid_body", origin: "body_with_origin" }[state];
   helpers.add(helper);
   return [`form = ${helper}(${points}, turning, velocity, spinning)`];
-}
-
-function rounded(values) {
-  return Array.from(values, (value) => Number(value.toPrecision(12)));
 }

@@ -6,7 +6,7 @@ import { differences } from "../../common/model/tables.js";
 import { Camera } from "./camera.js";
 import { inversesOf } from "./flow.js";
 import { windowsOf } from "./gramian.js";
-import { decayRate, largestOf, norms, pointErrors, spansOf } from "./measures.js";
+import { absencesOf, decayRate, distancesOf, largestOf, norms } from "./measures.js";
 import { Observer } from "./observer.js";
 
 export class PointsEngine {
@@ -24,19 +24,19 @@ export class PointsEngine {
     const recording = this.camera.record(scene);
     const { estimate, divergedAt } = this.observer.track(scene, recording);
     const { time, truth, outputs } = recording;
-    const size = norms(truth, estimate, n);
-    const errors = pointErrors(layout, truth, estimate, n);
-    const distances = pointErrors(layout, truth, new Float64Array(truth.length), n);
+    const off = truth.map((value, i) => value - estimate[i]);
+    const size = norms(off, n);
+    const [errors, distances] = [off, truth].map((rows) => distancesOf(layout, rows, n));
     const relative = errors.map((values, p) => values.map((value, k) => value / distances[p][k]));
     const worst = largestOf(relative);
     const result = {
       ...{ settings, points, n, names: layout.names, ...recording, estimate, divergedAt, size },
       estimated: this.camera.project(scene, estimate),
       errors,
-      ...{ relative, worst, settling: settlingTime(time, worst, this.model.tolerance) },
+      ...{ relative, worst, settling: settlingTime(time, (k) => worst[k], this.model.tolerance) },
       tolerance: this.model.tolerance,
       fit: decayRate(time, size),
-      absences: Array.from({ length: points }, (_, k) => spansOf(time, outputs, points, k)),
+      absences: Array.from({ length: points }, (_, k) => absencesOf(time, outputs, points, k)),
       gramian: null,
       whole: false,
     };

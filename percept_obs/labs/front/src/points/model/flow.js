@@ -1,5 +1,5 @@
 // @ts-check
-// Flow of a state: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
+// A state and its flow: vectors of three entries, each by itself, x(t) = Phi(t) x(0) + q(t).
 
 import { INSTANTS } from "../../common/model/integrator.js";
 import { stepper } from "../../common/model/runge_kutta.js";
@@ -18,6 +18,13 @@ export function kindsOf({ rows, columns, which }, n) {
   const keys = entries.map((list) => JSON.stringify(list));
   const names = [...new Set(keys)];
   return { kinds: names.map((name) => entries[keys.indexOf(name)]), kindOf: keys.map((key) => names.indexOf(key)) };
+}
+
+/** The place of a point in metres, C x of the state that begins at a place of an array. */
+export function placed({ begins, axes, states, entries }, values, begin, point, out) {
+  out[0] = out[1] = out[2] = 0;
+  for (let e = begins[point]; e < begins[point + 1]; e++) out[axes[e]] += entries[e] * values[begin + states[e]];
+  return out;
 }
 
 /** The flow of a kind at the wanted ends of steps; `known` has a row for each instant at which a step looks. */

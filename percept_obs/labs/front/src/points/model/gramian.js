@@ -12,13 +12,13 @@ const MOST_NUMBERS = 1500;
  * matrix of the window that misses most directions or shows one least.
  *
  * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
- * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks.  Of many windows
- * some
+ * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks. Of many windows some
  * are looked at, and if the whole is wanted all about the weakest.
  */
-export function windowsOf({ layout, model, n, time, images, kindOf, flows, back, window, memory, whole }) {
+export function windowsOf(given) {
+  const { layout, model, n, time, kindOf, back, window, memory, whole } = given;
   const blocks = derived(layout, "blocks", () => blocksOf(layout));
-  const gathered = gather(layout, blocks, model.block, n, time, images, kindOf, flows, memory);
+  const gathered = gather(given, blocks);
   const ends = endsOf(time, window);
   const matrix = (first, room) => between(gathered, blocks, first, ends[first], n, kindOf, back, room);
   const room = memory.room("matrix", n * n);
@@ -71,31 +71,19 @@ function blocksOf({ begins, states }) {
 
 /** States of the vectors that pairs join, for each group of vectors by itself. */
 function partsOf(pairs) {
-  let groups = /** @type {Set<number>[]} */ ([]);
+  let groups = /** @type {number[][]} */ ([]);
   for (const pair of pairs) {
-    const joined = groups.filter((group) => pair.some((vector) => group.has(vector)));
-    groups = [
-      ...groups.filter((group) => !joined.includes(group)),
-      new Set([...pair, ...joined.flatMap((group) => [...group])]),
-    ];
+    const apart = groups.filter((group) => !pair.some((vector) => group.includes(vector)));
+    const joined = groups.filter((group) => !apart.includes(group));
+    groups = [...apart, [...new Set([...pair, ...joined.flat()])]];
   }
-  return groups.map((group) =>
-    [...group].sort((u, v) => u - v).flatMap((vector) => [3 * vector, 3 * vector + 1, 3 * vector + 2]),
-  );
+  return groups.map((group) => group.sort((u, v) => u - v).flatMap((v) => [3 * v, 3 * v + 1, 3 * v + 2]));
 }
 
 /** Integrals from the first sample to each, nine numbers a block. */
-function gather(
-  { begins, axes, states, entries },
-  { all, ofPoints },
-  { N, l },
-  n,
-  time,
-  images,
-  kindOf,
-  flows,
-  memory,
-) {
+function gather({ layout, model, n, time, images, kindOf, flows, memory }, { all, ofPoints }) {
+  const { begins, axes, states, entries } = layout;
+  const { N, l } = model.block;
   const points = begins.length - 1;
   const size = 9 * all.length;
   const gathered = memory.room("gathered", size * time.length);

@@ -11,9 +11,7 @@ import { entriesOf } from "./sparse.js";
  * Step an estimate, and P where it is computed, by the Runge-Kutta method.
  *
  * layout    where the coefficients stand: rows, columns, which; begins, axes, states, entries of the points
- * functions  point: what one point tells, printed from its block; those of sparse.js, printed for the layout, those
- * of P
- *           where it is computed
+ * functions point: what one point tells, printed from its block; those of sparse.js, printed for the layout
  * law       {computed, information, forgetting, pull} of P
  * x, P      at the start, P with no more entries than `entriesOf` finds; it is null where it is given
  * tables    {steps, coefficients, width, inverses, images, points, first}: coefficients have a row of `width` numbers
@@ -57,13 +55,8 @@ function entriesOfP(layout, n) {
 }
 
 /** A function that fills the rates of an estimate and, behind it, of P's entries. */
-function rateOf(
-  layout,
-  { point, moveX, place, correct, moveP, solveP },
-  { computed, information, forgetting, pull },
-  { entries, rows },
-  n,
-) {
+function rateOf(layout, functions, { computed, information, forgetting, pull }, { entries, rows }, n) {
+  const { point, moveX, place, correct, moveP, solveP } = functions;
   const points = layout.begins.length - 1;
   const correction = new Float64Array(n);
   const places = new Float64Array(3 * points);

@@ -1,27 +1,23 @@
 // Measures of a run of many points: size and decay of the error, times when points were not seen.
 
-export function norms(truth, estimate, n) {
-  const found = new Float64Array(truth.length / n);
-  for (let k = 0; k < found.length; k++) {
-    let squared = 0;
-    for (let i = k * n; i < k * n + n; i++) squared += (truth[i] - estimate[i]) ** 2;
-    found[k] = Math.sqrt(squared);
-  }
-  return found;
+import { spansOf } from "../../common/model/tables.js";
+import { placed } from "./flow.js";
+
+/** Norm of each row of n numbers. */
+export function norms(rows, n) {
+  const found = new Float64Array(rows.length / n);
+  for (let k = 0; k < found.length; k++) for (let i = k * n; i < k * n + n; i++) found[k] += rows[i] ** 2;
+  return found.map(Math.sqrt);
 }
 
-/** Distance of each point's estimate from it, a column each. */
-export function pointErrors({ begins, axes, states, entries }, truth, estimate, n) {
-  const count = truth.length / n;
-  const off = new Float64Array(3);
-  return Array.from({ length: begins.length - 1 }, (_, p) => {
-    const found = new Float64Array(count);
-    for (let k = 0; k < count; k++) {
-      off.fill(0);
-      for (let e = begins[p]; e < begins[p + 1]; e++) {
-        off[axes[e]] += entries[e] * (truth[k * n + states[e]] - estimate[k * n + states[e]]);
-      }
-      found[k] = Math.sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2]);
+/** Distance of each point in states from the origin, a column each. */
+export function distancesOf(layout, rows, n) {
+  const place = new Float64Array(3);
+  return Array.from({ length: layout.begins.length - 1 }, (_, p) => {
+    const found = new Float64Array(rows.length / n);
+    for (let k = 0; k < found.length; k++) {
+      placed(layout, rows, k * n, p, place);
+      found[k] = Math.sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
     }
     return found;
   });
@@ -53,19 +49,8 @@ export function decayRate(time, size) {
 }
 
 /** Spans of samples from begin to end in which a point is not seen. */
-export function spansOf(time, outputs, points, point) {
-  /** @type {{first: number, last: number}[]} */
-  const spans = [];
-  for (let k = 0; k < time.length; k++) {
-    if (!Number.isNaN(outputs[2 * (k * points + point)])) continue;
-    const open = spans.at(-1);
-    if (open && open.last === k - 1) open.last = k;
-    else spans.push({ first: k, last: k });
-  }
-  return spans.map(({ first, last }) => ({
-    first,
-    last,
-    begin: time[first],
-    end: time[Math.min(last + 1, time.length - 1)],
-  }));
+export function absencesOf(time, outputs, points, point) {
+  const spans = spansOf(time.length, (k) => Number.isNaN(outputs[2 * (k * points + point)]));
+  const endOf = (last) => time[Math.min(last + 1, time.length - 1)];
+  return spans.map(({ first, last }) => ({ first, last, begin: time[first], end: endOf(last) }));
 }

@@ -2,7 +2,7 @@
 
 import { valueBetween } from "../../common/model/playback.js";
 import { coefficientsAt } from "./camera.js";
-import { kindsOf } from "./flow.js";
+import { kindsOf, placed } from "./flow.js";
 
 /** Position of each point, and velocity of a copy so many times as far under the same A(t) and v(t). */
 export function motionAt(lab, shown, at) {
@@ -19,12 +19,7 @@ export function motionAt(lab, shown, at) {
       else linear[row] += known[index] * state[3 * vector + column];
     }
   }
-  const { begins, axes, states, entries } = layout;
-  const pointOf = (values, k) => {
-    const found = [0, 0, 0];
-    for (let e = begins[k]; e < begins[k + 1]; e++) found[axes[e]] += entries[e] * values[states[e]];
-    return found;
-  };
+  const pointOf = (values, k) => placed(layout, values, 0, k, [0, 0, 0]);
   return (k) => {
     const [moved, pushed] = [pointOf(linear, k), pointOf(constant, k)];
     const velocityAt = (_, part) => moved.map((value, i) => part * value + pushed[i]);

@@ -1,11 +1,11 @@
 // @ts-check
 // The observer of many points: the same numbers as track() in Python.
 
-import { EACH, instants, plantGrid, stepGrid, withSteps } from "../../common/model/tables.js";
+import { EACH, instants, plantGrid, stepGrid } from "../../common/model/tables.js";
 import { rowsOf } from "./camera.js";
 import { advance } from "./kernel.js";
 import { layoutFollowed } from "./kernels.js";
-import { product, pseudoInverse } from "./symmetric.js";
+import { diagonal, product, pseudoInverse } from "./symmetric.js";
 import { inversesOf, isComputed, startOfP } from "./weight.js";
 
 /** Follows what a camera has recorded. */
@@ -20,7 +20,7 @@ export class Observer {
     const { settings, layout, n } = scene;
     const { time, truth } = recording;
     const divide = ({ step }) => {
-      const made = withSteps(stepGrid(time, step));
+      const made = stepGrid(time, step);
       return { ...made, places: instants(made.grid) };
     };
     const steps = memory.once("steps", settings, divide, time);
@@ -37,10 +37,8 @@ export class Observer {
     }
     const estimate = new Float64Array(time.length * n);
     const together = layoutFollowed(model, settings);
-    const parts =
-      together === layout
-        ? [{ layout, first: 0, states: 0 }]
-        : settings.points.map((_, k) => ({ layout: together, first: k, states: 3 * k }));
+    const apart = together === layout ? [0] : settings.points.keys();
+    const parts = Array.from(apart, (k) => ({ layout: together, first: k, states: 3 * k }));
     const ends = parts.map((part) => this.follow(scene, recording, inputs, part, start, estimate));
     const divergedAt = Math.min(...ends);
     for (let k = 0; k < time.length; k++) if (time[k] >= divergedAt) estimate.fill(NaN, k * n, k * n + n);
@@ -100,18 +98,10 @@ export class Observer {
     const seen = new Set();
     for (let s = 0; s < stops.length; s++) {
       const sample = stops[s];
-      if (began.has(sample)) {
-        this.onRays(
-          scene,
-          { layout, own, first },
-          outputs.subarray(2 * sample * points),
-          began.get(sample),
-          seen,
-          x,
-          P,
-          begun,
-        );
-        began.get(sample).forEach((k) => seen.add(k));
+      const fresh = began.get(sample);
+      if (fresh) {
+        this.onRays(scene, { layout, own, first }, outputs.subarray(2 * sample * points), fresh, seen, x, P, begun);
+        fresh.forEach((k) => seen.add(k));
       }
       for (let i = 0; i < own; i++) estimate[sample * n + states + i] = x[i];
       if (s === stops.length - 1) break;
@@ -122,9 +112,7 @@ export class Observer {
         steps: steps.subarray(from, to),
         coefficients: coefficients.subarray(EACH * from * width),
         width,
-        inverses: inverses.constant
-          ? inverses
-          : { ...inverses, rows: inverses.rows.subarray(EACH * from * inverses.entries) },
+        inverses: { ...inverses, rows: inverses.rows.subarray(inverses.constant ? 0 : EACH * from * inverses.entries) },
         images: held.subarray((EACH + 1) * 2 * points * from),
         points,
         first,
@@ -162,9 +150,7 @@ export class Observer {
     const inverse = this.camera.memory.once(`rays ${first}`, settings, make, layout, rows.join(), free.join());
     product(inverse, goal, free.length).forEach((value, k) => (x[free[k]] = value));
     if (!P) return;
-    for (const i of free) {
-      for (let j = 0; j < own; j++) P[i * own + j] = P[j * own + i] = 0;
-    }
+    for (const i of free) for (let j = 0; j < own; j++) P[i * own + j] = P[j * own + i] = 0;
     for (const i of free) for (const j of free) P[i * own + j] = begun[i * own + j];
   }
 }
@@ -173,25 +159,17 @@ export class Observer {
 function lawOf({ weight, forgetting, decrease }, begun, n) {
   if (weight === "riccati")
     return { computed: true, information: 1, forgetting, pull: begun.map((value) => forgetting * value) };
-  if (weight === "lyapunov") return { computed: true, information: 0, forgetting: 0, pull: unit(n, -decrease) };
-  return { computed: false, information: 0, forgetting: 0, pull: null };
+  const pull = weight === "lyapunov" ? diagonal(n, () => -decrease) : null;
+  return { computed: pull !== null, information: 0, forgetting: 0, pull };
 }
 
 /** The samples at which points are first seen, with these points. */
 function firstSights(outputs, samples, points, first, count) {
   const found = new Map();
   for (let k = 0; k < count; k++) {
-    for (let sample = 0; sample < samples; sample++) {
-      if (Number.isNaN(outputs[2 * (sample * points + first + k)])) continue;
-      found.set(sample, [...(found.get(sample) ?? []), k]);
-      break;
-    }
+    let sample = 0;
+    while (sample < samples && Number.isNaN(outputs[2 * (sample * points + first + k)])) sample++;
+    if (sample < samples) found.set(sample, [...(found.get(sample) ?? []), k]);
   }
   return found;
-}
-
-function unit(n, size) {
-  const matrix = new Float64Array(n * n);
-  for (let i = 0; i < n; i++) matrix[i * n + i] = size;
-  return matrix;
 }

@@ -1,11 +1,10 @@
 // Questions worth asking: answers to choose from, then what happens, and perhaps more acts. `right` counts from 0.
 
-import { presetsOf, settingsAfter } from "../../common/model/settings.js";
+import { presetsOf } from "../../common/model/settings.js";
 
 const TUMBLING = [[0.2, -0.1, 3], [0.5, -0.1, 3.1], [0.2, 0.2, 2.8]];
 const FIVE_MORE = [[-0.1, -0.3, 3.1], [0.4, 0.1, 3.2], [0, 0.1, 2.9], [0.3, -0.3, 3], [-0.1, 0, 3.2]];
 
-/** `beside` is what a run that is kept beside an act changes. */
 const ASKED = [
   {
     name: "hide",
@@ -131,7 +130,7 @@ const ASKED = [
       },
       {
         button: "Five more points",
-        changes: { points: [...TUMBLING, ...FIVE_MORE] },
+        changes: { points: [...TUMBLING, ...FIVE_MORE], hidden: new Array(8).fill(null) },
         answer:
           "Still the same direction is not seen: twice the size, twice as far, the same images. Let v be other than " +
           "0, and it is found.",
@@ -187,13 +186,3 @@ const ASKED = [
  * The acts show what the equations do, with the exact signal: what sampling does besides, the lab shows when it opens.
  */
 export const PRESETS = presetsOf(ASKED.map((preset) => ({ ...preset, changes: { hold: "exact", ...preset.changes } })));
-
-/** The settings of an act, with those of the run that it keeps beside it. */
-export function settingsOf({ changes, beside }, standard) {
-  const whole = (part) => {
-    const made = settingsAfter({ changes: part }, standard);
-    if (made.hidden.length !== made.points.length) made.hidden = made.points.map(() => null);
-    return made;
-  };
-  return { ...whole(changes), kept: beside ? whole(beside) : null };
-}

@@ -6,10 +6,8 @@
 const LONGEST = 400;
 
 /**
- * Where the entries of P stand that ever differ from 0, when it begins as blocks of 3 x 3: those of one vector,
- * those of
- * two states that a point has, and what A carries these to.  One of a pair is kept: `at`
- * says where, or -1.
+ * Where the entries of P stand that ever differ from 0, when it begins as blocks of 3 x 3: those of one vector, those
+ * of two states that a point has, and what A carries these to. One of a pair is kept: `at` says where, or -1.
  */
 export function entriesOf({ rows, columns, begins, states }, n) {
   const there = new Uint8Array(n * n);
@@ -39,8 +37,7 @@ export function entriesOf({ rows, columns, begins, states }, n) {
 
 /**
  * Texts of the functions of an estimate for a layout: `moveX` fills its rates without any correction, `place` the
- * points'
- * coordinates, and `correct` what all points together say of the state.
+ * points' coordinates, and `correct` what all points together say of the state.
  */
 export function textsOfX({ rows, columns, which, begins, axes, states, entries }, n) {
   const sums = (count) => Array.from({ length: count }, () => /** @type {string[]} */ ([]));
@@ -107,9 +104,8 @@ function moveText({ rows, columns, which, begins, axes, states, entries }, { at,
 }
 
 /**
- * Cholesky's method; not finite where P is not positive definite.  States with the fewest neighbours go first, so
- * that little is
- * filled in.
+ * Cholesky's method; not finite where P is not positive definite. States with the fewest neighbours go first, so that
+ * little is filled in.
  */
 function solveText({ at }, n) {
   const neighbours = Array.from({ length: n }, (_, i) => at.subarray(i * n, i * n + n).filter((k) => k >= 0).length);

@@ -104,8 +104,7 @@ function countBelow(diagonal, beside, value) {
 /** All eigenvalues, increasing, with unit vectors, by Jacobi's rotations. */
 export function eigen(matrix, n) {
   const a = Float64Array.from(matrix);
-  const vectors = new Float64Array(n * n);
-  for (let i = 0; i < n; i++) vectors[i * n + i] = 1;
+  const vectors = diagonal(n, () => 1);
   for (let sweep = 0; sweep < SWEEPS; sweep++) {
     let rotated = false;
     for (let p = 0; p < n; p++) {
@@ -113,11 +112,9 @@ export function eigen(matrix, n) {
     }
     if (!rotated) break;
   }
-  const order = Array.from({ length: n }, (_, i) => i).sort((i, j) => a[i * n + i] - a[j * n + j]);
-  return order.map((k) => ({
-    value: a[k * n + k],
-    vector: Float64Array.from({ length: n }, (_, i) => vectors[i * n + k]),
-  }));
+  const vectorOf = (k) => Float64Array.from({ length: n }, (_, i) => vectors[i * n + k]);
+  const found = Array.from({ length: n }, (_, k) => ({ value: a[k * n + k], vector: vectorOf(k) }));
+  return found.sort((one, other) => one.value - other.value);
 }
 
 function rotate(a, vectors, n, p, q) {
@@ -158,6 +155,13 @@ export function pseudoInverse(R, m, n) {
     }
   }
   return inverse;
+}
+
+/** A matrix of n rows with numbers on its diagonal. */
+export function diagonal(n, at) {
+  const matrix = new Float64Array(n * n);
+  for (let i = 0; i < n; i++) matrix[i * n + i] = at(i);
+  return matrix;
 }
 
 export function product(matrix, x, rows) {

@@ -28,7 +28,7 @@ export function decayInWords({ fit }, bound) {
 }
 
 /** Verdict on condition (14), as Gramian.verdict() in Python. */
-export function gramianInWords(shown, { verdicts, unseen }) {
+function gramianInWords(shown, { verdicts, unseen }) {
   const { gramian, names, truth, n } = shown;
   const { weakest, window } = gramian;
   const found = derived(gramian.matrix, "eigen", () => eigen(gramian.matrix, n));

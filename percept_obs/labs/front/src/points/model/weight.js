@@ -1,6 +1,8 @@
 // @ts-check
 // P of the observer: a diagonal that is given over time, or the start of one that is computed.
 
+import { diagonal } from "./symmetric.js";
+
 /** Kinds of a P that is computed along with the estimate. */
 const COMPUTED = ["lyapunov", "riccati"];
 
@@ -46,8 +48,6 @@ export function inversesOf(model, settings, times, { typed }) {
 /** A computed P of n states at its start, row by row. */
 export function startOfP(model, settings, n, { typed }) {
   const { entries } = readP(model, settings);
-  const diagonal = textOfP(settings) ? typed([0, settings.size], new Float64Array(entries)) : [settings.size];
-  const start = new Float64Array(n * n);
-  for (let i = 0; i < n; i++) start[i * n + i] = diagonal[i % entries];
-  return start;
+  const given = textOfP(settings) ? typed([0, settings.size], new Float64Array(entries)) : [settings.size];
+  return diagonal(n, (i) => given[i % entries]);
 }

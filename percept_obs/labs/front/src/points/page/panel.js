@@ -66,7 +66,6 @@ export class Panel extends Fieldsets {
     const spin = share("spin", ({ state }) => state !== "independent");
     const motion = topic("motion", "More of the motion, A(t) and v(t)", spin, ...this.motion());
     const noise = this.number("noise.size", { label: "noise, bound or σ" });
-    const camera = ["seed", "period", "dropout", "view"];
     const body = [
       this.first(
         this.fieldset("The state holds", this.inSight("state", { choices: statesOf(this.model) })),
@@ -81,8 +80,8 @@ export class Panel extends Fieldsets {
         this.numberIf("depth", ({ start }) => start === "rays"),
         this.numberIf("error", ({ start }) => start === "error"),
       ),
-      topic("camera", "Camera", this.choice("noise.kind"), ...this.numbers(...camera), this.choice("hold")),
-      topic("pictures", "Charts", this.pictures(), this.duration(), this.number("window")),
+      topic("camera", "Camera", this.choice("noise.kind"), ...this.numbersOf("camera"), this.choice("hold")),
+      topic("pictures", "Charts", this.pictures(), this.duration(), ...this.numbersOf("pictures")),
     ];
     this.body = element("div", { class: "panel" }, ...body);
     this.controls.push(this.list);
@@ -112,7 +111,7 @@ export class Panel extends Fieldsets {
       this.numberIf("final", ({ weight }) => weight === "scheduled"),
       this.numberIf("decrease", ({ weight }) => weight === "lyapunov"),
       this.numberIf("forgetting", ({ weight }) => weight === "riccati"),
-      this.number("step"),
+      ...this.numbersOf("weight"),
     ];
     return { kind, size, rest };
   }

@@ -1,11 +1,10 @@
 // Axes of a map of the structure lab besides gains.
 
-import { axisAt } from "../../common/model/axes.js";
+import { axesAt } from "../../common/model/axes.js";
 import { isSampled } from "./camera.js";
 
 export function axesOf(_settings, model) {
-  const at = (place, label, meant) => axisAt(model, place, label, meant);
-  const each = (place, labels, meant) => labels.map((label, k) => at(`${place}.${k}`, label, meant));
+  const { at, each } = axesAt(model);
   const moved = (which) => each(which, parts(which), (settings) => !isSampled(settings));
   const parts = (letter) => [1, 2, 3].map((k) => `${letter}${k}`);
   return [

@@ -5,7 +5,6 @@ import { sampledAt } from "../../common/model/derived.js";
 import { instants } from "../../common/model/tables.js";
 import { isTyped } from "../../common/model/typed.js";
 
-
 /** True if the velocities are the user's samples. */
 export function isSampled({ velocities }) {
   return velocities === "samples";

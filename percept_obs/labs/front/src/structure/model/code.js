@@ -1,9 +1,9 @@
 // The few lines of Python that make the same run.
 
-import { userDefined, durationOf, imports, list, NOISES, trackings } from "../../common/model/code.js";
+import { userDefined, durationOf, list, NOISES, script, trackings } from "../../common/model/code.js";
 import { isTyped } from "../../common/model/typed.js";
 import { isSampled, varies } from "./camera.js";
-import { isZero, valuesAtStart } from "./kernels.js";
+import { isZero } from "./kernels.js";
 
 const MAKERS = {
   ideal: ["integral_sliding_mode", ""],
@@ -51,31 +51,28 @@ export function pythonOf(shown, model) {
     ...own.modules,
     "percept_obs.structure": ["GivenDepth", "ScaledDepthCamera", "StructureScenario"],
   };
-  const math = lines.some((line) => line.includes("math.")) ? "import math\n\n" : "";
-  return `${math}${imports(wanted)}\n${lines.join("\n")}\n`;
+  return script(wanted, lines);
 }
 
 function motionIn(settings, model) {
   if (isSampled(settings)) return ["# motion = rigid(...), the velocities that you gave to the lab"];
   if (isTyped(settings)) return motionThatIsTyped(settings, model);
   if (varies(settings)) return motionThatSwings(settings, model.phases);
-  const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(valuesAtStart(settings, which, model)));
+  // A swing whose rate is 0 stays where it begins.
+  const start = (which, value, k) => value + settings[`${which}_swing`][k] * Math.sin(model.phases[which][k]);
+  const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(settings[which].map((value, k) => start(which, value, k))));
   return [`motion = rigid(${list(settings.w)}, ${v_c}, ${v_p})`];
 }
 
 /** Velocities as numbers and swings set them, and what was typed of these. */
 function motionThatIsTyped(settings, { phases, written }) {
   const { python } = written[settings.motion];
-  const swung = (which) => settings[which].map((value, k) => {
-    const swing = settings[`${which}_swing`][k];
-    return swing ? `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})` : `${value}`;
-  });
   const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
   const moved = (which) => list(namesOf(which).map((name) => python[name] ?? name));
   return [
     "def velocities(t):",
     `    ${namesOf("w").join(", ")} = ${settings.w.join(", ")}`,
-    ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(which).join(", ")}`),
+    ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(settings, phases, which).join(", ")}`),
     `    return ${["w", "v_c", "v_p"].map(moved).join(", ")}`,
     "",
     "motion = rigid(*(lambda t, k=k: velocities(t)[k] for k in range(3)))",
@@ -83,14 +80,14 @@ function motionThatIsTyped(settings, { phases, written }) {
 }
 
 function motionThatSwings(settings, phases) {
-  const component = (which) => (value, k) => {
+  const velocities = ["v_c", "v_p"].map((which) => `${which} = lambda t: ${list(swung(settings, phases, which))}`);
+  return [...velocities, `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`];
+}
+
+/** The components of a velocity, with the swings of those that swing. */
+function swung(settings, phases, which) {
+  return settings[which].map((value, k) => {
     const swing = settings[`${which}_swing`][k];
-    return `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})`;
-  };
-  const velocity = (which) => `lambda t: [${settings[which].map(component(which)).join(", ")}]`;
-  return [
-    `v_c = ${velocity("v_c")}`,
-    `v_p = ${velocity("v_p")}`,
-    `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`,
-  ];
+    return swing ? `${value} + ${swing} * math.sin(${settings.rate} * t + ${phases[which][k]})` : `${value}`;
+  });
 }

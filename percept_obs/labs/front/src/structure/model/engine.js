@@ -2,8 +2,8 @@
 
 import { columnOf, derived } from "../../common/model/derived.js";
 import { distanceError } from "../../common/model/errors.js";
-import { Runner } from "../../common/model/runner.js";
-import { EACH, instants, lastSamples, stepGrid, withSteps } from "../../common/model/tables.js";
+import { evaluated, Runner } from "../../common/model/runner.js";
+import { column, EACH, instants, lastSamples, stepGrid } from "../../common/model/tables.js";
 import { StructureCamera } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { quantityOf } from "./quantities.js";
@@ -21,19 +21,9 @@ export class StructureEngine extends Runner {
     const { refusal } = functions;
     const { scale, tolerance } = settings;
     const recording = this.camera.record(settings, functions);
-    const image = recording.truth;
     const { settledPart } = this.model;
-    const seen = {
-      settings,
-      ...recording,
-      image,
-      sampled: 3,
-      scale,
-      tolerance,
-      settledPart,
-      refusal,
-      measured: [0, 1, 2],
-    };
+    const told = { scale, tolerance, settledPart, refusal, sampled: 3, measured: [0, 1, 2] };
+    const seen = { settings, ...recording, image: recording.truth, ...told };
     if (recording.problem || refusal) {
       const nothing = { hidden: [], hiddenNames: [], runs: [], choice: null, guard: null, limits: [], whole: true };
       return { ...seen, ...nothing, width: 3, names: OUTPUTS };
@@ -47,18 +37,8 @@ export class StructureEngine extends Runner {
     const judged = unknown.map((name) => (name === "d_s" ? this.model.judged : name)).join(", ");
     const fastest = (read) => this.greatestSpeed(read, seen.time, functions);
     const speed = this.memory.once("speed", settings, fastest, settings.period, seen.time.length);
-    const result = {
-      ...seen,
-      judged,
-      speed,
-      choice: { unknown, scaled, square },
-      hidden,
-      hiddenNames,
-      width,
-      names,
-      truth,
-      runs: [],
-    };
+    const choice = { unknown, scaled, square };
+    const result = { ...seen, judged, speed, choice, hidden, hiddenNames, width, names, truth, runs: [] };
     const lines = this.lines(result);
     const known = this.known(result, lines, functions);
     const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
@@ -98,10 +78,8 @@ export class StructureEngine extends Runner {
     const { rows } = this.camera.velocities(settings, functions, time);
     let most = 0;
     for (let k = 0; k < rows.length; k += 9) {
-      most = Math.max(
-        most,
-        Math.hypot(rows[k + 6] - rows[k + 3], rows[k + 7] - rows[k + 4], rows[k + 8] - rows[k + 5]),
-      );
+      const [x, y, z] = [3, 4, 5].map((at) => rows[k + at + 3] - rows[k + at]);
+      most = Math.max(most, Math.hypot(x, y, z));
     }
     return most;
   }
@@ -145,12 +123,8 @@ export class StructureEngine extends Runner {
   }
 
   lines({ settings, time }) {
-    const make = ({ step }) => withSteps(stepGrid(time, step));
+    const make = ({ step }) => stepGrid(time, step);
     return this.memory.once("grid", settings, make, settings.period, time.length);
-  }
-
-  exact(settings, grid, functions) {
-    return this.memory.once("exact", settings, (read) => this.camera.exact(read, functions, instants(grid)), grid);
   }
 
   /** Known signals of the observers: rows of w, M, m. */
@@ -170,22 +144,10 @@ export class StructureEngine extends Runner {
   }
 
   /** Amplification of errors by recovering theta along the run, and the determinant that it divides by. */
-  guard({ time, outputs }, { index }, known, { guard }) {
+  guard({ outputs }, { index }, known, { guard }) {
     const last = [0, 1, 2].map((c) => lastSamples(columnOf(outputs, 3, c)));
-    const sizes = new Float64Array(time.length);
-    const determinants = new Float64Array(time.length);
-    const x = new Float64Array(3 + known.width);
-    const out = new Float64Array(2);
-    x.set(known.rows.subarray(0, known.width), 3);
-    for (let k = 0; k < time.length; k++) {
-      for (let m = 0; m < 3; m++) x[m] = last[m][k];
-      const row = EACH * index[k] * known.width;
-      if (known.varying) for (let p = 0; p < known.width; p++) x[3 + p] = known.rows[row + p];
-      guard(x, out);
-      sizes[k] = out[0];
-      determinants[k] = out[1];
-    }
-    return { sizes, determinants };
+    const found = evaluated(guard, last, known, 2, (k) => EACH * index[k]);
+    return { sizes: column(found, 2, 0), determinants: column(found, 2, 1) };
   }
 
   /** Where an observer's steps become too long for its fastest part: by its name, from when on. */

@@ -18,11 +18,6 @@ export function isZero(settings, name, { written, samples }) {
   return settings[which][axis] === 0 && settings[`${which}_swing`][axis] === 0;
 }
 
-/** The components of a velocity at time 0. */
-export function valuesAtStart(settings, which, { phases }) {
-  return settings[which].map((value, k) => value + settings[`${which}_swing`][k] * Math.sin(phases[which][k]));
-}
-
 export class StructureKernels extends PrintedKernels {
   /** Why a choice is impossible; empty if it is not. */
   refusal(settings) {

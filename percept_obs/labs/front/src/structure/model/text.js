@@ -1,8 +1,7 @@
 // Why it happened, and the pictures in words.
 
 import { readable, short } from "../../common/model/scales.js";
-import { sampleAt } from "../../common/model/tables.js";
-import { filled, leavingInWords } from "../../common/model/words.js";
+import { filled, leavingInWords, readingAt as readingOf } from "../../common/model/words.js";
 import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];
@@ -13,10 +12,8 @@ export function reasons(shown, model) {
     return ["The charts show what is measured. It cannot tell the unknowns apart, so nothing is estimated."];
   const { settings, choice } = shown;
   const found = shown.limits.map(({ name, time, rate, step, remedy, shorter }) => {
-    const values = {
-      time: short(time), rate: short(rate, 4), step: short(step), limit: short(model.largestStepRate, 6), remedy,
-      shorter: short(shorter, 2), name: "integral sliding mode",
-    };
+    const numbers = { time: short(time), rate: short(rate, 4), step: short(step), shorter: short(shorter, 2) };
+    const values = { ...numbers, limit: short(model.largestStepRate, 6), remedy, name: "integral sliding mode" };
     return `${model.observers[name].title}: ${filled(model.tooLong, values)}.`;
   });
   found.push(...leavingInWords(shown));
@@ -28,16 +25,12 @@ export function reasons(shown, model) {
       `times, and noise with it.`);
   }
   if (choice.unknown.includes("d_s") && shown.runs.some(({ name }) => ONE_GAIN.includes(name))) {
-    found.push(
-      "The identifier-based observer and De Luca's have one gain for all unknowns. But the columns of Ωg differ in " +
-      "size by a " +
-        "factor of ȳ3: with the gain that fits the others, d_s hardly moves.",
-    );
+    found.push("The identifier-based observer and De Luca's have one gain for all unknowns. But the columns of Ωg " +
+      "differ in size by a factor of ȳ3: with the gain that fits the others, d_s hardly moves.");
   }
   if (settings.bias !== 0 || settings.drift !== 0) {
-    found.push(
-      "ȳ3 is measured with a bias or a drift, which no observer can know: it becomes an error of the unknowns.",
-    );
+    found.push("ȳ3 is measured with a bias or a drift, which no observer can know: it becomes an error of the " +
+      "unknowns.");
   }
   if (settings.hold === "zero" && settings.period >= 1e-3) {
     found.push("The last sample is held: until the next one the innovation grows, and that shifts what ISMO finds.");
@@ -59,9 +52,7 @@ function plain(value) {
 }
 
 export function readingAt(shown, cursor) {
-  const k = sampleAt(shown.time, cursor);
-  const row = (rows) =>
-    shown.choice.unknown.map((name) => `${name} = ${plain(quantityOf(shown, rows, name)[k])}`).join(", ");
-  const runs = shown.runs.map((run) => `${run.title} ${row(run.estimate)}`);
-  return [`At ${readable(shown.time[k])} s`, `true ${row(shown.truth)}`, ...runs].join(" · ");
+  const { unknown } = shown.choice;
+  const quantities = (_, rows, k) => unknown.map((name) => [name, plain(quantityOf(shown, rows, name)[k])]);
+  return readingOf(shown, cursor, quantities);
 }

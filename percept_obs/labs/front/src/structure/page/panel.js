@@ -61,12 +61,12 @@ export class StructurePanel extends Fieldsets {
       topic("true", "What is true: velocities, scale, start", ...this.motion()),
       topic(
         ...["camera", "What is measured, and how well"],
-        ...[this.choice("noise.kind"), ...this.numbers("noise.depth", "bias", "drift", "seed")],
+        ...[this.choice("noise.kind"), this.number("noise.depth"), ...this.numbersOf("camera")],
         ...[this.timing("period"), this.timing("duration")],
       ),
       topic(
         ...["run", "How the observers run"],
-        ...[this.choice("start"), this.choice("hold"), this.timing("step"), this.number("tolerance")],
+        ...[this.choice("start"), this.choice("hold"), this.timing("step"), ...this.numbersOf("run")],
       ),
       topic("pictures", "Charts", this.pictures()),
       mapTopic(this, axesOf),
