@@ -67,7 +67,7 @@ def test_the_lines_of_a_kept_run_come_go_and_change_with_it(show):
 def test_an_empty_chart_says_why_and_before_a_window_is_full_the_excitation_is_that_so_far(show):
     still = [[0.0] * 3] * 3
     page = show(observer_lab(A=still, b=[0.0, 0.0, 0.8], X0=[0.0, 0.0, 2.0], duration=12.0, window=2.0))
-    assert "nothing above 0 in this time" in page.evaluate(WRITTEN)
+    assert "infinite in all of this time: no distance was found" in page.evaluate(WRITTEN)
     page = show(observer_lab("ma2005_eq35"))
     assert "since the first sample" in page.evaluate(WRITTEN)
     begun = page.evaluate("""() => {

@@ -160,8 +160,10 @@ export function shows({ time, values }, { span, scale }) {
 }
 
 /** Say why a chart is empty. */
-export function sayNothing(pen, place, theme) {
-  const text = place.scale.log ? "nothing above 0 in this time" : "no value in this time";
+export function sayNothing(pen, place, lines, theme) {
+  const unbounded = lines.some(({ values }) => values.some((/** @type {number} */ value) => value === Infinity));
+  const empty = place.scale.log ? "nothing above 0 in this time" : "no value in this time";
+  const text = unbounded ? "infinite in all of this time: no distance was found" : empty;
   const [x, y] = [(place.left + place.right) / 2, (place.top + place.bottom) / 2];
   label(pen, text, x, y, theme.muted, theme, "center", "middle");
 }

@@ -53,7 +53,7 @@ export class TimeChart extends Picture {
     for (const event of events) drawEvent(pen, place, event, level, theme);
     for (const line of lines) drawOutside(pen, place, line, theme);
     for (const line of lines) nameLine(pen, place, line, theme);
-    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, theme);
+    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, lines, theme);
     pen.restore();
   }
 

@@ -83,27 +83,6 @@ export const QUESTIONS = [
     },
   },
   {
-    name: "foe",
-    chip: "Cross the focus?",
-    ask: "In a curve the point crosses the focus of expansion. What happens to an estimate that is right?",
-    answers: ["It stays right", "It gets lost", "It starts over"],
-    right: 0,
-    ...asked({ ...CURVE, ...gain(16) }, { ...CURVE, ...gain(16) }, { ...CURVE, ...gain(4) }),
-    kept: "gain 4",
-    tells:
-      "It stays right: its equations carry it through. An estimate that is still wrong (gain 4) learns nothing there.",
-    on: "chart",
-    note: "learns nothing here",
-    spot: ({ ghost }) => {
-      const k = ghost.time.findIndex((time) => time >= (ghost.inside[0][0] + ghost.inside[0][1]) / 2);
-      return { time: ghost.time[k], kept: k };
-    },
-    holds: ({ shown, ghost }) => {
-      const [right, wrong] = [errorsInside(shown), errorsInside(ghost)];
-      return right.length > 0 && Math.max(...right) < 0.05 && lastOf(wrong) >= wrong[0] && wrong[0] > 0.2;
-    },
-  },
-  {
     name: "drop",
     chip: "Drop y2?",
     ask: "The point is straight above the focus of expansion. Is its distance found from its column y1 alone?",
@@ -135,6 +114,27 @@ export const QUESTIONS = [
     holds: ({ shown, ghost }) => {
       const [shaky, calm] = [shown, ghost].map((result) => rootMeanSquare(errorsOf(result)));
       return reached(shown) < reached(ghost) && shaky > 2 * calm;
+    },
+  },
+  {
+    name: "foe",
+    chip: "Cross the focus?",
+    ask: "In a curve the point crosses the focus of expansion. What happens to an estimate that is right?",
+    answers: ["It stays right", "It gets lost", "It starts over"],
+    right: 0,
+    ...asked({ ...CURVE, ...gain(16) }, { ...CURVE, ...gain(16) }, { ...CURVE, ...gain(4) }),
+    kept: "gain 4",
+    tells:
+      "It stays right: its equations carry it through. An estimate that is still wrong (gain 4) learns nothing there.",
+    on: "chart",
+    note: "learns nothing here",
+    spot: ({ ghost }) => {
+      const k = ghost.time.findIndex((time) => time >= (ghost.inside[0][0] + ghost.inside[0][1]) / 2);
+      return { time: ghost.time[k], kept: k };
+    },
+    holds: ({ shown, ghost }) => {
+      const [right, wrong] = [errorsInside(shown), errorsInside(ghost)];
+      return right.length > 0 && Math.max(...right) < 0.05 && lastOf(wrong) >= wrong[0] && wrong[0] > 0.2;
     },
   },
   {
