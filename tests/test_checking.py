@@ -134,7 +134,7 @@ def test_hints_open_one_by_one():
 
 def test_a_right_line_shows_itself_as_mathematics():
     shown = check(RATE, AFFINE)._repr_markdown_()
-    assert shown.startswith("**Right, 1 of 3 lines.**")
+    assert shown.startswith("**Right: y1'.**")
     assert r"\dot{y_{1}} = " in shown
 
 

@@ -11,7 +11,7 @@ from percept_obs import PerspectiveSystem, affine, plane, rigid
 from percept_obs.checking.explaining import plain
 from percept_obs.checking.reading import words_of
 from percept_obs.labs import derivation_desk
-from percept_obs.labs.desk.settings import LONGEST_LINE, SCHEMA
+from percept_obs.labs.desk.settings import EXAMPLE, LONGEST_LINE, SCHEMA
 from percept_obs.labs.desk.sheets import PARTS, sheet_of
 from percept_obs.labs.desk.systems import OBSERVERS, SURFACES, number_of, system_of, system_of_student
 from percept_obs.labs.desk.typed import typed_markup
@@ -57,7 +57,9 @@ def as_tree(mathml):
 def test_three_mistakes_are_named_with_their_step_hint_by_hint(name):
     text, slip, step = MISTAKES[name]
     first = answer({"y1'": text})
-    assert (first["words"], first["lines"][0]["mark"], first["lines"][0]["told"]) == ("Not right yet.", "", [])
+    begun = name == "forgotten"  # all that is there is right
+    found = ("Right so far: 4 terms are missing.", "begun", []) if begun else ("Not right yet.", "", [])
+    assert (first["words"], first["lines"][0]["mark"], first["lines"][0]["told"]) == found
     assert (first["hint"], first["says"]) == (2, "which term")
     second = answer({"y1'": text}, 2)
     assert second["lines"][0]["mark"] == "wrong"
@@ -65,8 +67,35 @@ def test_three_mistakes_are_named_with_their_step_hint_by_hint(name):
     assert "in step" not in told(second["lines"][0])
     third = answer({"y1'": text}, 3)
     assert slip in told(third["lines"][0])
-    assert step in told(third["lines"][0])
-    assert third["hint"] == 0
+    assert "in step" not in told(third["lines"][0])
+    fourth = answer({"y1'": text}, 4)
+    assert step in told(fourth["lines"][0])
+    assert fourth["hint"] == 0
+
+
+def test_a_bracket_without_its_factor_is_named_term_by_term():
+    lacking = f"a13 + (a11 - a33) y1 + {TAIL.removesuffix(' + b1 y3')} + (b1 - b3 y1)"
+    assert answer({"y1'": lacking}, 2)["lines"][0]["told"][0][0]["text"] == "look at "
+    shown = told(answer({"y1'": lacking}, 3)["lines"][0])
+    assert "b1 should be b1 y3" in shown
+    assert "b3 y1 should be b3 y1 y3" in shown
+
+
+def test_two_slips_are_told_apart_each_with_its_steps():
+    two = f"a13 + (a11 + a33) y1 + {TAIL} + b3 y1 y3"
+    assert (answer({"y1'": two}, 3)["hint"], answer({"y1'": two}, 3)["says"]) == (4, "which step")
+    shown = told(answer({"y1'": two}, 4)["lines"][0])
+    assert "the first slip comes out so if in step 5" in shown
+    assert "the second slip comes out so if in step" in shown
+
+
+def test_a_beginning_is_right_so_far_and_a_slip_in_it_is_not():
+    for count, text in [(5, "a13 + (a11 - a33) y1"), (1, f"a13 + (a11 - a33) y1 + {TAIL}")]:
+        found = answer({"y1'": text})
+        terms = f"{count} terms are" if count > 1 else "a term is"
+        assert found["words"] == f"Right so far: {terms} missing."
+        assert found["lines"][0]["mark"] == "begun"
+    assert answer({"y1'": "a13 - a11 y1"})["words"] == "Not right yet."
 
 
 def test_the_first_hint_says_which_of_several_lines():
@@ -80,7 +109,10 @@ def test_the_first_hint_says_which_of_several_lines():
 def test_a_right_line_is_said_to_be_right_at_once():
     found = answer({"y1'": f"y1' = {RIGHT}"})
     assert (found["words"], found["right"], found["lines"][0]["mark"]) == ("Right so far, 1 of 3 lines.", True, "right")
-    assert found["steps"][5] == {"reason": found["steps"][5]["reason"], "mark": "right", "given": 1, "asked": 3}
+    assert {name: found["steps"][5][name] for name in ("name", "mark", "given", "asked")} == {
+        **{"name": "Image motion", "mark": "right"},
+        **{"given": 1, "asked": 3},
+    }
 
 
 def test_an_error_is_carried_from_step_to_step():
@@ -178,16 +210,39 @@ def test_the_witness_has_the_numbers_of_the_formulas():
     numbers |= dict(zip(system.coordinates, (0.2, -0.1, 0.7), strict=True))
     true = [float(rate.subs(numbers)) for rate in system.rate[:2]]
     b3, y1, y3 = (numbers[sp.Symbol(name, real=True)] for name in ("b3", "y1", "y3"))
-    witness = desk.analysis["witness"]
-    np.testing.assert_allclose(witness["true"], true)
-    np.testing.assert_allclose(witness["mine"][0], true[0] + 2 * b3 * y1 * y3)
-    assert witness["mine"][1] is None
-    assert derivation_desk(step=5).analysis["witness"] is None
+    picture = desk.analysis["picture"]
+    np.testing.assert_allclose(picture["true"], true)
+    np.testing.assert_allclose(picture["mine"][0], true[0] + 2 * b3 * y1 * y3)
+    assert picture["mine"][1] is None
+    apart = np.subtract(picture["field"]["mine"][0], picture["field"]["true"][0])
+    np.testing.assert_allclose(apart, 2 * b3 * np.array(picture["field"]["places"])[:, 0] * y3, atol=1e-7)
+    assert derivation_desk(part="form").analysis["picture"] is None
+
+
+def test_a_slip_in_an_earlier_step_bends_the_arrow_that_follows_from_it():
+    typed = {"rate 5 the velocity along Z": "a31 y1 + a32 y2 + a33 - b3 y3"}
+    carried = derivation_desk(step=5, typed=typed).analysis["picture"]
+    lines = {
+        "y1'": MISTAKES["wrong sign"][0],
+        "y2'": "a21 y1 + a22 y2 + a23 - y2 (a31 y1 + a32 y2 + a33 - b3 y3) + b2 y3",
+    }
+    np.testing.assert_allclose(carried["mine"], answer(lines)["picture"]["mine"])
+    assert derivation_desk(step=5).analysis["picture"]["mine"] == [None, None]
+
+
+def test_each_term_of_the_example_is_judged_and_the_whole_misses_by_its_slip():
+    (parts,) = derivation_desk().analysis["grown"].values()
+    (text,) = EXAMPLE["typed"].values()
+    assert [text[: part["end"]] for part in parts][:2] == ["a13", "a13 + (a11 - a33) y1"]
+    assert parts[-1]["end"] == len(text)
+    assert parts[-1]["miss"] > 0.5
+    mended = {name: line.replace("+ b3", "- b3") for name, line in EXAMPLE["typed"].items()}
+    assert next(iter(derivation_desk(step=6, typed=mended).analysis["grown"].values()))[-1]["miss"] < 1e-9
 
 
 def test_a_line_without_a_value_has_no_arrow():
     desk = derivation_desk(step=6, point=[0.0, 0.1, 0.7], typed={"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"})
-    assert desk.analysis["witness"]["mine"] == [None, None]
+    assert desk.analysis["picture"]["mine"] == [None, None]
 
 
 def test_a_system_follows_from_a_name_on_every_machine():
@@ -214,7 +269,7 @@ def test_a_system_of_ones_own_can_be_given():
     system = PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3))
     desk = derivation_desk(system, step=6)
     assert desk.analysis["title"] == "rigid motion on the plane surface, y1 and y2 and y3 measured"
-    assert desk.analysis["witness"] is None  # three outputs are no picture
+    assert desk.analysis["picture"] is None  # three outputs are no picture
     assert derivation_desk(PerspectiveSystem(affine(), SURFACES["chained"]())).system()[0].surface.name == "chained"
     with pytest.raises(ValueError, match="the desk takes a PerspectiveSystem, not 5"):
         derivation_desk(5)
@@ -229,5 +284,5 @@ def test_outputs_that_leave_what_is_hidden_inseparable_are_refused():
 
 def test_every_setting_opens_with_what_is_of_its_kind_and_is_in_the_docstring():
     for name, kind in SCHEMA.items():
-        assert kind.read(name, derivation_desk().settings[name]) == kind.opening
+        assert kind.read(name, derivation_desk(student="").settings[name]) == kind.opening
         assert f"\n{name} : " in derivation_desk.__doc__

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
@@ -32,13 +32,14 @@ class Explanation:
     """Slips that mend a wrong line, and the steps of the derivation in which they can have happened.
 
     A slip "missing" has nothing before, and "throughout" concerns all terms; `wrong` numbers my terms that hold a
-    product with a wrong coefficient.
+    product with a wrong coefficient.  `apart` has the steps of each of two slips by itself.
     """
 
     slips: tuple[Slip, ...] = ()
     differences: tuple[Difference, ...] = ()
     wrong: tuple[int, ...] = ()
     steps: tuple[str, ...] = ()
+    apart: tuple[tuple[str, ...], ...] = ()
 
 
 def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Explanation:
@@ -53,8 +54,40 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     one = search.single()
     everywhere = None if one else search.throughout()
     steps = tuple(_steps(search, row, target, right)) if line.kind == VALUE else ()
-    found = tuple(filter(None, (one, everywhere))) or (() if steps else search.pair())
-    return Explanation(found, *(((), ()) if line.kind == ZEROS else compared(mine, line.formula)), steps)
+    differences, wrong = ((), ()) if line.kind == ZEROS else compared(mine, line.formula)
+    found = tuple(filter(None, (one, everywhere)))
+    if found or steps:
+        return Explanation(found, differences, wrong, steps)
+    found = _left_out(search, differences, wrong) or search.pair()
+    return Explanation(found, differences, wrong, steps, tuple(_apart(search, found, row, target)))
+
+
+def _left_out(search: Search, differences: Sequence[Difference], wrong: Sequence[int]) -> tuple[Slip, ...]:
+    """Return the terms that lack one and the same factor, as a bracket does behind which it was forgotten."""
+    extra = {d.product: d.mine for d in differences if d.true == 0}
+    lacking = {d.product: d.true for d in differences if d.mine == 0}
+    if search.line.kind != VALUE or not extra or len(extra) + len(lacking) < len(differences):
+        return ()
+    for product in lacking:
+        factor = product / next(iter(extra))
+        if {p * factor: c for p, c in extra.items()} != lacking:
+            continue
+        mended = sum(term * (factor if k in wrong else 1) for k, term in enumerate(search.terms))
+        if close(search.values(mended), search.values(search.line.formula)):
+            terms = [((k,) if search.mine.is_Add else (), search.terms[k]) for k in wrong]
+            return tuple(Slip("left-out factor", sp.S.One, factor, at, t, t * factor) for at, t in terms)
+    return ()
+
+
+def _apart(search: Search, slips: Sequence[Slip], row: int, target: Target) -> Iterator[tuple[str, ...]]:
+    """Yield the steps in which each of two slips in different terms can have happened, with the other one mended."""
+    at = [slip.path[0] if slip.path and search.mine.is_Add else None for slip in slips]
+    if len(slips) != 2 or at[0] == at[1] or any(slip.kind in ("replaced", *THROUGHOUT) for slip in slips):
+        return
+    for other, place in zip(reversed(slips), reversed(at), strict=True):
+        alone = search.mine - (0 if place is None else search.terms[place]) + other.formula
+        steps = _steps(replace(search, mine=alone, until=time.thread_time() + SECONDS), row, target, {})
+        yield tuple(steps)
 
 
 def _steps(search: Search, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Iterator[str]:
@@ -134,8 +167,8 @@ def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...]
     return [(path, term) for path, term in places.items() if not any(path[:n] in places for n in range(len(path)))]
 
 
-def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]) -> tuple[list[str], list[str]]:
-    """Return two lists of sentences, where to look and what is wrong there; `show` prints formulas."""
+def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]) -> tuple[list[str], ...]:
+    """Return three lists of sentences: where to look, what is wrong, in which step; `show` prints formulas."""
     terms = [show(term) for _, term in wrong_terms(found, mine)]
     places = [f"look at {', '.join(terms)}"] if terms else []
     lacking = [d for d in found.differences if d.mine == 0]
@@ -143,8 +176,10 @@ def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]
         places.append("something is missing")
     slips = [_sentence(slip, show) for slip in found.slips]
     slips += [f"{show(d.product)}: you have {_signed(d.mine)}, it is {_signed(d.true)}" for d in found.differences[:6]]
-    slips += [f"{'or' if k else 'it comes out so'} if in step {step}" for k, step in enumerate(found.steps)]
-    return places or ["look at what all terms share"], slips
+    steps = [f"{'or' if k else 'it comes out so'} if in step {step}" for k, step in enumerate(found.steps)]
+    for which, each in zip(("first", "second"), found.apart, strict=False):
+        steps += [f"{'or' if k else f'the {which} slip comes out so'} if in step {step}" for k, step in enumerate(each)]
+    return places or ["look at what all terms share"], slips, steps
 
 
 def _signed(number: sp.Expr) -> str:

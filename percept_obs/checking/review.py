@@ -90,9 +90,14 @@ class Review:
             return (what if count > 1 else "Not right yet") + more + "."
         if self.right is None:
             return CANNOT_BE_TOLD
-        checked, asked = len({line.row for line in self.lines}), len(self.target.lines)
+        rows = sorted({line.row for line in self.lines})
+        names = [self.target.lines[row].name for row in rows]
+        if len(rows) == len(self.target.lines):
+            which = ""
+        else:  # it says what was looked at: whoever is asked for one line has not left out the others
+            which = f": {', '.join(names)}" if all(names) else f", {len(rows)} of {len(self.target.lines)} lines"
         notes = sorted({line.note for line in self.lines if line.note})
-        return "; ".join(["Right" + (f", {checked} of {asked} lines" if checked < asked else ""), *notes]) + "."
+        return "; ".join([f"Right{which}", *notes]) + "."
 
     def __str__(self) -> str:
         out = [self.summary]
@@ -117,7 +122,8 @@ class Review:
         """Yield the sentences on a line."""
         line = self.lines[k]
         if line.verdict == Verdict.WRONG and self.hints > 1 and k in self.explanations:
-            yield from sentences(self.explanations[k], line.mine, show)[self.hints - 2]
+            where, slips, steps = sentences(self.explanations[k], line.mine, show)
+            yield from where if self.hints == 2 else [*slips, *steps]
         elif (line.verdict == Verdict.CARRIED and self.hints) or (line.verdict == Verdict.WRONG and self.hints > 2):
             yield line.note
 

@@ -6,18 +6,17 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import isfinite
 from typing import Any
 
 import sympy as sp
 
 from percept_obs.checking import CannotRead, Review, Verdict
-from percept_obs.checking.explaining import sentences
+from percept_obs.checking.explaining import compared, sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
-from percept_obs.checking.review import CANNOT_BE_TOLD, HINTS
-from percept_obs.labs.desk.sheets import Sheet
-from percept_obs.labs.desk.systems import number_of
+from percept_obs.checking.review import CANNOT_BE_TOLD
+from percept_obs.labs.desk.arrows import ends_of, grown_of, picture_of
+from percept_obs.labs.desk.sheets import Sheet, name_of
 from percept_obs.labs.desk.typed import typed_markup
 from percept_obs.labs.shared.markup import dotted, markup
 from percept_obs.labs.shared.schema import Settings
@@ -26,7 +25,7 @@ from percept_obs.system.perspective import PerspectiveSystem
 Words = list[dict[str, str]]
 """A sentence in pieces of text and of MathML."""
 
-WRONG = {Verdict.WRONG, Verdict.CARRIED}
+HINTS = ("which line", "which term", "which slip", "which step")
 MARKS = {
     Verdict.RIGHT: "right",
     Verdict.CONVENTION: "right",
@@ -82,7 +81,12 @@ def alone(sheet: Sheet, row: int, text: str) -> Judged | None:
 
 def review_of(sheet: Sheet, step: int, texts: Mapping[int, str]) -> Review:
     """Check the lines of a step; they may follow from wrong ones in steps before."""
-    here = sheet.rows(step)
+    return _review(sheet, step, tuple(texts.items()))
+
+
+@lru_cache(maxsize=64)  # so that a slip is looked for once
+def _review(sheet: Sheet, step: int, typed: tuple[tuple[int, str], ...]) -> Review:
+    texts, here = dict(typed), sheet.rows(step)
     known = {row: alone(sheet, row, texts[row]) for row in sorted(texts) if row < here.stop}
     lines = [line for row, line in known.items() if line and row in here]
     if any(line.verdict == Verdict.WRONG for line in lines):
@@ -101,12 +105,16 @@ def state_of(sheet: Sheet, step: int, texts: Mapping[int, str]) -> dict[str, Any
     return {"mark": mark, "given": len(filled), "asked": len(rows)}
 
 
-def summary_of(review: Review, asked: int) -> str:
+def summary_of(sheet: Sheet, review: Review, asked: int) -> str:
     """Return the verdict on a step in a sentence that names no line."""
     count = len(review.lines)
     wrong = sum(line.verdict == Verdict.WRONG for line in review.lines)
     if not count:
         return ""
+    missing = [missing_in(sheet, line) for line in review.lines if line.verdict == Verdict.WRONG]
+    if missing and all(missing):
+        terms = "a term is" if sum(missing) == 1 else f"{sum(missing)} terms are"
+        return f"Right so far: {terms} missing."
     if wrong:
         are = "is" if wrong == 1 else "are"
         return "Not right yet." if count == 1 else f"{wrong} of {count} lines {are} not right yet."
@@ -119,12 +127,25 @@ def summary_of(review: Review, asked: int) -> str:
     return "; ".join([begun, *notes]) + "."
 
 
-def hints_of(review: Review, hints: int) -> dict[int, dict[str, Any]]:
+def missing_in(sheet: Sheet, line: Judged) -> int:
+    """Return how many terms a line lacks that is right as far as it goes; 0 for any other."""
+    return 0 if line.mine == 0 else _missing(line.mine, sheet.goal.lines[line.row].formula)
+
+
+@lru_cache(maxsize=1024)
+def _missing(mine: sp.Expr, true: sp.Expr) -> int:
+    differences, _ = compared(mine, true)
+    return len(differences) if all(difference.mine == 0 for difference in differences) else 0
+
+
+def hints_of(sheet: Sheet, review: Review, hints: int) -> dict[int, dict[str, Any]]:
     """Return the mark and the open hints of each line, by its row."""
-    marked = hints or review.right is not False
+    wrong = [line for line in review.lines if line.verdict == Verdict.WRONG]
+    begun = {line.row for line in wrong if missing_in(sheet, line)} if hints < 2 else set()
+    marked = hints or review.right is not False or len(begun) == len(wrong)
     return {
         line.row: {
-            "mark": MARKS[line.verdict] if marked else "",
+            "mark": ("begun" if line.row in begun else MARKS[line.verdict]) if marked else "",
             "told": list(_sentences(review, k, hints)) if hints else [],
         }
         for k, line in enumerate(review.lines)
@@ -158,6 +179,8 @@ def next_hint(review: Review, hints: int) -> tuple[int, str]:
     following = hints + 1
     if following == 1 and len(review.lines) == 1:
         following = 2  # the only line is the wrong one
+    if following == len(HINTS) and not any(e.steps or any(e.apart) for e in review.explanations.values()):
+        return 0, ""
     return (following, HINTS[following - 1]) if following <= len(HINTS) else (0, "")
 
 
@@ -171,23 +194,46 @@ def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Se
     rows, review = sheet.rows(step), review_of(sheet, step, texts)
     hints = int(settings["hints"].get(f"{part} {step}", 0))
     hint, says = next_hint(review, hints)
-    found = hints_of(review, hints)
+    found = hints_of(sheet, review, hints)
     reasons = [sheet.derivation[number - 1].reason.rstrip(":") for number in steps]
     return {
         "given": sheet.given,
         "letters": sheet.letters,
-        "steps": [{"reason": reasons[k - 1], **state_of(sheet, k, texts)} for k in steps],
+        "steps": [
+            {"reason": reasons[k - 1], "name": name_of(reasons[k - 1]), **state_of(sheet, k, texts)} for k in steps
+        ],
         "step": step,
         "lines": [
             {"key": keys[row], "name": names[row][1], "label": _label(names[row][1]), **_line(sheet, row, texts, found)}
             for row in rows
         ],
-        "words": summary_of(review, len(rows)),
+        "words": summary_of(sheet, review, len(rows)),
         "right": review.right if review.lines else None,
         "hint": hint,
         "says": says,
-        "witness": witness_of(sheet, rows, texts, system, settings["point"]),
+        "picture": picture_of(
+            sheet,
+            step,
+            {row: _formula(sheet, row, texts[row]) for row in rows if row in texts},
+            system,
+            settings["point"],
+        ),
+        "grown": {keys[row]: _grown(sheet, row, texts[row], system, settings["point"]) for row in rows if row in texts},
     }
+
+
+def _formula(sheet: Sheet, row: int, text: str) -> sp.Expr | None:
+    reading = entry_of(sheet, row, text).reading
+    return reading.formula if reading else None
+
+
+def _grown(sheet: Sheet, row: int, text: str, system: PerspectiveSystem, point: Sequence[float]) -> list[Settings]:
+    """Return the beginnings of a line of the image's motion, with what they look like; of other lines none."""
+    if sheet.goal.lines[row].name not in sheet.image:
+        return []
+    entries = {end: entry_of(sheet, row, text[:end]) for end in ends_of(text)}
+    formulas = {end: entry.reading.formula for end, entry in entries.items() if entry.reading}
+    return [{"markup": entries[part["end"]].markup, **part} for part in grown_of(sheet, row, formulas, system, point)]
 
 
 def _line(sheet: Sheet, row: int, texts: Mapping[int, str], hinted: Mapping[int, Settings]) -> Settings:
@@ -206,33 +252,3 @@ def _label(name: str) -> str:
     if " " in name:
         return ""
     return dotted(sp.Symbol(stem)) if stem != name else markup(sp.Symbol(name))
-
-
-def witness_of(
-    sheet: Sheet, rows: Sequence[int], texts: Mapping[int, str], system: PerspectiveSystem, point: Sequence[float]
-) -> dict[str, Any] | None:
-    """Return the motion of the image at a point, in 1/s, by the lines that are typed and by the true ones.
-
-    The point is y1, y2 and the inverse distance, and `rows` are the lines of the step that is shown.  None stands for
-    what is not typed or has no value, or for all, where these lines are no image's motion or it cannot be drawn in a
-    plane.
-    """
-    lines = sheet.goal.lines
-    image = [row for name in sheet.image for row in rows if lines[row].name == name]
-    if len(image) != 2:
-        return None
-    coordinates = dict(zip(system.coordinates, point, strict=True))
-    numbers = {s: number_of(s, system) for s in system.parameters} | coordinates
-    typed = {row: alone(sheet, row, texts[row]) for row in image if row in texts}
-    mine = [_number(line.mine, numbers) if (line := typed.get(row)) else None for row in image]
-    return {
-        "names": [lines[row].name for row in image],
-        "true": [_number(lines[row].formula, numbers) for row in image],
-        "mine": mine,
-    }
-
-
-def _number(formula: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> float | None:
-    """Return the number of a formula; None where it has none."""
-    found = formula.xreplace({s: sp.Float(x) for s, x in numbers.items()}).evalf()
-    return float(found) if found.is_real and isfinite(found) else None

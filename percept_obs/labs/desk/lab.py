@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from percept_obs.labs.desk.answers import answer_to
-from percept_obs.labs.desk.settings import SCHEMA
+from percept_obs.labs.desk.settings import EXAMPLE, SCHEMA
 from percept_obs.labs.desk.sheets import Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
 from percept_obs.labs.shared.lab import Lab
@@ -24,7 +24,8 @@ class DerivationDesk(Lab):
     system : PerspectiveSystem, optional
         System of one's own, if it is none of those that can be chosen.
     **settings
-        Settings to open with, such as ``student="Ada"``, from which a system of her own follows:
+        Settings to open with, such as ``student="Ada"``, from which a system of her own follows; without any it opens
+        with an example, a line that holds a slip:
 
     {settings}
 
@@ -51,6 +52,8 @@ class DerivationDesk(Lab):
             )
         self._given = system
         opening, given = SCHEMA.opening, None
+        if system is None and not set(settings) - {"face"}:
+            opening |= EXAMPLE
         if system is not None:
             given = {"outputs": [list(names) for names in system.output_choices]}
             opening["outputs"] = given["outputs"][0]

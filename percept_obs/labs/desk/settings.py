@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from percept_obs.checking.review import HINTS
+from percept_obs.labs.desk.answers import HINTS
 from percept_obs.labs.desk.sheets import PARTS
 from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, system_of
 from percept_obs.labs.shared.printed import Parts
@@ -32,6 +32,13 @@ SCHEMA = Schema(
         about="where numbers are put in: y1, y2 and the inverse distance",
     ),
 )
+
+EXAMPLE: dict[str, Any] = {
+    "step": 6,
+    "point": [-0.5, -0.3, 1.0],
+    "typed": {"rate 6 y1'": "a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 + b3 y1) y3"},
+}
+"""Settings of a desk that is given none, where they differ: a line with a slip in its last term."""
 
 
 def texts_for_the_page() -> Parts:

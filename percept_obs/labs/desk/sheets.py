@@ -28,6 +28,26 @@ PARTS = {
 }
 """Parts of a derivation, each of which needs those before it."""
 
+NAMES = {
+    "The point moves": "Moving point",
+    "It is seen": "Its image",
+    "So the point lies": "Its ray",
+    "Derivatives of": "Derivatives",
+    "The velocity": "Its velocity",
+    "Image coordinates": "Image motion",
+    "The focus of expansion": "Focus of expansion",
+    "What multiplies": "w",
+    "What is left": "φ",
+    "How the hidden": "g",
+    "The error": "Error dynamics",
+}
+"""Short names of steps, by how their reasons begin."""
+
+
+def name_of(reason: str) -> str:
+    """Return the short name of a step; its reason without the explanation, if it has none."""
+    return next((name for start, name in NAMES.items() if reason.startswith(start)), reason.partition(",")[0])
+
 
 @dataclass(frozen=True, eq=False)
 class Sheet:

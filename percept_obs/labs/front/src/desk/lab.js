@@ -1,16 +1,22 @@
 // The derivation desk: steps are filled in line by line, and Python says what it finds while somebody types.
 
-import { same } from "../common/model/settings.js";
+import { changeAt, same } from "../common/model/settings.js";
 import { themeOf } from "../common/page/canvas.js";
 import { LabBase } from "../common/page/lab_base.js";
 import { build } from "./page/layout.js";
 import { Panel, WORDS } from "./page/panel.js";
+import { agrees, MotionPicture } from "./page/picture.js";
+import { Replay } from "./page/replay.js";
 import { Sheet } from "./page/sheet.js";
-import { Witness } from "./page/witness.js";
 
 const DEBOUNCE = 20;
 /** Milliseconds without typing after which a text that may not be complete is judged. */
 const PAUSE = 1000;
+/** Milliseconds after which it is said that Python is at work. */
+const SLOW = 250;
+const OPENING = "How does the image move? Watch a line being derived.";
+const GROWING = "Each term bends the blue arrow. With all of them right it lies on the true one.";
+const EMPTY = "Type what you derive: a blue arrow shows the motion that it means.";
 
 export class DeskLab extends LabBase {
   constructor(widget, place, model) {
@@ -18,21 +24,49 @@ export class DeskLab extends LabBase {
     this.calm = true;
     /** @type {any} the timer of what is told to Python next */
     this.telling = null;
-    this.picture = new Witness(this);
+    /** @type {any} the timer after which it is said that Python is at work */
+    this.slow = null;
+    /** @type {"first" | "workbench"} */
+    this.face = widget.get("face") ?? "first";
+    /** True once somebody has typed. */
+    this.byHand = false;
+    /** Key of the line that has, or last had, the focus. */
+    this.chosen = "";
+    this.drawnAt = 0;
+    this.picture = new MotionPicture(this);
+    this.replay = new Replay(this);
     this.sheet = new Sheet(this);
     this.panel = new Panel(this);
     this.answer = { ...widget.get("analysis"), settings: this.settings };
     this.follow(build(this, place));
+    if (this.face === "first") this.replay.follow();
   }
 
   get figures() {
-    return [this.picture];
+    return [this.picture, this.replay.chart];
+  }
+
+  /** Show the first screen, or the workbench, of the same lines. */
+  turn(face) {
+    this.face = face;
+    this.replay.stop();
+    this.view.turn(face);
+    this.schedule();
+  }
+
+  close() {
+    super.close();
+    this.replay.pause();
+    clearTimeout(this.slow);
+    clearTimeout(this.telling);
   }
 
   // What the hand does.
 
   /** Take what stands in a line; hints on its step close, but for which lines are right. */
   type(key, text) {
+    this.replay.stop();
+    this.byHand = true;
     const { [key]: _old, ...others } = this.settings.typed;
     const typed = text ? { ...others, [key]: text } : others;
     const step = this.stepKey();
@@ -49,7 +83,40 @@ export class DeskLab extends LabBase {
   }
 
   turnTo(step) {
+    this.replay.stop();
+    this.chosen = "";
     this.change({ step }, true);
+  }
+
+  movePoint([y1, y2]) {
+    this.change(changeAt(changeAt(this.settings, "point.0", y1), "point.1", y2));
+  }
+
+  /** The focus has come to a line: it is the one that is shown. */
+  choose(key) {
+    this.replay.stop();
+    if (this.chosen === key) return;
+    this.chosen = key;
+    this.schedule();
+  }
+
+  /** The line whose growth is shown: the chosen one, or the first that has some. */
+  shownLine() {
+    const grown = Object.entries(this.answer?.grown ?? {}).filter(([, parts]) => parts.length);
+    const key = (grown.find(([name]) => name === this.chosen) ?? grown[0])?.[0] ?? "";
+    return { key, text: this.answer?.settings.typed[key] ?? "" };
+  }
+
+  /** Motions that are shown: of the whole lines, or of a line as far as it stands there while it is played. */
+  motions() {
+    const { picture } = this.answer;
+    const { at, part, line } = this.replay;
+    if (at === null) return { ...picture, whole: picture.mine };
+    const row = picture.names.findIndex((name) => line.key.endsWith(` ${name}`));
+    const put = (values, value) => values.map((old, k) => (k === row ? value : old));
+    const none = picture.field.places.map(() => null);
+    const field = { ...picture.field, mine: put(picture.field.mine, part?.field ?? none) };
+    return { ...picture, whole: picture.mine, mine: put(picture.mine, part?.at ?? null), field };
   }
 
   clear() {
@@ -102,18 +169,64 @@ export class DeskLab extends LabBase {
   paint() {
     this.pending = false;
     cancelAnimationFrame(this.frame);
-    const { answer, settings } = this;
+    const { answer, settings, replay } = this;
     const current = answer?.settings === settings;
     const sameSheet = ["student", "motion", "surface", "outputs", "observer", "part", "step"].every((name) =>
       same(answer?.settings[name], settings[name]),
     );
+    const sameLines = sameSheet && same(answer.settings.typed, settings.typed);
     this.theme ??= themeOf(this.view.root);
     this.shown = answer;
     this.view.problem(answer?.problem ?? "");
     this.view.show(answer, sameSheet);
     this.view.steps(this.state);
     if (sameSheet && !answer.problem) this.sheet.show(answer, current);
-    this.picture.show(current ? answer : null, this.theme);
-    if (current && this.calm) this.view.announce(this.sheet.told(answer));
+    this.watch(current);
+    const plain = settings.motion === "affine" && settings.surface === "pinhole" && !settings.student.trim();
+    const usual = plain && !this.model.given;
+    this.view.marked({ pictured: Boolean(answer?.picture), played: replay.at !== null, usual });
+    if (sameLines && answer.picture) this.draw();
+    if (sameLines) replay.show(this.theme);
+    if (current) this.view.says(this.sentence(answer));
+    if (current && this.calm && replay.at === null) this.view.announce(this.sheet.told(answer));
+  }
+
+  draw() {
+    const { answer, settings, replay } = this;
+    const now = performance.now();
+    const motion = { held: false, still: replay.still.matches, passed: Math.min(now - this.drawnAt, 60) };
+    this.drawnAt = now;
+    const moving = this.picture.draw(this.motions(), answer.settings.point, settings.point, this.theme, motion);
+    if (moving) this.schedule();
+  }
+
+  /** Say that Python is at work where its answer takes longer than a blink. */
+  watch(current) {
+    if (current) {
+      clearTimeout(this.slow);
+      this.slow = null;
+      this.sheet.thinking(false);
+    } else this.slow ??= setTimeout(() => this.sheet.thinking(true), SLOW);
+  }
+
+  /** One sentence: what is seen, or what to do. */
+  sentence(answer) {
+    const { replay, calm } = this;
+    if (answer.problem) return "";
+    if (replay.at !== null) return replay.part ? GROWING : OPENING;
+    const typed = answer.lines.filter(({ markup, refusal }) => markup || refusal);
+    if (!typed.length) return answer.picture ? EMPTY : "Type the lines of this step, one after the other.";
+    if (!calm && !answer.right) return "Go on: what is not right is told when you pause.";
+    if (typed.some(({ refusal }) => refusal)) return "A line cannot be read yet: the place is marked.";
+    const last = answer.step === answer.steps.length;
+    if (answer.right && typed.length === answer.lines.length)
+      return last ? "This step is right, and it is the last one." : "This step is right. Go on to the next one.";
+    if (answer.right && answer.picture) return "Right, here and everywhere: both arrows are one. Type the next line.";
+    const begun = answer.lines.some(({ mark }) => mark === "begun");
+    if (answer.right !== false || begun) return answer.words;
+    if (!answer.picture?.mine.some((value) => value !== null)) return `${answer.words} Hints open one by one.`;
+    if (agrees(answer.picture)) return "Here the slip hides: the arrows agree, although a line is wrong.";
+    const help = answer.hint ? ", or open a hint" : "";
+    return `Not right: your arrow misses the true one. Mend the line${help}.`;
   }
 }

@@ -4,7 +4,7 @@ import { button, element, formula, setText } from "../../common/page/dom.js";
 import { historyButtons, keys, messagesOf } from "../../common/page/layout.js";
 
 export function build(lab, place) {
-  const { panel, sheet, picture } = lab;
+  const { panel, sheet, picture, replay } = lab;
   const { problem, pythonError, silence, notice, said, functions } = messagesOf();
   const history = historyButtons(lab);
   const live = element("p", { class: "unseen", role: "status", "aria-live": "polite" });
@@ -21,20 +21,36 @@ export function build(lab, place) {
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
     said,
   );
+  const says = element("p", { class: "says" });
+  const otherOf = (face) => (face === "first" ? "Workbench" : "First screen");
+  const other = button(otherOf(lab.face), () => lab.turn(lab.face === "first" ? "workbench" : "first"), {
+    ...{ class: "link", "data-control": "workbench" },
+  });
+  const premises = element("div", { class: "premises" }, title, given, letters);
   const root = element(
     "div",
-    { class: "percept-lab desk" },
-    element("div", { class: "bar" }, panel.body, actions),
+    { class: "percept-lab desk", "data-face": lab.face },
     ...[problem, pythonError, notice, silence, live],
+    element("div", { class: "bar" }, panel.body, actions),
     element(
       "div",
-      { class: "stage" },
-      element("div", { class: "task" }, title, given, letters, element("nav", { "aria-label": "Steps" }, steps)),
-      element("div", { class: "work" }, reason, sheet.body),
-      element("div", { class: "seen" }, picture.body),
+      { class: "bench" },
+      element(
+        "section",
+        { class: "first-screen sheets", "aria-label": "Derivation" },
+        element("div", { class: "heading" }, says),
+        element(
+          "div",
+          { class: "views" },
+          element("nav", { class: "path", "aria-label": "Steps" }, steps),
+          element("div", { class: "work" }, reason, sheet.body, premises),
+          element("div", { class: "seen" }, picture.figure, panel.inverse),
+        ),
+        replay.body,
+        element("div", { class: "handy" }, other),
+      ),
     ),
   );
-  picture.body.append(panel.inverse);
   place.append(root);
   keys(root, lab);
 
@@ -43,10 +59,18 @@ export function build(lab, place) {
   return {
     root,
     ...functions,
+    turn(face) {
+      root.setAttribute("data-face", face);
+      setText(other, otherOf(face));
+    },
+    says: (text) => setText(says, text),
+    marked(classes) {
+      for (const [name, on] of Object.entries(classes)) root.classList.toggle(name, on);
+    },
     steps: history.show,
     announce: (text) => setText(live, text),
     show(answer, ofThisSheet) {
-      root.querySelector(".stage").classList.toggle("waiting", !ofThisSheet);
+      root.querySelector(".bench").classList.toggle("waiting", !ofThisSheet);
       if (!answer.steps || answer.problem) return;
       setText(title, answer.title);
       root.dataset.part = answer.settings.part;
@@ -68,13 +92,16 @@ export function build(lab, place) {
     },
   };
 
-  function entryOf({ reason: why, mark, given: filled, asked }, number, step) {
+  function entryOf({ name, reason: why, mark, given: filled, asked }, number, step) {
     const done = mark === "right" && filled === asked;
-    const how = done ? "done" : filled ? `${filled} of ${asked}` : "";
-    const found = element("span", { class: `how ${mark}` }, done ? `✓ ${how}` : how);
-    const attributes = { "data-control": `step ${number}`, "aria-current": number === step && "step" };
+    const how = done ? "done" : filled ? `${filled} of ${asked} lines typed` : "";
+    const attributes = {
+      ...{ "data-control": `step ${number}`, "aria-current": number === step && "step", class: done ? "done" : "" },
+      title: why,
+    };
     const turn = button("", () => lab.turnTo(number), attributes);
-    turn.append(element("span", { class: "why-step" }, why), found);
+    turn.append(element("i", { "aria-hidden": "true" }, done ? "✓" : String(number)), element("span", {}, name));
+    if (how) turn.append(element("span", { class: "unseen" }, `, ${how}`));
     return element("li", {}, turn);
   }
 }

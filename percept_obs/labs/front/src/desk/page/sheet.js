@@ -1,9 +1,15 @@
 // The lines of a step: what is typed, the same as mathematics, and what is found of it.
 
-import { button, element, formula, setText } from "../../common/page/dom.js";
+import { button, element, formula, listen, setText } from "../../common/page/dom.js";
 
-const MARKS = { right: "✓", wrong: "✗", carried: "↳", unknown: "?" };
-const SAID = { right: "right", wrong: "not right", carried: "right from there on", unknown: "cannot be told" };
+const MARKS = { right: "✓", begun: "…", wrong: "✗", carried: "↳", unknown: "?" };
+const SAID = {
+  ...{ right: "right", begun: "right so far", wrong: "not right" },
+  ...{ carried: "right from there on", unknown: "cannot be told" },
+};
+/** Marks of lines after which the next one is asked for. */
+const PASSED = ["right", "carried", "unknown"];
+const INVITED = "Type here and mend it";
 const UNFINISHED = "not complete yet";
 
 let count = 0;
@@ -18,7 +24,8 @@ export class Sheet {
     this.words = element("p", { class: "sheet-words" });
     const open = () => lab.openHint(Number(this.hint.dataset.number));
     this.hint = button("", open, { "data-control": "hint", hidden: true });
-    const found = element("div", { class: "found" }, this.words, this.hint);
+    this.work = element("p", { class: "thinking", role: "status", hidden: true }, "Python is looking …");
+    const found = element("div", { class: "found" }, this.words, this.hint, this.work);
     this.body = element("div", { class: "sheet" }, this.list, found);
   }
 
@@ -31,7 +38,11 @@ export class Sheet {
       this.list.replaceChildren(...this.lines.map(({ row }) => row));
     }
     const { calm } = this.lab;
-    this.lines.forEach((line, k) => line.show(answer.lines[k], calm));
+    const open = this.lab.face === "workbench" ? this.lines.length : openOf(answer.lines);
+    this.lines.forEach((line, k) => {
+      line.row.hidden = k >= open;
+      line.show(answer.lines[k], calm);
+    });
     const said = current && (calm || answer.right);
     setText(this.words, said ? answer.words : "");
     this.words.className = `sheet-words ${said && answer.right ? "right" : ""}`;
@@ -43,6 +54,10 @@ export class Sheet {
     this.hint.dataset.number = answer.hint;
     setText(this.hint, `Hint: ${answer.says}`);
     if (focused && !answer.hint) this.lines.at(-1)?.field.focus({ preventScroll: true });
+  }
+
+  thinking(on) {
+    this.work.hidden = !on;
   }
 
   /** The findings in words, for a screen reader. */
@@ -58,13 +73,21 @@ class Line {
     this.key = key;
     this.name = name;
     const id = `percept-line-${++count}`;
-    this.field = element("input", {
-      ...{ type: "text", id, maxlength: lab.schema.typed.of.most, "data-control": `line ${key}` },
+    this.field = element("textarea", {
+      ...{ id, rows: 1, maxlength: lab.schema.typed.of.most, "data-control": `line ${key}`, placeholder: "Type here" },
       ...{ spellcheck: "false", autocapitalize: "off", autocomplete: "off", autocorrect: "off" },
       "aria-describedby": `${id}-found`,
     });
-    this.field.addEventListener("input", () => lab.type(key, this.field.value));
-    this.field.addEventListener("blur", () => lab.rest());
+    listen(this.field, {
+      input: () => lab.type(key, this.field.value.replace(/\s*\n\s*/g, " ")),
+      focus: () => lab.choose(key),
+      blur: () => lab.rest(),
+      keydown: (event) => {
+        if (event.key !== "Enter") return;
+        event.preventDefault();
+        lab.rest();
+      },
+    });
     const words = label
       ? [formula("span", label, { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)]
       : [name];
@@ -79,20 +102,31 @@ class Line {
       element("div", { class: "entry" }, this.field, this.mark),
       element("div", { class: "beneath" }, this.formula, this.state, this.hints),
     );
-    this.markup = this.hinted = this.measured = "";
+    this.markup = this.hinted = this.measured = this.grown = "";
   }
 
   show(found, calm) {
-    const text = this.lab.settings.typed[this.key] ?? "";
+    const { at, part, line: { key } } = this.lab.replay;
+    const played = at !== null && key === this.key;
+    const whole = this.lab.settings.typed[this.key] ?? "";
+    const text = played ? whole.slice(0, at) : whole;
     if (this.field.value !== text) this.field.value = text;
     const mine = this.lab.isOf(this.key);
     this.row.classList.toggle("late", !mine);
-    if (mine && this.markup !== found.markup) {
-      this.markup = found.markup;
-      this.formula.replaceChildren(...inPieces(found.markup));
+    const markup = played ? (part?.markup ?? "") : found.markup;
+    if (mine && this.markup !== markup) {
+      this.markup = markup;
+      this.formula.replaceChildren(...inPieces(markup));
     }
-    this.letScroll(found.markup);
-    const mark = mine && (calm || found.mark === "right") ? found.mark : "";
+    this.fit(text, markup);
+    if (played) {
+      this.mark.hidden = true;
+      setText(this.state, "");
+      this.state.classList.remove("pill");
+      this.tell([]);
+      return;
+    }
+    const mark = mine && (calm || PASSED[0] === found.mark) ? found.mark : "";
     setText(this.mark, MARKS[mark] ?? "");
     this.mark.className = `mark ${mark}`;
     if (mark) this.mark.setAttribute("aria-label", SAID[mark]);
@@ -100,16 +134,25 @@ class Line {
     this.mark.hidden = !mark;
     const refused = Boolean(mine && found.refusal);
     this.field.setAttribute("aria-invalid", String(calm && refused));
+    const invited = calm && found.mark !== "right" && text && !this.lab.byHand && this.lab.answer.hint === 2;
+    this.state.classList.toggle("pill", invited);
     if (calm && refused) this.refuse(found, text);
-    else setText(this.state, refused ? UNFINISHED : "");
+    else setText(this.state, refused ? UNFINISHED : invited ? INVITED : "");
     this.tell(mine ? found.told : []);
   }
 
-  /** Let a keyboard reach a formula that scrolls, being wider than its place. */
-  letScroll(markup) {
-    const seen = `${this.lab.width} ${markup}`;
-    if (seen === this.measured) return;
-    this.measured = seen;
+  /** Let the field be as high as its text, and a keyboard reach a formula that is wider than its place. */
+  fit(text, markup) {
+    const { width, face } = this.lab;
+    const seen = [width, face, this.row.hidden, text].join(" ");
+    if (seen !== this.grown) {
+      this.grown = seen;
+      this.field.style.height = "auto";
+      this.field.style.height = `${this.field.scrollHeight + 2}px`;
+    }
+    const shown = `${width} ${markup}`;
+    if (shown === this.measured) return;
+    this.measured = shown;
     const { scrollWidth, clientWidth } = this.formula;
     if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
     else this.formula.removeAttribute("tabindex");
@@ -138,6 +181,13 @@ class Line {
     const hints = [...this.hints.children].map((item) => ` ${item.textContent}.`);
     return `${this.name}: ${SAID[found.mark]}.${hints.join("")}`;
   }
+}
+
+/** How many lines the first screen shows: up to the first that is not passed, and all that are typed. */
+function openOf(lines) {
+  const next = lines.findIndex(({ mark }) => !PASSED.includes(mark));
+  const typed = lines.findLastIndex(({ markup, refusal }) => markup || refusal);
+  return Math.max(next < 0 ? lines.length : next + 1, typed + 1);
 }
 
 function pieceOf({ text, math }) {

@@ -1,0 +1,142 @@
+"""The desk opens with a line that is typed and judged by itself; little stands there, and it is large."""
+
+import io
+
+import pytest
+from lab_browser import control, rested
+from matplotlib.image import imread
+from test_desk_browser import LINE, at_desk, text_of
+
+from percept_obs.labs import derivation_desk
+from percept_obs.labs.desk.settings import EXAMPLE
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+SIZES = [(830, 600), (1240, 680), (390, 760)]
+(TYPED,) = EXAMPLE["typed"].values()
+SHOWN = """() => {
+    document.querySelectorAll(".unseen").forEach((node) => node.remove());  // it is heard
+    return {
+    controls: [...document.querySelectorAll("[data-control]")].filter((node) =>
+        node.checkVisibility({ visibilityProperty: true })).map((node) => node.dataset.control),
+    words: [document.querySelector(".percept-lab").innerText,
+        ...[...window.perceptObsLabs][0].figures.flatMap(({ texts }) => texts.map(({ text }) => text))].join(" "),
+    across: document.documentElement.scrollWidth };
+}"""
+OVERLAPS = """() => [...window.perceptObsLabs][0].figures.flatMap(({ texts, width, height }) =>
+    texts.flatMap((one, k) => [
+    ...texts.slice(k + 1).filter(({ box }) => one.box[0] < box[2] && one.box[2] > box[0] && one.box[1] < box[3]
+        && one.box[3] > box[1]).map(({ text }) => [one.text, text]),
+    ...(one.box[0] < 0 || one.box[1] < 0 || one.box[2] > width || one.box[3] > height ? [[one.text, "cut"]] : []),
+]))"""
+PLAYED = "() => [...window.perceptObsLabs][0].replay.at === null"
+STANDS = "() => { const { replay } = [...window.perceptObsLabs][0]; replay.pause(); replay.put(%d); }"
+
+
+@pytest.fixture
+def page(browser):
+    """A desk that is opened without any settings, without motion: the line stands there as a whole."""
+    yield from at_desk(browser, derivation_desk(), reduced_motion="reduce", viewport={"width": 1240, "height": 760})
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, width, height, scheme):
+    size = {"width": width, "height": height}
+    for page in at_desk(browser, derivation_desk(), viewport=size, color_scheme=scheme, reduced_motion="reduce"):
+        shown = page.evaluate(SHOWN)
+        letters = [word for word in shown["words"].split() if len(word) > 1 and word.isalpha()]
+        assert len(letters) <= 60, letters
+        assert len(shown["controls"]) <= 12, shown["controls"]
+        assert shown["across"] <= width
+        assert page.evaluate(OVERLAPS) == []
+        for picture, least in [(".view.motion", 240), (".view.misses", 100)]:
+            assert page.locator(picture).bounding_box()["height"] >= least
+
+
+@pytest.mark.parametrize("face", ["first", "workbench"])
+@pytest.mark.parametrize("step", [1, 4, 6, 7])
+@pytest.mark.parametrize("width", [390, 700, 830, 1240])
+def test_the_picture_is_high_and_not_of_one_colour(browser, width, step, face):
+    desk = derivation_desk(face=face, step=step)
+    for page in at_desk(browser, desk, viewport={"width": width, "height": 700}):
+        picture = page.locator(".view.motion")
+        assert picture.bounding_box()["height"] >= 120
+        pixels = imread(io.BytesIO(picture.screenshot()))[..., :3].reshape(-1, 3)
+        assert (abs(pixels - pixels[0]).max(axis=1) > 0.2).mean() > 0.005
+
+
+def test_a_line_is_typed_by_itself_and_judged_while_it_grows(browser):
+    for page in at_desk(browser, derivation_desk(), viewport={"width": 1240, "height": 760}):
+        page.evaluate(STANDS % len("a13 + (a11 - a33) y1 + a"))
+        page.wait_for_function(f"() => document.querySelector({LINE!r}).value.endsWith('+ a')")
+        assert text_of(page, ".as-typed").endswith("y1")  # up to the last whole term
+        assert page.locator(".mark:visible").count() == 0
+        assert "bends the blue arrow" in text_of(page, ".says")
+        assert "so far misses by 66 %" in page.get_attribute(".view.misses canvas", "aria-label")
+        page.click(control("first play"))
+        page.wait_for_function(PLAYED, timeout=20_000)
+        rested(page)
+        assert page.locator(LINE).input_value() == TYPED
+        assert "misses the true one" in text_of(page, ".says")
+        assert text_of(page, ".pill") == "Type here and mend it"
+
+
+def test_who_mends_the_slip_sees_both_arrows_fall_together(page):
+    page.fill(LINE, TYPED.replace("+ b3", "- b3"))
+    rested(page)
+    assert "both arrows are one" in text_of(page, ".says")
+    assert "misses nothing" in page.get_attribute(".view.misses canvas", "aria-label")
+    assert page.locator(LINE.replace("y1", "y2")).is_visible()  # the next line is asked for
+    true, mine = page.evaluate(
+        "() => { const { picture } = [...window.perceptObsLabs][0].answer; return [picture.true, picture.mine]; }"
+    )
+    assert mine[0] == pytest.approx(true[0])
+
+
+def test_hints_open_one_by_one_and_a_sign_says_that_python_is_at_work(page):
+    page.evaluate("window.held = []")
+    page.click(control("hint"))
+    page.get_by_text("Python is looking").wait_for()
+    page.evaluate("() => { window.held.forEach(window.heard); window.held = null; }")
+    rested(page)
+    assert not page.get_by_text("Python is looking").is_visible()
+    for name in ("which slip", "which step"):
+        assert text_of(page, control("hint")) == f"Hint: {name}"
+        page.click(control("hint"))
+        rested(page)
+    assert "in step 5" in text_of(page, ".told")
+
+
+def test_where_a_slip_hides_the_sentence_says_so(page):
+    page.focus(control("point"))
+    for _ in range(50):  # to y1 = 0, where b3 y1 y3 is nothing
+        page.keyboard.press("ArrowRight")
+    rested(page)
+    assert text_of(page, ".says").startswith("Here the slip hides")
+
+
+def test_a_long_line_is_shown_to_its_end(page):
+    long = " + ".join([TYPED] * 4)
+    page.fill(LINE, long)
+    rested(page)
+    field = page.locator(LINE)
+    assert field.evaluate("(node) => node.scrollHeight <= node.clientHeight + 1 && node.clientHeight > 60")
+    page.keyboard.press("Enter")
+    assert field.input_value() == long
+
+
+def test_keys_go_through_what_was_typed_and_the_workbench_is_one_press_away(page):
+    page.focus(control("first play"))
+    page.keyboard.press("Home")
+    page.wait_for_function(f"() => document.querySelector({LINE!r}).value === ''")
+    page.keyboard.press("Enter")  # where motion is not wanted a term is a step
+    page.wait_for_function(f"() => document.querySelector({LINE!r}).value === 'a13'")
+    page.keyboard.press("End")
+    page.click(control("workbench"))
+    assert page.locator(LINE).input_value() == TYPED
+    page.locator(control("part")).wait_for()
+    cut = "(node) => node.scrollWidth > node.clientWidth"
+    assert not any(box.evaluate(cut) for box in page.locator(".choices-of-desk select").all())
+    page.click(control("workbench"))
+    assert not page.locator(control("part")).is_visible()
