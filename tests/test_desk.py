@@ -128,6 +128,7 @@ def test_the_numbers_of_steps_are_those_of_the_derivation():
     derivation = [step.reason.rstrip(":") for step in system_of("affine", "pinhole").derivation()]
     assert [step["reason"] for step in steps[:6]] == derivation[:6]
     assert steps[6]["reason"] == derivation[7]  # what is only multiplied out is not asked for again
+    assert all(len(step["name"].split()) <= 3 for step in steps)
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import sympy as sp
@@ -14,7 +14,7 @@ from percept_obs.labs.desk.sheets import Sheet
 from percept_obs.labs.desk.systems import number_of
 from percept_obs.system.perspective import PerspectiveSystem
 
-Formula = sp.Expr | None
+Formula: TypeAlias = sp.Expr | None
 _SIDE = np.linspace(-0.9, 0.9, 7)
 FIELD = np.array([(y1, y2) for y2 in _SIDE for y1 in _SIDE])
 """Places in the image at which pairs of arrows stand."""

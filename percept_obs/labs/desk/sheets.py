@@ -31,7 +31,7 @@ PARTS = {
 NAMES = {
     "The point moves": "Moving point",
     "It is seen": "Its image",
-    "So the point lies": "Its ray",
+    "Image and distance say": "Its ray",
     "Derivatives of": "Derivatives",
     "The velocity": "Its velocity",
     "Image coordinates": "Image motion",

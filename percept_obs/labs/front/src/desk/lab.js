@@ -227,6 +227,6 @@ export class DeskLab extends LabBase {
     if (!answer.picture?.mine.some((value) => value !== null)) return `${answer.words} Hints open one by one.`;
     if (agrees(answer.picture)) return "Here the slip hides: the arrows agree, although a line is wrong.";
     const help = answer.hint ? ", or open a hint" : "";
-    return `Not right: your arrow misses the true one. Mend the line${help}.`;
+    return `Your arrow misses the true one: mend the line${help}.`;
   }
 }

@@ -48,7 +48,7 @@ export class Misses extends View {
       this.line([[PAD.left, y(level)], [right, y(level)]], theme.grid, { width: 1 });
       this.write(`${100 * level} %`, PAD.left - 6, y(level), theme.muted, "right");
     }
-    this.write("how far the line misses, term by term", PAD.left, 12, theme.muted, "left");
+    this.write("how far the line misses", PAD.left, 12, theme.muted, "left");
     const [blue] = theme.lines;
     const shown = known.filter(({ end }) => end <= at);
     this.line(stairs(known, x, y, this.count), blue, { width: 2, alpha: at < this.count ? 0 : 0.3 });
