@@ -6,22 +6,16 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from importlib import resources, util
-from importlib.resources.abc import Traversable
+from importlib import util
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 from percept_obs.exercises import COPIES
+from percept_obs.exercises.models import notebooks
 from percept_obs.validation import write_whole
 
 FIRST_NOTEBOOK = "00_start.ipynb"
-
-
-def notebooks() -> Traversable:
-    """Return the folder of the notebooks: inside an installed package, beside it in a checkout."""
-    installed = resources.files("percept_obs") / "notebooks"
-    return installed if installed.is_dir() else Path(__file__).parents[1] / "notebooks"
 
 
 def copy_notebooks(directory: Path, readers: str = "students") -> None:

@@ -1,11 +1,14 @@
 """Answers to exercises are judged and dots are no answer; students' copies hold no solution and no answer."""
 
+import json
 import math
+import re
 
 import pytest
 
 from percept_obs import PerspectiveSystem, affine, pinhole
-from percept_obs.exercises import COPIES, choose, derive, reach, stub, students_copy
+from percept_obs.exercises import COPIES, choose, derive, model_answer, reach, stub, students_copy
+from percept_obs.exercises.models import answers_in, key_of, notebooks
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 THIRD = "y3' = -y3 (a31 y1 + a32 y2 + a33 + b3 y3)"
@@ -33,14 +36,58 @@ def sources(notebook):
 
 
 def test_students_get_stubs_hints_and_no_answers():
+    own = "*Answer in the cell below, in your own words; then it shows a model answer.*"
+    first, second = (
+        f'from percept_obs.exercises import model_answer\n\nmodel_answer(..., "{key_of(answer)}")'
+        "  # your answer, in quotes, for the dots"
+        for answer in ("So.", "Because.")
+    )
     assert sources(students_copy(NOTEBOOK)) == [
-        "**Question.** Why?\n\n*Write your answer here, then compare it with the teachers' copy.*\n\nGo on.\n",
+        f"**Question.** Why?\n\n{own}",
+        first,
+        "Go on.",
         "Derive it.",
         "<details><summary>Hint</summary>\n\nLook.\n\n</details>",
         "mine = ...  # your answer",
         "mine",
-        "*Write your answer here.*",
+        own,
+        second,
     ]
+
+
+def test_a_model_answer_follows_an_answer_of_ones_own():
+    folder = sorted(entry.name for entry in notebooks().iterdir() if entry.name.endswith(".ipynb"))
+    for name in folder:
+        notebook = json.loads((notebooks() / name).read_bytes())
+        copy = students_copy(notebook)
+        assert len({cell["id"] for cell in copy["cells"]}) == len(copy["cells"])
+        asked = [re.search(r'model_answer\(\.\.\., "(\w+)"', text) for text in sources(copy)]
+        expected = [answer for cell in notebook["cells"] for answer in answers_in(cell)]
+        assert expected
+        for found, answer in zip(filter(None, asked), expected, strict=True):
+            assert answer not in "\n".join(sources(copy))
+            for none in (..., "", "well then", 7):
+                assert model_answer(none, found[1]).reply.startswith("Answer first")
+            assert answer.removeprefix("**A model answer.** ") in str(model_answer("It stands still there.", found[1]))
+    assert "another version" in str(model_answer("It stands still there.", "0"))
+
+
+@pytest.mark.parametrize(
+    ("attempt", "said"),
+    [
+        (lambda: choose("e", "Seen.", a=True, b=False), "'e' is no option. Choose one of 'a', 'b'."),
+        (lambda: reach("8", lambda gain: {"time": 6 / gain}, time=1), "a number stands without quotes"),
+        (lambda: reach(0, lambda gain: {"time": 6 / gain}, time=1), "cannot run with 0"),
+        (lambda: derive("-y3 (a31 y1)", SYSTEM, "y3'"), "begin it with its name and ="),
+        (lambda: derive("y3' = q y3", SYSTEM, "y3'"), '"q" is no letter here'),
+        (lambda: derive(None, SYSTEM, "y3'"), "a NoneType is no formula"),
+    ],
+)
+def test_another_kind_of_answer_is_answered_in_a_sentence(attempt, said):
+    found = attempt()
+    assert found.right is None
+    assert said in str(found)
+    assert "A hint needs an answer first." in str(found.hint(1))
 
 
 def test_teachers_get_everything_and_copying_changes_nothing():
@@ -78,8 +125,6 @@ def test_a_prediction_is_compared_with_the_experiment():
     wrong = choose("a", "Seen.", a=False, b=True)
     assert wrong.right is False
     assert str(wrong) == "You said a, the experiment says b. Seen."
-    with pytest.raises(ValueError, match="'c' is no option; choose one of 'a', 'b'"):
-        choose("c", "Seen.", a=False, b=True)
     for options in ({"a": False, "b": False}, {"a": True, "b": True}):
         with pytest.raises(ValueError, match="exactly one option"):
             choose("a", "Seen.", **options)

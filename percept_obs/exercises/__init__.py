@@ -2,5 +2,6 @@
 
 from percept_obs.exercises.answers import Attempt, choose, derive, reach
 from percept_obs.exercises.copies import COPIES, stub, students_copy
+from percept_obs.exercises.models import model_answer
 
-__all__ = ["COPIES", "Attempt", "choose", "derive", "reach", "stub", "students_copy"]
+__all__ = ["COPIES", "Attempt", "choose", "derive", "model_answer", "reach", "stub", "students_copy"]

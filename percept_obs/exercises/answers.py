@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import EllipsisType
 from typing import Any
 
-from percept_obs.checking import Review, check
+from percept_obs.checking import Review, check, target_of
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,19 @@ class Attempt:
     def __str__(self) -> str:
         return self.reply
 
+    def hint(self, number: int) -> Attempt:
+        """Return the reply with the reason why it has no hint, as a review would give one; it is about no formula."""
+        why = NO_HINT if self.right is None else "This reply says all that there is: it has no hints."
+        return replace(self, reply=f"{self.reply} {why}")
+
     def _repr_markdown_(self) -> str:
         return {True: "✓ ", False: "✗ ", None: ""}[self.right] + self.reply
 
 
 UNANSWERED = "Not answered yet. Put your answer in the place of the dots, and run both cells."
+NO_HINT = "A hint needs an answer first."
+REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""What an answer of another kind than is asked for raises where it is used."""
 
 
 def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
@@ -57,14 +65,8 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     Returns
     -------
     Attempt or Review
-        A review gives hints: ``derive(mine, target).hint(1)`` says which line, 2 which term, 3 which slip.
-
-    Raises
-    ------
-    CannotRead
-        If the text is no formula of the target's letters; it says where, and what is allowed.
-    ValueError
-        If formulas and target do not fit.
+        A review gives hints: ``derive(mine, target).hint(1)`` says which line, 2 which term, 3 which slip.  An attempt
+        says why there is nothing to review: no answer, a line that is missing, or no formula of the target's letters.
 
     See Also
     --------
@@ -81,7 +83,11 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     """
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
-    review = check(mine, target)
+    goal = target_of(target)
+    try:
+        review = check(mine, goal)
+    except REFUSALS as error:  # CannotRead is one of them; the place in the text stands below a blank line
+        return Attempt(None, f"This cannot be checked: {error}".replace("\n", "\n\n", 1))
     answered = {line.row for line in review.lines}
     missing = [
         line.name or f"line {row + 1}"
@@ -110,7 +116,7 @@ def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
     Raises
     ------
     ValueError
-        If the choice is none of the options, or not exactly one option is found.
+        If not exactly one option is found.
 
     See Also
     --------
@@ -129,7 +135,7 @@ def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
         return Attempt(None, f"Choose first: {', '.join(options)}. Then see.")
     choice = str(mine).strip().lower()
     if choice not in options:
-        raise ValueError(f"{mine!r} is no option; choose one of {', '.join(map(repr, options))}")
+        return Attempt(None, f"{mine!r} is no option. Choose one of {', '.join(map(repr, options))}.")
     if choice == right[0]:
         return Attempt(True, f"Yes, {choice}. {found}")
     return Attempt(False, f"You said {choice}, the experiment says {right[0]}. {found}")
@@ -150,10 +156,12 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     -------
     Attempt
 
+        It says why, if `judge` cannot take an answer of this kind.
+
     Raises
     ------
     ValueError
-        If `judge` does not give a number that is asked for, or refuses the answer.
+        If `judge` does not give a number that is asked for.
 
     See Also
     --------
@@ -166,7 +174,11 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     """
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
-    numbers = judge(mine)
+    try:
+        numbers = judge(mine)
+    except REFUSALS as error:
+        quoted = "; a number stands without quotes" if isinstance(mine, str) else ""
+        return Attempt(None, f"The experiment cannot run with {mine!r}{quoted}. It says: {error}")
     if missing := sorted(most.keys() - numbers.keys()):
         raise ValueError(f"the experiment gives no {', '.join(missing)}; it gives {', '.join(numbers)}")
     right = all(numbers[name] <= limit for name, limit in most.items())

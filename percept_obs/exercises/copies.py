@@ -6,16 +6,19 @@ The cells of an exercise are known by their tags: ``exercise``, ``hint`` and ``s
 from __future__ import annotations
 
 import ast
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
+
+from percept_obs.exercises.models import FOLDED, answers_in, key_of
 
 Notebook = Mapping[str, Any]
 """A notebook as its file has it."""
 
-OWN_WORDS = "*Write your answer here.*"
-COMPARED = "*Write your answer here, then compare it with the teachers' copy.*"
-ANSWER = re.compile(r"<details>.*?</details>", re.DOTALL)
+OWN_WORDS = "*Answer in the cell below, in your own words; then it shows a model answer.*"
+
+ASKED = """from percept_obs.exercises import model_answer
+
+model_answer(..., "{}")  # your answer, in quotes, for the dots"""
 
 
 def stub(solution: str) -> str:
@@ -47,7 +50,7 @@ def stub(solution: str) -> str:
 
 
 def students_copy(notebook: Notebook) -> dict[str, Any]:
-    """Return a notebook without its solutions and the folded answers to its questions; hints stay.
+    """Return a notebook without its solutions and answers; hints stay, and model answers can be asked for.
 
     Parameters
     ----------
@@ -69,17 +72,33 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
     >>> students_copy({"cells": [cell]})["cells"][0]["source"]
     ['gain = ...  # your answer']
     """
-    return {**notebook, "cells": [_for_students(cell) for cell in notebook["cells"]]}
+    return {**notebook, "cells": [copied for cell in notebook["cells"] for copied in _for_students(cell)]}
 
 
 COPIES: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"students": students_copy, "teachers": dict}
 """Functions that copy a notebook, by its readers; teachers get everything."""
 
 
-def _for_students(cell: Notebook) -> dict[str, Any]:
-    tags, text = cell["metadata"].get("tags", ()), "".join(cell["source"])
-    if "solution" in tags:
-        text = stub(text) if cell["cell_type"] == "code" else OWN_WORDS
-    elif cell["cell_type"] == "markdown" and "hint" not in tags:
-        text = ANSWER.sub(COMPARED, text)
-    return {**cell, "source": text.splitlines(keepends=True)}
+def _for_students(cell: Notebook) -> Iterator[dict[str, Any]]:
+    """Yield a cell as students get it: after each question a cell that shows the model answer to who has answered."""
+    answers, text = answers_in(cell), "".join(cell["source"])
+    if not answers:
+        solved = "solution" in cell["metadata"].get("tags", ())
+        yield {**cell, "source": (stub(text) if solved else text).splitlines(keepends=True)}
+        return
+    parts = ["", ""] if text == answers[0] else FOLDED.split(text)[::2]
+    for k, part in enumerate(parts):
+        last = k == len(answers)
+        words = part.strip() if last else f"{part}{OWN_WORDS}".strip()
+        if words:
+            yield _cell(cell, "markdown", words, f"-{k + 1}" if k else "")
+        if not last:
+            yield _cell(cell, "code", ASKED.format(key_of(answers[k])), f"-answer-{k + 1}")
+
+
+def _cell(cell: Notebook, kind: str, text: str, mark: str) -> dict[str, Any]:
+    """Return a cell of a kind that stands where another one did."""
+    extra: dict[str, Any] = {"execution_count": None, "outputs": []} if kind == "code" else {}
+    named = {"id": f"{cell['id']}{mark}"} if "id" in cell else {}
+    plain = {"cell_type": kind, "metadata": {} if kind == "code" else cell["metadata"], **named, **extra}
+    return plain | {"source": text.splitlines(keepends=True)}

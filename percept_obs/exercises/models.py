@@ -1,0 +1,88 @@
+"""Model answers to the questions of the notebooks, each shown once somebody has written an answer of their own."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from hashlib import sha256
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from types import EllipsisType
+from typing import Any
+
+from percept_obs.exercises.answers import Attempt
+
+FOLDED = re.compile(r"<details><summary>.*?</summary>(.*?)</details>", re.DOTALL)
+"""An answer as a notebook folds it."""
+
+UNWRITTEN = "Answer first, in your own words: put a sentence in quotes in the place of the dots. Then run this cell."
+LEAST = 3
+"""Words of an answer."""
+
+
+def notebooks() -> Traversable:
+    """Return the folder of the notebooks: inside an installed package, beside it in a checkout."""
+    installed = resources.files("percept_obs") / "notebooks"
+    return installed if installed.is_dir() else Path(__file__).parents[2] / "notebooks"
+
+
+def answers_in(cell: Mapping[str, Any]) -> list[str]:
+    """Return the answers that a cell of a notebook gives in words."""
+    tags, text = cell["metadata"].get("tags", ()), "".join(cell["source"])
+    if cell["cell_type"] != "markdown" or "hint" in tags:
+        return []
+    return [text] if "solution" in tags else [found.strip() for found in FOLDED.findall(text)]
+
+
+def key_of(answer: str) -> str:
+    """Return the key under which a model answer is asked for."""
+    return sha256(answer.encode()).hexdigest()[:8]
+
+
+def model_answer(mine: str | EllipsisType, key: str) -> Attempt:
+    """Show a model answer, to be compared with one's own.
+
+    Parameters
+    ----------
+    mine : str or ...
+        One's own answer, in a sentence.
+    key : str
+        Key of the question, as the students' copy of a notebook has it.
+
+    Returns
+    -------
+    Attempt
+
+    See Also
+    --------
+    students_copy : Puts it in place of the answers.
+
+    Examples
+    --------
+    >>> print(model_answer(..., "0"))
+    Answer first, in your own words: put a sentence in quotes in the place of the dots. Then run this cell.
+    """
+    if not isinstance(mine, str) or len(mine.split()) < LEAST:
+        return Attempt(None, UNWRITTEN)
+    found = _answers().get(key)
+    if found is None:
+        return Attempt(
+            None, "There is no such answer: this copy is of another version. Make a new one: percept-obs lab."
+        )
+    return Attempt(None, found if found.startswith("**A model answer.**") else f"**A model answer.** {found}")
+
+
+@cache
+def _answers() -> dict[str, str]:
+    return {key_of(answer): answer for answer in _all()}
+
+
+def _all() -> Iterator[str]:
+    folder = notebooks()
+    for entry in folder.iterdir() if folder.is_dir() else ():
+        if entry.name.endswith(".ipynb"):
+            for cell in json.loads(entry.read_bytes())["cells"]:
+                yield from answers_in(cell)
