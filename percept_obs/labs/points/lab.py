@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.points.analysis import in_words
-from percept_obs.labs.points.settings import LONGEST, PICTURES, SCHEMA
+from percept_obs.labs.points.settings import LONGEST, PICTURES, ROUND, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -54,6 +54,8 @@ ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 class PointsLab(Lab):
     """The lab of many points, shown by the page; `settings` define everything, and may be set from Python as well.
 
+    Without any argument a camera travels round a resting body.
+
     Parameters
     ----------
     form : PointsForm, optional
@@ -82,6 +84,8 @@ class PointsLab(Lab):
 
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form
+        if form is None and not set(settings) - {"face"}:
+            settings = ROUND | settings
         printed: dict[str, Texts] = {}
         opening = SCHEMA.opening
         if form is not None:
@@ -97,6 +101,7 @@ class PointsLab(Lab):
             opening,
             SCHEMA.opening,
             texts=with_texts("points_lab", printed),
+            round=ROUND,
             pictures=PICTURES,
             error=ERROR,
             **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},

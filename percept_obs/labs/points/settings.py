@@ -76,3 +76,18 @@ SCHEMA = Schema(
     pictures=Names(["error", "depth", "gramian"], PICTURES, label="Time charts", about="those that are shown"),
     kept=KEPT,
 )
+
+ROUND: Settings = {
+    "points": [[-1.6, -3.0, 3.8], [2.3, -3.0, 5.8], [-0.8, -3.0, 8.1]],
+    "turning": 0.0,
+    "input": 0.0,
+    "velocity": [-4.4, 0.0, 0.0],
+    "motion": "w2 = 0.2 cos(1.3t) - v1/6; w_b = [0, 2 w_b3 cos(t), 0]",
+    "size": 2.5,
+    "start": "error",
+    "error": 2.5,
+    "hold": "first",
+    "duration": 10.0,
+    "window": 10.0,
+}
+"""Settings of a lab that is given none, where they differ: round a resting body, and turning with the travel."""

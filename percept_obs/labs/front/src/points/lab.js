@@ -7,9 +7,9 @@ import { Scene } from "../common/page/scene.js";
 import { pythonOf } from "./model/code.js";
 import { PointsEngine } from "./model/engine.js";
 import { PointsKernels } from "./model/kernels.js";
-import { PRESETS } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./model/text.js";
+import { PointsFirst } from "./page/first.js";
 import { ImagePlane } from "./page/image_plane.js";
 import { NAMES, Panel, WORDS } from "./page/panel.js";
 import { chartOf, LABELS } from "./page/pictures.js";
@@ -39,12 +39,13 @@ export class PointsLab extends Lab {
 
   constructor(widget, place, model) {
     const shown = { names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: PRESETS, ...shown });
+    super(widget, model, { words: WORDS, presets: [], ...shown });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
+    this.first = new PointsFirst(this);
     this.open(place);
   }
 

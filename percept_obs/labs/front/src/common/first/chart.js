@@ -10,6 +10,8 @@ const [STEPS_UP, PARTS] = [4, 8];
 /** Most points of a line that are drawn. */
 const MOST = 700;
 const LATER = 0.28;
+/** Height of a bar, and of the room that each takes. */
+const [BAR, BARS] = [4, 6];
 
 /**
  * @typedef {object} ChartLine
@@ -28,6 +30,7 @@ const LATER = 0.28;
  * @property {number} high     largest value
  * @property {string} unit
  * @property {{begin: number, end: number, text: string}[]} [spans]  hatched
+ * @property {{text: string, rows: number[][][]} | null} [bars]  below, each with the times in which it is hatched
  * @property {{time: number, value: number, text: string, colour: string} | null} [found]
  * @property {{time: number, own?: number, kept?: number, text: string} | null} [note]  at a sample of a line
  */
@@ -37,6 +40,7 @@ export class TimeChart extends View {
   constructor(label, onTime) {
     super("over-time", label);
     this.end_ = 1;
+    this.floor = 0;
     const pad = element("div", { class: "scrub", "aria-hidden": "true" });
     let down = false;
     const take = (event) => {
@@ -60,18 +64,24 @@ export class TimeChart extends View {
     return this.theme.paper;
   }
 
+  get lowest() {
+    return this.floor ? this.height - PAD.bottom - this.floor : this.height;
+  }
+
   x(time) {
     return PAD.left + (time / this.end_) * (this.width - PAD.left - PAD.right);
   }
 
   y(value) {
     const [high] = /** @type {number[]} */ (this.at);
-    return this.height - PAD.bottom - (value / high) * (this.height - PAD.top - PAD.bottom);
+    const bottom = this.height - PAD.bottom - this.floor;
+    return bottom - (value / high) * (bottom - PAD.top);
   }
 
   /** Draw the lines up to the present, and later ones pale or not; return true while the scale is on its way. */
   draw(/** @type {Chart} */ chart, now, theme, motion) {
     this.end_ = chart.end;
+    this.floor = chart.bars ? 6 + BARS * chart.bars.rows.length : 0;
     const moving = this.glide([chart.high], motion);
     this.begin(theme);
     const { height, width } = this;
@@ -81,8 +91,10 @@ export class TimeChart extends View {
     for (const { begin, end, text } of chart.spans ?? []) {
       const [from, to] = [this.x(begin), this.x(end)];
       this.hatched((pen) => pen.rect(from, PAD.top, to - from, bottom - PAD.top));
-      this.tag({ id: text, text, at: [(from + to) / 2, bottom - 20], colour: theme.warning, rank: 5, gap: 0 });
+      const at = [(from + to) / 2, bottom - this.floor - 20];
+      this.tag({ id: text, text, at, colour: theme.warning, rank: 5, gap: 0 });
     }
+    if (chart.bars) this.drawBars(chart.bars, now, bottom);
     this.inside(PAD.left, right + 1, () => {
       for (const line of chart.lines) if (!line.secret) this.curve(line, LATER);
     });
@@ -118,8 +130,33 @@ export class TimeChart extends View {
     const seconds = roundStep(end / (this.width > 500 ? PARTS : PARTS / 2));
     for (let k = 0; k * seconds <= end * (1 + 1e-9); k++) {
       const last = (k + 1) * seconds > end * (1 + 1e-9);
-      this.write(`${readable(k * seconds)}${last ? " s" : ""}`, this.x(k * seconds), bottom + 13, theme.muted);
+      this.write(`${readable(k * seconds)}${last ? " s" : ""}`, this.x(k * seconds), bottom + 11, theme.muted);
     }
+  }
+
+  /** A bar for each of what is seen, full up to the present, and hatched where it is not seen. */
+  drawBars({ text, rows }, now, bottom) {
+    const { theme, context: pen } = this;
+    const [left, right] = [this.x(0), this.x(this.end_)];
+    this.write(text, left - 6, bottom - this.floor / 2 + 3, theme.muted, "right");
+    this.avoid((left + right) / 2, bottom - this.floor / 2, (right - left) / 2, this.floor / 2);
+    rows.forEach((spans, k) => {
+      const y = bottom - this.floor + 6 + BARS * k;
+      pen.fillStyle = theme.ink;
+      for (const [to, alpha] of [[right, 0.25], [this.x(now), 0.6]]) {
+        pen.globalAlpha = alpha;
+        pen.fillRect(left, y, to - left, BAR);
+      }
+      pen.globalAlpha = 1;
+      for (const [begin, end] of spans) {
+        const [x, wide] = [this.x(begin), this.x(end) - this.x(begin)];
+        pen.fillStyle = theme.paper;
+        pen.fillRect(x, y, wide, BAR);
+        this.hatched((path) => path.rect(x, y, wide, BAR));
+        pen.strokeStyle = theme.warning;
+        pen.strokeRect(x + 0.5, y + 0.5, Math.max(wide - 1, 0), BAR - 1);
+      }
+    });
   }
 
   /** Draw inside of the chart, between two places. */
@@ -151,7 +188,8 @@ export class TimeChart extends View {
     if (!text) return;
     const at = Array.prototype.findIndex.call(time, (value) => this.x(value) >= PAD.left + 24);
     const y = within(this.y(values[Math.max(at, 0)]), PAD.top, bottom);
-    this.tag({ id, text, at: [PAD.left + 28, y], colour, rank: 2, gap: 4, towards: [0.1, -1] });
+    const rank = id === "kept" ? 3 : 2;
+    this.tag({ id, text, at: [PAD.left + 28, y], colour, rank, gap: 4, towards: [0.1, -1] });
   }
 }
 

@@ -2,7 +2,11 @@
 
 import { element, setAttribute, setText } from "../page/dom.js";
 
-/** A slider whose value stands beside its name; `text` writes the value. */
+/**
+ * A slider whose value stands beside its name; `text` writes the value.
+ *
+ * @param {Record<string, any>} parts
+ */
 export function range({ name, label, low, high, step = 0.01, log = false, get, set, rest, text = String }) {
   const [inside, outside] = log ? [Math.log10, (v) => Number((10 ** v).toPrecision(2))] : [Number, Number];
   const value = element("output", {});

@@ -42,6 +42,7 @@ const [PLAY, PAUSE, STEP] = ["M3 0l12 8-12 8z", "M2 1h4v14H2zM10 1h4v14h-4z", "M
  * @property {boolean} why     whether the copies at other distances are shown
  * @property {boolean} secret  whether the future of the estimate is hidden
  * @property {any} theme
+ * @property {any} [body]      what a lab has read off the result for this time
  */
 
 /**
@@ -64,6 +65,8 @@ export class FirstScreen {
   begun = false;
   /** Timer of the first play. */
   beginner = 0;
+  /** Milliseconds before it plays. */
+  firstLook = FIRST_LOOK;
 
   /** @param {{image: string, world: string, axis: string, why?: boolean}} captions */
   constructor(lab, captions, controls, /** @type {Question[]} */ questions) {
@@ -117,7 +120,7 @@ export class FirstScreen {
       this.begun = true;
       seen.disconnect();
       if (this.still.matches) this.finish();
-      else this.beginner = setTimeout(() => this.moved || this.open !== undefined || this.play(), FIRST_LOOK);
+      else this.beginner = setTimeout(() => this.moved || this.open !== undefined || this.play(), this.firstLook);
     });
     seen.observe(this.body);
     this.leave = () => seen.disconnect();

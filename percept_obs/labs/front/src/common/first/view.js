@@ -209,6 +209,11 @@ export class View extends Picture {
     this.taken.push(box);
   }
 
+  /** Where a note may not reach. */
+  get lowest() {
+    return this.height;
+  }
+
   /** Colour below the letters. */
   ground() {
     return this.theme.raised;
@@ -219,9 +224,9 @@ export class View extends Picture {
   }
 
   drawNote({ x, y, text }) {
-    const { context: pen, width, height, theme } = this;
+    const { context: pen, width, theme } = this;
     const half = pen.measureText(text).width / 2 + 9;
-    const side = y + 46 > height ? -1 : 1;
+    const side = y + 46 > this.lowest ? -1 : 1;
     const [top, middle] = [y + 6 * side, y + 28 * side];
     const cx = Math.min(Math.max(x, half + RIM + 1), width - half - RIM - 1);
     const box = [cx - half, middle - 11, cx + half, middle + 11];

@@ -6,19 +6,23 @@ import { element, listen } from "./dom.js";
 
 const NUDGE = 0.01;
 const LEAP = 10;
+/** Pixels within which a handle that can be pressed was not moved. */
+const PRESSED = 4;
 
 /** Steps of the arrow keys, right and up. */
 export const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
 export class Handle {
-  constructor({ name, label, className, text = "", nudge = NUDGE, onMove, onRest, onKey = (_event) => false }) {
+  /** @param {Record<string, any>} parts  `onPress` is for a press that does not move it, and for Enter or space */
+  constructor({ name, label, className, text = "", nudge = NUDGE, onMove, onRest, onKey, onPress = null }) {
     this.nudge = nudge;
     this.onMove = onMove;
     this.onKey = onKey;
+    this.onPress = onPress;
     /** @type {number[] | null} */
     this.at = null;
-    /** @type {{id: number, x: number, y: number, from: number[]} | null} */
+    /** @type {{id: number, x: number, y: number, from: number[], moved: boolean} | null} */
     this.grip = null;
     this.keyed = false;
     this.scale = 1;
@@ -30,14 +34,19 @@ export class Handle {
     const follow = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       const { x, y, from: [y1, y2] } = this.grip;
+      const near = Math.hypot(event.clientX - x, event.clientY - y) < PRESSED;
+      if (onPress && !this.grip.moved && near) return;
+      this.grip.moved = true;
       this.move([y1 + (event.clientX - x) / this.scale, y2 - (event.clientY - y) / this.scale]);
     };
     const release = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       // A quick drag loses its last move in half of the cases, so the place is read once more.
       if (event.type === "pointerup") follow(event);
+      const { moved } = this.grip;
       this.grip = null;
-      onRest();
+      if (moved || !onPress) onRest();
+      else onPress();
     };
     const endOfKeys = () => {
       if (this.keyed) onRest();
@@ -61,15 +70,20 @@ export class Handle {
     if (!this.at) return;
     // A pointer that a script made cannot be captured; its moves arrive all the same.
     if (event.isTrusted) this.node.setPointerCapture(event.pointerId);
-    this.grip = { id: event.pointerId, x: event.clientX, y: event.clientY, from: [...this.at] };
+    this.grip = { id: event.pointerId, x: event.clientX, y: event.clientY, from: [...this.at], moved: false };
   }
 
   key(event) {
     if (!this.at) return;
     const step = STEPS[event.key];
     const size = this.nudge * (event.shiftKey ? LEAP : 1);
+    if (this.onPress && (event.key === "Enter" || event.key === " ")) {
+      this.onPress();
+      event.preventDefault();
+      return;
+    }
     if (step) this.move(this.at.map((value, c) => value + step[c] * size));
-    else if (!this.onKey(event)) return;
+    else if (!this.onKey?.(event)) return;
     this.keyed = true;
     event.preventDefault();
   }

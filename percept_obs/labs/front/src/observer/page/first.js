@@ -1,6 +1,7 @@
 // The first screen of the observer lab: the estimate slides along its ray until the motion that it expects is seen.
 
 import { places, range } from "../../common/first/controls.js";
+import { drawCamera, drawCone, drawGround } from "../../common/first/map.js";
 import { FirstScreen } from "../../common/first/screen.js";
 import { columnOf, derived } from "../../common/model/derived.js";
 import { between, valueBetween, within } from "../../common/model/playback.js";
@@ -301,7 +302,7 @@ export class ObserverFirst extends FirstScreen {
     const x = (value) => width / 2 + (value - cx) * scale;
     const y = (value) => height / 2 - 6 - (value - cz) * scale;
     const on = (place) => [x(place[0]), y(place[2])];
-    this.drawGround(view, [cx, cz, scale], { x, y }, theme);
+    drawGround(view, [cx, cz, scale], { x, y }, theme);
     if (!this.resetButton.hidden) view.avoid(width - 60, 24, 60, 24);
     const camera = on(seen.camera);
     const reach = (1.2 * Math.hypot(width, height)) / scale;
@@ -407,17 +408,6 @@ export class ObserverFirst extends FirstScreen {
     return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
   }
 
-  /** A ground with a line for each metre, or for more where these would be too near. */
-  drawGround(view, [cx, cz, scale], { x, y }, theme) {
-    const { width, height } = view;
-    const step = [1, 5, 10, 50, 100, 1000].find((metre) => metre * scale >= 9) ?? 1e4;
-    const line = (from, to, k) => view.line([from, to], theme.line, { width: 1, alpha: k % 5 ? 0.18 : 0.5 });
-    for (let k = Math.ceil((cx - width / scale) / step); k * step < cx + width / scale; k++)
-      line([x(k * step), 0], [x(k * step), height], k);
-    for (let k = Math.ceil((cz - height / scale) / step); k * step < cz + height / scale; k++)
-      line([0, y(k * step)], [width, y(k * step)], k);
-  }
-
   /** What the image holds. */
   drawCone(view, camera, along, theme) {
     const { at, width } = this.image;
@@ -428,13 +418,7 @@ export class ObserverFirst extends FirstScreen {
       Array.from(ray([c1 + (side * width) / 2 / scale, 0, ...shapeOf(settings)], new Float64Array(3))),
     );
     if (edges.some((edge) => edge.some(Number.isNaN))) return;
-    const pen = view.context;
-    pen.beginPath();
-    for (const [u, v] of [camera, ...edges.map(along)]) pen.lineTo(u, v);
-    pen.fillStyle = theme.ink;
-    pen.globalAlpha = 0.06;
-    pen.fill();
-    pen.globalAlpha = 1;
+    drawCone(view, camera, edges.map(along), theme);
   }
 
   /** The ray is the ruler of the distance: a tick a metre, or for more where these would be too near. */
@@ -633,21 +617,6 @@ function pathOf(rows, width) {
   const found = [];
   for (let k = 0; k < rows.length; k += width * every) found.push([rows[k], rows[k + 1]]);
   return found;
-}
-
-function drawCamera(view, at, turn, theme) {
-  const [x, y] = at;
-  const pen = view.context;
-  pen.save();
-  pen.translate(x, y);
-  pen.rotate(turn);
-  pen.fillStyle = theme.ink;
-  pen.beginPath();
-  for (const [u, v] of [[-4, 2], [-7, -6], [7, -6], [4, 2]]) pen.lineTo(u, v);
-  pen.roundRect(-11, 0, 22, 14, 3);
-  pen.fill();
-  pen.restore();
-  view.avoid(x, y + 4, 14);
 }
 
 function metres(distance) {

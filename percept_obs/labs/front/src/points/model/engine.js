@@ -52,16 +52,22 @@ export class PointsEngine {
   }
 
   /** Gramian of each window, or as much of it as a chart shows while a hand moves. */
-  gramian(result, functions, whole) {
+  gramian(result, functions, whole, longest = result.settings.window) {
     const { settings, time, seenImages: images } = result;
-    const scene = this.scene(settings, functions);
+    const window = Math.min(longest, time.at(-1));
+    const { model, memory } = this;
+    const known = { ...this.scene(settings, functions), ...this.flows(result, functions) };
+    return windowsOf({ ...known, model, time, images, window, memory, whole });
+  }
+
+  /** Flow of each kind of vector from time 0 to each sample, and the inverses of its Phi. */
+  flows({ settings, time }, functions) {
     const divide = () => ({ grid: time, steps: differences(time), wanted: Int32Array.from(time, (_, k) => k) });
     const clock = this.memory.once("samples' steps", settings, divide, time);
+    const scene = this.scene(settings, functions);
     const { kindOf, flows, made } = this.camera.flows(scene, "gramian", clock, clock.wanted);
     made.back ??= flows.map(inversesOf);
-    const window = Math.min(settings.window, time.at(-1));
-    const { model, memory } = this;
-    return windowsOf({ ...scene, model, time, images, kindOf, flows, back: made.back, window, memory, whole });
+    return { kindOf, flows, back: made.back };
   }
 
   scene(settings, functions) {

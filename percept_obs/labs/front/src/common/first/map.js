@@ -1,0 +1,39 @@
+// What maps of the first screen have in common: ground, and a camera.
+
+/** A line for each metre, or for more where these would be too near; `at` is the map's middle and scale. */
+export function drawGround(view, [cx, cz, scale], { x, y }, theme) {
+  const { width, height } = view;
+  const step = [1, 5, 10, 50, 100, 1000].find((metre) => metre * scale >= 9) ?? 1e4;
+  const line = (from, to, k) => view.line([from, to], theme.line, { width: 1, alpha: k % 5 ? 0.18 : 0.5 });
+  for (let k = Math.ceil((cx - width / scale) / step); k * step < cx + width / scale; k++)
+    line([x(k * step), 0], [x(k * step), height], k);
+  for (let k = Math.ceil((cz - height / scale) / step); k * step < cz + height / scale; k++)
+    line([0, y(k * step)], [width, y(k * step)], k);
+}
+
+/** A camera from above, turned from straight ahead. */
+export function drawCamera(view, at, turn, theme) {
+  const [x, y] = at;
+  const pen = view.context;
+  pen.save();
+  pen.translate(x, y);
+  pen.rotate(turn);
+  pen.fillStyle = theme.ink;
+  pen.beginPath();
+  for (const [u, v] of [[-4, 2], [-7, -6], [7, -6], [4, 2]]) pen.lineTo(u, v);
+  pen.roundRect(-11, 0, 22, 14, 3);
+  pen.fill();
+  pen.restore();
+  view.avoid(x, y + 4, 14);
+}
+
+/** What an image holds, between two far places. */
+export function drawCone(view, camera, edges, theme) {
+  const pen = view.context;
+  pen.beginPath();
+  for (const [u, v] of [camera, ...edges]) pen.lineTo(u, v);
+  pen.fillStyle = theme.ink;
+  pen.globalAlpha = 0.06;
+  pen.fill();
+  pen.globalAlpha = 1;
+}
