@@ -78,11 +78,11 @@ SCHEMA = Schema(
 )
 
 ROUND: Settings = {
-    "points": [[-1.6, -3.0, 3.8], [2.3, -3.0, 5.8], [-0.8, -3.0, 8.1]],
+    "points": [[-1.1, -2.6, 4.0], [2.6, -2.6, 5.7], [-0.4, -2.6, 8.0]],
     "turning": 0.0,
     "input": 0.0,
     "velocity": [-4.4, 0.0, 0.0],
-    "motion": "w2 = 0.2 cos(1.3t) - v1/6; w_b = [0, 2 w_b3 cos(t), 0]",
+    "motion": "w2 = 0.15 cos(1.3t) - v1/6; w_b = [0, 2 w_b3 cos(t), 0]",
     "size": 2.5,
     "start": "error",
     "error": 2.5,

@@ -12,6 +12,8 @@ const [SHOWN_FOR, FIRST_LOOK] = [6, 1000];
 /** Questions in sight, and parts into which the arrow keys divide the time. */
 const [IN_SIGHT, PARTS] = [3, 40];
 const LONGEST_STALL = 60;
+/** Letters from which on a sentence is written smaller. */
+const LONG = 64;
 /** Milliseconds of rest after which a sentence is read out. */
 const SPOKEN_AFTER = 500;
 const [PLAY, PAUSE, STEP] = ["M3 0l12 8-12 8z", "M2 1h4v14H2zM10 1h4v14h-4z", "M2 1l8 7-8 7zM11 1h3v14h-3z"];
@@ -391,7 +393,7 @@ export class FirstScreen {
     if (text === this.spoken) return;
     this.spoken = text;
     setText(this.says, text);
-    this.says.classList.toggle("long", text.length > 80);
+    this.says.classList.toggle("long", text.length > LONG);
     clearTimeout(this.timer);
     this.timer = setTimeout(() => setText(this.aloud, text), SPOKEN_AFTER);
   }

@@ -73,7 +73,7 @@ export const QUESTIONS = [
     name: "travel",
     chip: "Stand still?",
     ask: "The camera turns, but does not travel. Where does the estimate settle?",
-    answers: ["In place", "On its rays only", "Off its rays"],
+    answers: ["In place", "On its rays", "Off its rays"],
     right: 1,
     ...asked({}, { velocity: [0, 0, 0] }),
     kept: "travelling",

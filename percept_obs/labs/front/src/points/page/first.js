@@ -224,7 +224,7 @@ export class PointsFirst extends FirstScreen {
         }
       };
       for (let part = 0; part <= 1; part += 0.025) take(shown.images, Math.round(part * (time.length - 1)));
-      for (const part of [0, 0.1, 0.2, 0.3]) take(shown.estimated.images, Math.round(part * (time.length - 1)));
+      for (const part of [0, 0.1, 0.2]) take(shown.estimated.images, Math.round(part * (time.length - 1)));
       return found;
     });
     const { width, height } = this.image.size ?? { width: 400, height: 300 };
