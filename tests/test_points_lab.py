@@ -17,7 +17,7 @@ from percept_obs.points.manoeuvre import Manoeuvre
 
 @pytest.fixture(scope="module")
 def lab(always_compiled):
-    return points_lab()
+    return points_lab(state="body")
 
 
 @pytest.fixture(scope="module")

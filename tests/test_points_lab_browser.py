@@ -15,7 +15,7 @@ POINT = control("point 2")
 @pytest.fixture(scope="module")
 def python():
     """The lab in Python."""
-    return points_lab(duration=8.0, window=4.0)
+    return points_lab(duration=8.0, window=4.0, face="workbench")
 
 
 def test_a_key_changes_the_depth_and_keeps_the_image(fresh):
