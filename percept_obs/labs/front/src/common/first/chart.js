@@ -65,7 +65,7 @@ export class TimeChart extends View {
   }
 
   get lowest() {
-    return this.floor ? this.height - PAD.bottom - this.floor : this.height;
+    return this.height - PAD.bottom - this.floor;
   }
 
   x(time) {

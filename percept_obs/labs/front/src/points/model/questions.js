@@ -1,20 +1,16 @@
 // Questions of the first screen.  What an answer claims is a condition on the result; `right` counts from 0.
 
-import { settingsAfter } from "../../common/model/settings.js";
+import { settingsOf } from "../../common/model/settings.js";
 
 const lastOf = (values) => values[values.length - 1];
 /** Seconds in which a mark is hidden. */
 const AWAY = [1, 6];
 const NEVER = [0, 120];
 
-/** The flight round a body, with changes: settings that begin like those of the lab. */
-function round(changes) {
-  return ({ standard, round: begun }) => settingsAfter({ changes }, { ...standard, ...begun });
-}
-
-/** Settings before an answer, and after it with the run before beside it. */
+/** Settings before an answer, and after it with the run before beside it; they begin like those of the lab. */
 function asked(before, after) {
-  return { before: round(before), after: (model) => ({ ...round(after)(model), kept: round(before)(model) }) };
+  const round = (changes) => ({ standard, round: begun }) => settingsOf(changes, { ...standard, ...begun });
+  return { before: round({ changes: before }), after: round({ changes: after, beside: before }) };
 }
 
 /** How far the estimate is off, in metres: the mean of its points, or of some of them, at each sample. */
