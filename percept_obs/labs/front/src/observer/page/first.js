@@ -262,6 +262,9 @@ export class ObserverFirst extends FirstScreen {
       const [across, down] = [u < 0 ? px : view.width - px, v < 0 ? py : view.height - py];
       size = Math.min(size, (across - 14) / Math.abs(u), (down - 14) / Math.abs(v));
     }
+    // The names of the directions stand in the corner.
+    const inCorner = ([u, v]) => px + size * u < 78 && py + size * v < 72;
+    while (shown.some(inCorner) && size > 1) size *= 0.9;
     size = Math.max(size, 0);
     const tip = (/** @type {number[]} */ [u, v]) => [size * u, size * v];
     if (why) {
@@ -336,6 +339,7 @@ export class ObserverFirst extends FirstScreen {
     if (seen.rigid) {
       const way = this.timesTo(scene).map((time) => on(apply(this.standing.toWorld(settings, time), [0, 0, 0])));
       view.line(way, theme.ink, { width: 2, alpha: 0.35 });
+      this.drawBelieved(view, scene, on, colour, way[0]);
     } else if (shown.truth?.length) view.line(past(shown.truth), theme.ink, { width: 1, alpha: 0.35 });
     view.line(past(seen.run.estimate), colour, { alpha: 0.4 });
     const point = on(seen.point);
@@ -358,6 +362,18 @@ export class ObserverFirst extends FirstScreen {
     const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
     this.far.stand(seen.movable && seen.truth ? [seen.point[0], seen.point[2]] : null, frame, this.lab.late);
     return moving;
+  }
+
+  /** The way that the camera has come, as an observer believes that believes another motion. */
+  drawBelieved(view, { shown, theme, now }, on, colour, start) {
+    const { settings } = shown;
+    if (!settings.believed || same(settings.believed, { A: settings.A, b: settings.b })) return;
+    const { inWorld } = this.seen;
+    const placeAt = (time) => inWorld(apply(flow(settings.believed, now - time), [0, 0, 0]));
+    const way = this.timesTo({ shown, now }).map((time) => on(placeAt(time)));
+    view.line(way, colour, { width: 2, dash: [5, 4] });
+    view.tag({ id: "believed", text: "believed way", at: way[0], colour, rank: 2, gap: 5, towards: [1, 0] });
+    view.tag({ id: "way", text: "true way", at: start, colour: theme.ink, rank: 2, gap: 5, towards: [-1, 0] });
   }
 
   /** Times from the start to the present at which the past is drawn. */
@@ -403,6 +419,10 @@ export class ObserverFirst extends FirstScreen {
       if ((k === 0 || k === 40) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
     }
     if (why) take(inWorld(place.map((value) => 2 * value)));
+    if (settings.believed && rigid) {
+      const began = apply(flow(settings.believed, scene.end - time[0]), [0, 0, 0]);
+      take(apply(this.standing.toWorld(settings, scene.end), began));
+    }
     const size = this.world.size ?? { width: 350, height: 300 };
     const scale = Math.min((size.width - 130) / (box[1] - box[0] + 1), (size.height - 90) / (box[3] - box[2] + 0.1));
     return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
@@ -452,7 +472,7 @@ export class ObserverFirst extends FirstScreen {
   drawEstimate(view, { guess, inWorld, place }, on, colour) {
     const { width, height } = view;
     const where = on(inWorld(guess ?? place.map((value) => 1e5 * value)));
-    const [u, v] = [within(where[0], 18, width - 18), within(where[1], 40, height - 18)];
+    const [u, v] = [within(where[0], 18, width - 18), within(where[1], 18, height - 18)];
     const text = `estimate ${guess ? metres(Math.hypot(...guess)) : "∞"}`;
     const inside = Math.hypot(u - where[0], v - where[1]) < 1;
     if (inside) view.ring(u, v, 11, colour, 3.5);
