@@ -68,7 +68,10 @@ OPENING = """() => {
 }"""
 
 HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
-"""Handle that is dragged in each lab."""
+"""Handle that is dragged in each lab's workbench."""
+
+FIRST_HANDLES = {"observer_lab": "first foe"}
+"""Handle that is dragged on each lab's first screen."""
 
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
@@ -83,6 +86,12 @@ class Case(NamedTuple):
 
     lab: str
     settings: dict[str, Any]
+    face: str = "workbench"
+
+    @property
+    def handle(self) -> str:
+        """Handle that is dragged."""
+        return (HANDLES if self.face == "workbench" else FIRST_HANDLES)[self.lab]
 
 
 TWO = ["identifier_based", "sliding_mode"]
@@ -122,6 +131,7 @@ POINTS = {
     f"{MOST_POINTS}, {3 * MOST_POINTS} states, Riccati": {**_places(MOST_POINTS), **RICCATI},
 }
 CASES = {
+    **{f"first screen, {lab}": Case(lab, {}, "first") for lab in FIRST_HANDLES},
     **{name: Case("observer_lab", settings) for name, settings in OBSERVER.items()},
     **{f"structure, {name}": Case("structure_lab", settings) for name, settings in STRUCTURE.items()},
     **{f"points, {name}": Case("points_lab", settings) for name, settings in POINTS.items()},
@@ -210,7 +220,8 @@ def reference_page(context: Any) -> Any:
 def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
     """Open a lab in a notebook with a busy cell, and leave it at rest."""
     arguments = f"**json.loads({json.dumps(case.settings)!r})"
-    imports, _, cell = OPEN.replace("observer_lab", case.lab).format(arguments=arguments).partition("lab = ")
+    opening = OPEN.replace("observer_lab", case.lab).replace("workbench", case.face)
+    imports, _, cell = opening.format(arguments=arguments).partition("lab = ")
     write_notebook(folder, "bench.ipynb", imports, f"lab = {cell}", "ready = True", BUSY)
     page.bring_to_front()
     page.goto("about:blank")  # so that JupyterLab opens anew
@@ -223,7 +234,7 @@ def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
     page.keyboard.press("Shift+Enter")
     page.wait_for_function("window.opening.whole", timeout=120_000)
     put_back(page)
-    drag(page, HANDLES[case.lab], 1)
+    drag(page, case.handle, 1)
 
 
 def run_busy_cell(page: Any) -> None:
@@ -263,15 +274,15 @@ def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
         with reference_page(page.context) as reference:
             for title, case in wanted.items():
                 open_in_jupyterlab(page, folder, case)
-                handle = HANDLES[case.lab]
+                handle = case.handle
                 measure(title, page, reference, handle)
                 if title in BESIDE_A_BUSY_KERNEL:
                     measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
 
 
-def open_alone(context: Any, lab: Any) -> Any:
+def open_alone(context: Any, lab: Any, face: str = "workbench") -> Any:
     """A lab at rest in a page without JupyterLab, and without Python but for an answer."""
-    page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}})
+    page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}}, face=face)
     page.wait_for_function(lab_alone.DRAWN)
     rested(page, 60)
     return page
@@ -292,8 +303,8 @@ def measure_alone(wanted: dict[str, Case]) -> None:
     """Measure configurations in pages without JupyterLab, which open at once."""
     with launched() as context, reference_page(context) as reference:
         for title, case in wanted.items():
-            page = open_alone(context, getattr(labs, case.lab)(**case.settings))
-            measure(title, page, reference, HANDLES[case.lab])
+            page = open_alone(context, getattr(labs, case.lab)(**case.settings), case.face)
+            measure(title, page, reference, case.handle)
             page.close()
 
 
