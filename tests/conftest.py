@@ -130,7 +130,7 @@ def fresh(lab):
 
     lab.click(control("reset"))
     rested(lab)
-    lab.locator(".handle").first.scroll_into_view_if_needed()
+    lab.locator(".stage .handle").first.scroll_into_view_if_needed()
     return lab
 
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from percept_obs.labs import structure_lab
+from percept_obs.labs.structure.settings import DRIVE
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.tracking.following import StepTooLong
 
@@ -30,6 +31,7 @@ OTHERS = {
     "d_s from an earlier stage": {"unknown": ["v_c1", "v_p2"], "earlier": True, "w": TURNED},
     "another axis": {"unknown": ["d_s", "v_c1", "v_c3"], "ybar": [-0.2, 0.4, 0.3], "scale": 2.0},
     "the point comes too near": {"v_c": [-0.22, -0.23, 1.5], "unknown": ["d_s", "v_p1"]},
+    "a drive with a speedometer": {**DRIVE, "unknown": ["d_s", "v_c1", "v_c2"]},
     "crossing": {**case_of(3), "v_c": [0.0, 0.0, -0.15], "v_c_swing": [0.3, 0.3, -0.3], "duration": 4.5},
 }
 CASES = {**COROLLARIES, **OTHERS}

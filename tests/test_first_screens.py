@@ -7,11 +7,11 @@ from lab_alone import DRAWN
 from lab_browser import control
 from sample_sizes import sampled
 
-from percept_obs.labs import observer_lab, points_lab
+from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = {"observer": observer_lab, "points": points_lab}
+LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.map(({ name }) => name)"
 HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.open.holds(first.scene), first.spoken]; }"
 RANDOM = sampled(20, 200)

@@ -18,7 +18,7 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.labs.shared.saved import STARTER, library_of, page_of, place_of
 from percept_obs.points import independent_points
 
-LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
+LABS = {"observer": observer_lab, "points": points_lab, "structure": lambda: structure_lab(duration=3.0)}
 B = "b=0.4,0.3,0.3"
 LONG = "9" * 400
 

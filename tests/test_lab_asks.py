@@ -8,7 +8,7 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = {"observer": (observer_lab, "foe"), "structure": (structure_lab, "speedometer"), "points": (points_lab, "hide")}
+LABS = {"observer": (observer_lab, "foe"), "points": (points_lab, "hide")}
 SIZE = {"width": 1000, "height": 700}
 SETTINGS = "() => [...window.perceptObsLabs][0].settings"
 SKETCH = "() => document.querySelector('.sketched path').getAttribute('d') ?? ''"
@@ -125,7 +125,7 @@ def test_a_number_out_of_range_is_told_what_the_field_takes(show):
 
 
 def test_a_press_that_changes_the_true_world_says_so(show):
-    page = show(structure_lab(), viewport=SIZE)
+    page = show(structure_lab(duration=3.0), viewport=SIZE)
     page.click(control("topic cases"))
     page.click(control("corollary 3"))
     drawn(page)

@@ -104,7 +104,7 @@ def rate_of_y1(place, settings):
 
 
 def test_where_everything_is_told_there_is_nothing_unseen_to_move_and_with_reduced_motion_it_moves_by_steps(browser):
-    for lab in (observer_lab("ma2005_eq35"), points_lab(), structure_lab()):
+    for lab in (observer_lab("ma2005_eq35"), points_lab(), structure_lab(duration=3.0)):
         page = opened(browser, lab)
         page.wait_for_function(DRAWN)
         assert page.locator(control("swing")).is_hidden()

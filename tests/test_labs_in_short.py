@@ -36,6 +36,6 @@ def test_of_a_point(node):
 
 
 def test_a_single_sample_is_told(node):
-    for lab in (observer_lab("ma2005_eq35"), structure_lab()):
+    for lab in (observer_lab("ma2005_eq35"), structure_lab(duration=3.0)):
         (answer,) = run_in_node(node, lab, [lab.check({"duration": 0.5, "period": 1.0})])
         assert "a duration of 0.5 s holds no two samples 1 s apart" in answer["problem"]

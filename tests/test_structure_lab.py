@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 import sympy as sp
 from corollaries import corollary_of
-from javascript import run_script
-from lab_settings import FRONT, as_array, copied_runs, run_in_node, whole_model
+from lab_settings import as_array, copied_runs, run_in_node, whole_model
 from structure_settings import CASES, COROLLARIES, EVERY, assert_same_structure_runs, structure_runs_of
 
 from percept_obs.labs.structure.lab import structure_lab, unknowns_of
-from percept_obs.labs.structure.texts import general_form, key_of, refused
+from percept_obs.labs.structure.settings import DRIVE
+from percept_obs.labs.structure.texts import general_form, key_of, observer_of, refused
+from percept_obs.observers.integral_sliding_mode import tolerable_amplification
 from percept_obs.structure import QUANTITIES, ImpossibleChoice, StructureAndMotion
 from percept_obs.tracking.following import StepTooLong
 
@@ -22,7 +23,7 @@ POSSIBLE = [u for n in (1, 2, 3) for u in combinations(QUANTITIES, n) if key_of(
 
 @pytest.fixture(scope="module")
 def lab():
-    return structure_lab()
+    return structure_lab(duration=3.0)
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +123,7 @@ def test_the_general_form_is_the_form_of_every_choice(unknown, earlier):
 
 def test_the_model_is_complete_and_is_json(lab):
     model = whole_model(lab)
-    assert model["opening"] == structure_lab().settings
+    assert model["opening"] == structure_lab(duration=3.0).settings
     assert set(model["forms"]) == {"1", "2", "3"}
     assert all(set(form["observers"]) == set(EVERY) for form in model["forms"].values())
     assert [corollary["number"] for corollary in model["corollaries"]] == list(range(1, 8))
@@ -145,75 +146,11 @@ def test_each_corollary_is_one_click_and_converges(case):
         assert value == pytest.approx(true[name], rel=5e-3, abs=5e-3)
 
 
-@pytest.fixture(scope="module")
-def acts(lab, node):
-    """The settings of every act of every preset, as Python accepts them."""
-    acts = run_script(node, FRONT / "tests/presets.js", {"lab": "structure", "standard": lab.model["standard"]})
-    return {name: [lab.check(act) for act in found] for name, found in acts.items()}
-
-
-def scatter(run, begin, end):
-    """Standard deviation of the first unknown between two times."""
-    return run.estimate[(run.time >= begin) & (run.time <= end), 3].std()
-
-
-def times_too_far(run):
-    """Estimated over true range."""
-    return run.distance * run.recording.view.inverse(run.truth)
-
-
-@pytest.mark.node
-def test_the_speedometer_carries_the_metres(acts):
-    driving, standing = acts["speedometer"]
-    (run,) = structure_runs_of(driving).values()
-    assert run.settling_time(0.05) < 0.6
-    assert refusal_of(standing).startswith("the scale d_s multiplies every velocity")
-
-
-@pytest.mark.node
-def test_one_of_two_stories_must_be_known(acts):
-    both, one = acts["story"]
-    assert "act through their difference only" in refusal_of(both)
-    assert next(iter(structure_runs_of(one).values())).verdict(0.05).startswith("converged")
-
-
 @pytest.mark.node
 @pytest.mark.slow
-def test_a_crossing_leaves_a_gap_or_makes_spikes(acts):
-    guarded, bare = (next(iter(structure_runs_of(act).values())) for act in acts["crossing"])
-    assert len(guarded.unobservable_intervals) == 3
-    assert np.nanmin(times_too_far(guarded)) > 0.9
-    assert np.nanmax(times_too_far(guarded)) < 1.1
-    assert len(bare.unobservable_intervals) == 1
-    assert np.nanmax(np.abs(1 / times_too_far(bare) - 1)) > 0.5
-
-
-@pytest.mark.node
-@pytest.mark.slow
-def test_noise_leaves_two_digits_and_a_filter_more(acts):
-    growing, steady, both = (structure_runs_of(act) for act in acts["noise"])
-    late, early = (scatter(growing["ideal"], *part) for part in ((9, 10), (1, 2)))
-    assert 0.05 < late < 0.15
-    assert late > 1.4 * early
-    late, early = (scatter(steady["ideal"], *part) for part in ((9, 10), (1, 2)))
-    assert late == pytest.approx(early, rel=0.1)
-    assert scatter(both["extended_kalman"], 9, 10) < late / 10
-
-
-@pytest.mark.node
-@pytest.mark.slow
-def test_chatter_shrinks_with_the_step_and_is_gone_without_switching(acts):
-    coarse, fine, both = (structure_runs_of(act) for act in acts["chatter"])
-    worst = [np.abs(runs["sign"].error[runs["sign"].time > 1, 3]).max() for runs in (coarse, fine)]
-    assert worst[0] > 3 * 10.4
-    assert worst[1] == pytest.approx(worst[0] / 10, rel=0.3)
-    assert both["ideal"].verdict(0.05).startswith("converged")
-
-
-@pytest.mark.node
-@pytest.mark.slow
-def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
-    forgotten, cured = acts["limit"]
+def test_a_layer_that_is_not_resolved_is_told_before_the_run(lab, node):
+    forgotten = lab.check({"duration": 60.0, "observers": ["layer"]})
+    cured = lab.check({"duration": 60.0, "observers": ["ideal", "layer"], "gains": {"layer": {"sharpening": 0.0}}})
     answers = run_in_node(node, lab, [forgotten, cured])
     (limit,) = answers[0]["limits"]
     assert limit["time"] == pytest.approx(34.4, abs=0.1)
@@ -222,6 +159,17 @@ def test_a_layer_that_is_not_resolved_is_told_before_the_run(acts, lab, node):
         (lost,) = lab.runs(forgotten).values()
     assert np.abs(lost.error[lost.time > 55, 3]).max() > 100
     assert all(run.verdict(0.05).startswith("converged") for run in structure_runs_of(cured).values())
+
+
+def test_a_lab_that_is_given_nothing_opens_with_a_drive_whose_gains_fit_its_noise():
+    settings = structure_lab().settings
+    assert {**settings, **DRIVE, "gains": settings["gains"]} == settings
+    assert refusal_of(settings).startswith("4 unknowns")
+    gains = settings["gains"]["ideal"]
+    observer = observer_of("ideal").with_gains(**gains)
+    deviation = settings["noise"]["size"] / 3**0.5
+    tolerable = tolerable_amplification(observer, deviation, settings["scale"], settings["duration"])
+    assert gains["largest_amplification"] <= tolerable
 
 
 def test_a_lab_opens_with_a_choice_that_is_impossible_and_says_why():

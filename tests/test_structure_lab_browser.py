@@ -14,7 +14,7 @@ TOLD = ".unknowns .told"
 @pytest.fixture(scope="module")
 def python():
     """The lab in Python."""
-    return structure_lab()
+    return structure_lab(duration=3.0)
 
 
 def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, python):
@@ -73,18 +73,14 @@ def test_the_determinant_has_its_formula_and_its_number(fresh):
 
 
 def test_the_limit_of_the_layer_is_told_with_its_remedy(fresh):
-    fresh.click(control("preset limit"))
-    assert "What will happen" in fresh.inner_text(".question")
-    fresh.click(control("act limit 0"))
+    fresh.check(control("observer layer"))
+    fresh.fill(control("duration number"), "60")
     rested(fresh)
     assert "from 34.4 s on" in fresh.inner_text(".why")
     assert "take the ideal switch" in fresh.inner_text(".why")
-    fresh.click(control("act limit 1"))
+    fresh.fill(control("layer sharpening number"), "0")
     rested(fresh)
     assert "from 34.4 s on" not in fresh.inner_text(".why")
-    fresh.click(control("way back"))
-    rested(fresh)
-    assert state(fresh)["settings"] == structure_lab().settings
 
 
 def test_too_many_steps_are_refused_where_they_were_typed(fresh):

@@ -21,7 +21,7 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.settings import MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
+from percept_obs.labs.structure.settings import DRIVE, MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
@@ -57,8 +57,9 @@ class StructureLab(Lab):
     ----------
     form : StructureAndMotion, its form, StructureScenario, or Motion, optional
         A choice or a scenario of your own, with which the lab opens, or the velocities of camera and object from
-        `rigid`.  Those that are sampled, ``rigid(w, v_c, v_p, times)``, can be chosen beside those that the lab sets;
-        a scenario's functions of time are sampled every 10 ms.
+        `rigid`; without any argument it is a drive past a car.  Velocities that are sampled,
+        ``rigid(w, v_c, v_p, times)``, can be chosen beside those that the lab sets; a scenario's functions of time are
+        sampled every 10 ms.
     observers : list, optional
         Names, and observers of your own: functions of a form, such as `percept_obs.observers.family.family` makes.
     **settings
@@ -93,7 +94,8 @@ class StructureLab(Lab):
     blocks = BLOCKS
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
-        found, self._samples = ({}, None) if form is None else opening_of(form)
+        plain = form is None and observers is None and not set(settings) - {"face"}
+        found, self._samples = (DRIVE if plain else {}, None) if form is None else opening_of(form)
         settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
@@ -118,6 +120,7 @@ class StructureLab(Lab):
             texts=with_texts("structure_lab", self._added),
             own={name: make.for_the_page() for name, make in self._user_observers.items()},
             samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
+            drive=DRIVE,
             pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,

@@ -84,4 +84,16 @@ SCHEMA = Schema(
 )
 
 STANDARD: Settings = SCHEMA.opening | case_of(1)
-"""Settings that every preset begins with."""
+"""Settings of a lab that is given some."""
+
+DRIVE: Settings = {
+    **{"unknown": ["d_s", "v_c1", "v_c2", "v_c3"], "ybar": [0.75, 0.0, 0.25], "scale": 0.25},
+    **{"v_c": [3.75, 0.0, 2.25], "v_p": [0.0, 0.0, 0.0], "duration": 4.0},
+    "noise": {"kind": "uniform", "size": 2e-5, "depth": 2e-5},
+    "gains": {"ideal": {"feedback": 2.0, "switching_gain": 6.0, "largest_amplification": 100.0}},
+}
+"""Settings of a lab that is given none, where they differ: a drive past a car of 4 m, of which only its rest is known.
+
+ybar3 is the car's length in the image, and so d_s is one over its length.  The gains let no estimate pass that the
+noise could spoil (`tolerable_amplification`).
+"""

@@ -13,10 +13,10 @@ import { isSampled } from "./model/camera.js";
 import { pythonOf } from "./model/code.js";
 import { StructureEngine } from "./model/engine.js";
 import { keyOf, StructureKernels } from "./model/kernels.js";
-import { PRESETS } from "./model/presets.js";
 import { SYMBOLS } from "./model/symbols.js";
 import { readingAt, reasons } from "./model/text.js";
 import { ChoiceOfUnknowns } from "./page/choice.js";
+import { StructureFirst } from "./page/first.js";
 import { NAMES, StructurePanel, WORDS } from "./page/panel.js";
 import { chartOf, chartsOf, LABELS } from "./page/pictures.js";
 import { sceneOf } from "./page/scene.js";
@@ -28,7 +28,7 @@ export class StructureLab extends Lab {
 
   constructor(widget, place, model) {
     const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: PRESETS, labels: LABELS, chartOf, ...words });
+    super(widget, model, { words: WORDS, presets: [], labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,
@@ -45,6 +45,7 @@ export class StructureLab extends Lab {
     });
     this.choice = new ChoiceOfUnknowns(this.model, this);
     this.panel = new StructurePanel(this, this.choice);
+    this.first = new StructureFirst(this);
     this.open(place);
   }
 

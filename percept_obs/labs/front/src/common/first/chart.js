@@ -29,10 +29,13 @@ const [BAR, BARS] = [4, 6];
  * @property {number} end      of the time, in seconds
  * @property {number} high     largest value
  * @property {string} unit
+ * @property {(value: number) => string} [mark]  text of a value at the axis, where that is no number with a unit
+ * @property {string} [title]  what is drawn, where the unit does not tell
  * @property {{begin: number, end: number, text: string}[]} [spans]  hatched
  * @property {{text: string, rows: number[][][]} | null} [bars]  below, each with the times in which it is hatched
  * @property {{time: number, value: number, text: string, colour: string} | null} [found]
- * @property {{time: number, own?: number, kept?: number, text: string} | null} [note]  at a sample of a line
+ * @property {{time: number, value?: number, own?: number, kept?: number, text: string} | null} [note]
+ *     at a value, or at a sample of a line
  */
 
 export class TimeChart extends View {
@@ -88,11 +91,14 @@ export class TimeChart extends View {
     const [right, bottom] = [width - PAD.right, height - PAD.bottom];
     this.axes(chart, right, bottom);
     this.avoid(width / 2, height - PAD.bottom / 2, width / 2, PAD.bottom / 2);
+    const above = /** @type {[number, number]} */ ([right, PAD.top]);
+    const title = { id: "title", at: above, colour: theme.muted, rank: 6, towards: [-1, 1] };
+    if (chart.title) this.tag({ ...title, text: chart.title });
     for (const { begin, end, text } of chart.spans ?? []) {
       const [from, to] = [this.x(begin), this.x(end)];
       this.hatched((pen) => pen.rect(from, PAD.top, to - from, bottom - PAD.top));
       const at = [(from + to) / 2, bottom - this.floor - 20];
-      this.tag({ id: text, text, at, colour: theme.warning, rank: 5, gap: 0 });
+      if (text) this.tag({ id: text, text, at, colour: theme.warning, rank: 5, gap: 0 });
     }
     if (chart.bars) this.drawBars(chart.bars, now, bottom);
     this.inside(PAD.left, right + 1, () => {
@@ -117,7 +123,7 @@ export class TimeChart extends View {
     return moving;
   }
 
-  axes({ end, unit }, right, bottom) {
+  axes(/** @type {Chart} */ { end, unit, mark }, right, bottom) {
     const { theme } = this;
     const [high] = /** @type {number[]} */ (this.at);
     const step = roundStep(high / STEPS_UP);
@@ -125,7 +131,8 @@ export class TimeChart extends View {
     for (let k = 0; k <= top; k++) {
       const y = Math.round(this.y(k * step)) + 0.5;
       this.line([[PAD.left, y], [right, y]], theme.grid, { width: 1 });
-      this.write(`${readable(k * step)}${k === top ? ` ${unit}` : ""}`, PAD.left - 6, y, theme.muted, "right");
+      const text = mark ? mark(k * step) : `${readable(k * step)}${k === top ? ` ${unit}` : ""}`;
+      this.write(text, PAD.left - 6, y, theme.muted, "right");
     }
     const seconds = roundStep(end / (this.width > 500 ? PARTS : PARTS / 2));
     for (let k = 0; k * seconds <= end * (1 + 1e-9); k++) {
@@ -187,9 +194,11 @@ export class TimeChart extends View {
     }
     if (!text) return;
     const at = Array.prototype.findIndex.call(time, (value) => this.x(value) >= PAD.left + 24);
-    const y = within(this.y(values[Math.max(at, 0)]), PAD.top, bottom);
+    const first = Math.max(at, 0);
+    const y = within(this.y(values[first]), PAD.top, bottom);
+    const x = Math.max(this.x(time[first]), PAD.left + 24) + 4;
     const rank = id === "kept" ? 3 : 2;
-    this.tag({ id, text, at: [PAD.left + 28, y], colour, rank, gap: 4, towards: [0.1, -1] });
+    this.tag({ id, text, at: [x, y], colour, rank, gap: 4, towards: [0.1, -1] });
   }
 }
 
@@ -199,8 +208,9 @@ function roundStep(value) {
   return power * ([1, 2, 5].find((factor) => factor * power >= value * (1 - 1e-9)) ?? 10);
 }
 
-/** The value that a note points at: a sample of the kept run, or of the estimate. */
-function valueOf(lines, /** @type {any} */ { own, kept }) {
+/** The value that a note points at: its own, or a sample of the kept run or of the estimate. */
+function valueOf(lines, /** @type {any} */ { own, kept, value }) {
+  if (value !== undefined) return value;
   const line = lines.find(({ id }) => id === (own === undefined ? "kept" : "estimate"));
   return line.values[own ?? kept];
 }

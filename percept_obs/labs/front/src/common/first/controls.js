@@ -50,10 +50,11 @@ export function places({ name, label, choices, get, set }) {
   return { row, show, name };
 }
 
-/** A box to tick. */
-export function tick({ name, label, get, set }) {
-  const box = element("input", { type: "checkbox", "data-control": name, onchange: () => set(box.checked) });
-  const row = element("label", { class: "tick" }, box, ` ${label}`);
+/** A box to tick; `before` is the part of its label that is left out where there is little room. */
+export function tick({ name, label, before = "", get, set }) {
+  const own = { type: "checkbox", "data-control": name, "aria-label": `${before} ${label}`.trim() };
+  const box = element("input", { ...own, onchange: () => set(box.checked) });
+  const row = element("label", { class: "tick" }, box, element("span", { class: "before" }, `${before} `), label);
   const show = () => {
     box.checked = get();
   };

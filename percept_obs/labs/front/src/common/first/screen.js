@@ -45,6 +45,7 @@ const [PLAY, PAUSE, STEP] = ["M3 0l12 8-12 8z", "M2 1h4v14H2zM10 1h4v14h-4z", "M
  * @property {boolean} secret  whether the future of the estimate is hidden
  * @property {any} theme
  * @property {any} [body]      what a lab has read off the result for this time
+ * @property {any} [worlds]    that make what is seen, of a lab that looks at several
  */
 
 /**
@@ -154,6 +155,14 @@ export class FirstScreen {
     this.moved = true;
     this.secret = false;
     this.waiting = false;
+  }
+
+  /** Take changes, and show from the start what they do. */
+  replay(changes) {
+    this.pause();
+    this.moved = this.secret = this.waiting = true;
+    this.lab.state.cursor = null;
+    this.lab.change(changes, true);
   }
 
   // Time.
