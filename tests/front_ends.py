@@ -12,10 +12,8 @@ from lab_browser import assert_equals_python, control, drag_by_keys, drag_by_mou
 
 from percept_obs.labs import observer_lab
 
-LABS = (
-    "from percept_obs.labs import observer_lab\nobserver_lab('ma2005_eq35', face='workbench')",
-    "observer_lab(outputs=['y1'], face='workbench')",
-)
+OPENED = "observer_lab('ma2005_eq35', face='workbench')", 'observer_lab(outputs=["y1"], face="workbench")'
+LABS = f"from percept_obs.labs import observer_lab\n{OPENED[0]}", OPENED[1]
 FOE = control("foe")
 
 SETTLED = """(count) => {
@@ -189,7 +187,11 @@ def _end_kernels(page, server):
 def marimo(home):
     """A server of the example app for marimo; what it writes stays in a folder."""
     app = home / "marimo_lab.py"
-    app.write_bytes((NOTEBOOKS / "marimo_lab.py").read_bytes())
+    text = (NOTEBOOKS / "marimo_lab.py").read_text("utf-8")
+    for own, opened in zip(("observer_lab()", 'observer_lab(outputs=["y1"])'), OPENED, strict=True):
+        assert own in text
+        text = text.replace(own, opened)
+    app.write_text(text, "utf-8")
     address = f"http://127.0.0.1:{free_port()}"
     command = [sys.executable, "-m", "marimo", "run", "--headless", "--no-token", "--port", address.rpartition(":")[2]]
     places = {f"XDG_{kind}_HOME": str(home / kind) for kind in ("CONFIG", "STATE", "CACHE", "DATA")}

@@ -213,7 +213,7 @@ def test_the_policy_that_readme_states_says_nothing_of_workers():
 def test_a_lab_works_under_the_policy_that_readme_states(browser, make):
     page = opened(browser, make())
     page.wait_for_function(DRAWN)
-    assert page.locator("canvas").count() + page.locator(".sheet input").count() > 2
+    assert page.locator("canvas, .percept-lab input").count() > 2
     assert page.evaluate("window.refused") == []
     page.close()
 

@@ -2,6 +2,7 @@
 
 import shutil
 
+import numpy as np
 import pytest
 from jupyter_harness import LOG, NOTEBOOKS, jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
 from lab_browser import (
@@ -189,40 +190,49 @@ def test_the_kernel_answers_what_is_typed_at_the_desk(browser_page, folder):
     assert log_entries(page) == ""
 
 
+PLAYED = f"() => !{FIRST}.first.playing && !{FIRST}.first.secret"
+SETTLED = f"() => {FIRST}.shown.runs[0].settling"
+
+
 def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, folder):
     page = browser_page
     shutil.copy(NOTEBOOKS / "00_start.ipynb", folder)
     open_notebook(page, "00_start.ipynb")
     run_all(page)
     rested(page)
-    opening = state(page)
-    assert "after 1.91 s" in opening["verdicts"][0]
+    page.wait_for_function(f"{FIRST}.first.playing")
+    page.wait_for_function(PLAYED)
+    assert page.inner_text(".says").startswith("Found: ")
+    assert page.evaluate(SETTLED) == pytest.approx(2.25)
 
-    page.click(control("topic point"))
-    page.select_option(control("scenario"), "ma2005_eq36")
-    rested(page)
-    assert "after 2.42 s" in state(page)["verdicts"][0]
-    page.locator(control("foe")).scroll_into_view_if_needed()
-    x, y = centre(page, control("foe"))
-    page.mouse.move(x, y)
+    page.mouse.move(*centre(page, control("first foe")))
     page.mouse.down()
-    page.mouse.move(x - 60, y, steps=5)
+    page.mouse.move(*centre(page, control("first point")), steps=5)
     page.mouse.up()
     rested(page)
-    moved = state(page)
-    assert moved["settings"]["b"][0] < opening["settings"]["b"][0]
-    assert_equals_python(moved)
+    assert page.evaluate(SETTLED) == np.inf
+    page.click(control("why"))
+    np.testing.assert_allclose(page.evaluate(f"() => {FIRST}.first.seen.copies"), 0, atol=1e-9)
 
-    page.click(control("reset"))
-    page.check(control("outputs y1"))
+    page.click(control("again"))
     rested(page)
-    assert "after 11.9 s" in state(page)["verdicts"][0]
+    for key, seconds in (("Home", 2.55), ("End", np.inf)):  # y1, y2
+        page.locator(control("first outputs")).press(key)
+        rested(page)
+        assert page.evaluate(SETTLED) == pytest.approx(seconds)
 
-    page.click(control("reset"))
-    page.fill(control("identifier_based gain number"), "30")
-    page.fill(control("noise size number"), "0.01")
+    page.click(control("again"))
+    page.fill(control("first gain"), "1.48")
     rested(page)
-    assert "ends at 12 %, outside 10 %" in state(page)["verdicts"][0]
+    assert page.evaluate(f"() => {FIRST}.settings.gains.identifier_based.gain") == 30
+    assert page.evaluate(SETTLED) == pytest.approx(0.80)
+    page.fill(control("first noise"), "0.0025")
+    rested(page)
+    assert page.evaluate(SETTLED) > 1.5
+
+    page.click(control("workbench"))
+    rested(page)
+    assert_equals_python(state(page))
     assert log_entries(page) == ""
 
 

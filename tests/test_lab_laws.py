@@ -35,7 +35,6 @@ MOVED = {
     "structure": lambda settings: (settings["ybar"][:2], settings["ybar"][2:]),
     "points": lambda settings: (settings["points"][1][:2], [settings["points"][k][2] for k in range(3)]),
 }
-QUESTION = {"observer": "drop", "points": "hide"}
 MOST_SAMPLES = {"observer": 4000, "structure": 20_000, "points": 800}
 WIDE_OPEN = {
     "observer": {"duration": 2.0, "observers": ["identifier_based", "sliding_mode"], "pictures": ["error", "inverse"]},
@@ -111,9 +110,7 @@ def test_what_is_dragged_follows_the_hand(fresh, python, kind, drag):
     assert_has(python, after["settings"])
 
 
-def test_axe_finds_nothing_serious(fresh, kind):
-    if kind in QUESTION:
-        fresh.click(control(f"preset {QUESTION[kind]}"))
+def test_axe_finds_nothing_serious(fresh):
     assert serious_violations(fresh) == []
 
 

@@ -33,17 +33,9 @@ SHARES = """() => {
 
 
 @pytest.fixture
-def ask(show):
-    """Shows observer labs without a question."""
-
-    def without_question(**settings):
-        page = show(observer_lab(**settings))
-        if page.locator(control("way back")).is_visible():
-            page.click(control("way back"))
-        page.wait_for_function(DRAWN)
-        return page
-
-    return without_question
+def opened(show):
+    """Shows observer labs of Ma's motion."""
+    return lambda **settings: show(observer_lab("ma2005_eq35", **settings))
 
 
 def names_of(page, *parts):
@@ -51,8 +43,8 @@ def names_of(page, *parts):
     return [found for found in page.evaluate(WRITTEN) if any(part in found[0] for part in parts)]
 
 
-def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(ask):
-    page = ask(outputs=["y1"])
+def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(opened):
+    page = opened(outputs=["y1"])
     alike = page.evaluate("""() => { const [lab] = window.perceptObsLabs; const [plane] = lab.planes;
         return plane.parts.alikeOf(lab.shown, { sample: 300, part: 0 }, plane.square); }""")
     copies = alike["copies"]
@@ -66,25 +58,25 @@ def test_one_output_is_drawn_with_points_that_it_cannot_tell_apart(ask):
     assert not names_of(page, "look the same to y1 now")
 
 
-def test_an_error_is_drawn_with_what_noise_adds_and_with_the_same_run_without_noise(ask):
-    page = ask(outputs=["y1"], noise=NOISE)
+def test_an_error_is_drawn_with_what_noise_adds_and_with_the_same_run_without_noise(opened):
+    page = opened(outputs=["y1"], noise=NOISE)
     assert {"what noise adds", "without noise"} <= {name[0] for name in names_of(page, "nois")}
     shares = page.evaluate(SHARES)
     assert shares["late"] > 10 * shares["lateQuiet"]
-    both = ask(noise=NOISE).evaluate(SHARES)
+    both = opened(noise=NOISE).evaluate(SHARES)
     assert both["late"] < shares["late"] / 5
-    more = ask(noise=NOISE, gains={"identifier_based": {"gain": 60.0}}).evaluate(SHARES)
+    more = opened(noise=NOISE, gains={"identifier_based": {"gain": 60.0}}).evaluate(SHARES)
     assert more["late"] > 3 * both["late"]
     quiet = [np.flatnonzero(np.array(found["quiet"]) < 0.5)[0] for found in (more, both)]
     assert quiet[0] < quiet[1] / 2  # more gain is faster
-    still = ask()
+    still = opened()
     error = still.evaluate("() => Array.from([...window.perceptObsLabs][0].shown.runs[0].error)")
     assert both["quiet"] == error
     assert still.evaluate("() => [...window.perceptObsLabs][0].shown.shares") is None
 
 
-def test_the_innovation_is_drawn_against_the_noise(ask):
-    page = ask(outputs=["y1"], noise=NOISE, pictures=["innovation", "error"])
+def test_the_innovation_is_drawn_against_the_noise(opened):
+    page = opened(outputs=["y1"], noise=NOISE, pictures=["innovation", "error"])
     lines = page.evaluate("""() => { const [{ drawn, shown }] = window.perceptObsLabs;
         const k = 4000;
         return { drawn: drawn.innovation.lines.map(({ name, values }) => [name, values[values.length > 2 ? k : 0]]),
@@ -94,12 +86,10 @@ def test_the_innovation_is_drawn_against_the_noise(ask):
     assert sorted(value for name, value in lines["drawn"] if name == "noise") == [-0.02, 0.02]
 
 
-def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(ask):
-    page = ask()
-    page.click(control("preset gain"))
-    page.click(control("act gain 0"))
-    page.wait_for_function(DRAWN)
-    assert page.evaluate("() => [...window.perceptObsLabs][0].settings.kept.gains.identifier_based.gain") == 10
+def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(opened):
+    gains = [{"identifier_based": {"gain": gain}} for gain in (60.0, 10.0)]
+    noise, pictures = {"kind": "uniform", "size": 0.01}, ["innovation", "step", "error"]
+    page = opened(noise=noise, pictures=pictures, duration=8.0, gains=gains[0], kept={"gains": gains[1]})
     sizes = page.evaluate("""() => {
         const [{ drawn }] = window.perceptObsLabs;
         const size = ({ values }) => Math.hypot(...Array.from(values).slice(400)) / 20;
@@ -114,8 +104,8 @@ def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(as
     assert len(names_of(page, "kept run")) == 3  # on top of both, and what noise adds to it
 
 
-def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(ask):
-    page = ask()
+def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(opened):
+    page = opened()
     page.click(control("zoom in"))
     page.fill(control("noise size number"), "0.003")
     page.fill(control("identifier_based gain number"), "60")
@@ -125,13 +115,13 @@ def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(ask):
     assert not names_of(page, "80 s")  # too late to be sure of, so it is no event
 
 
-def test_the_estimate_leaves_a_point_at_the_focus_of_expansion_in_sight(ask):
-    handle = ask().evaluate("() => getComputedStyle(document.querySelector('.handle'), '::before').backgroundColor")
+def test_the_estimate_leaves_a_point_at_the_focus_of_expansion_in_sight(opened):
+    handle = opened().evaluate("() => getComputedStyle(document.querySelector('.handle'), '::before').backgroundColor")
     assert handle == "rgba(0, 0, 0, 0)"
 
 
-def test_the_key_of_the_map_covers_nothing_of_the_image(ask):
-    page = ask(noise=NOISE, bound=["map"])
+def test_the_key_of_the_map_covers_nothing_of_the_image(opened):
+    page = opened(noise=NOISE, bound=["map"])
     right = page.evaluate("""() => { const [{ planes: [plane] }] = window.perceptObsLabs;
         const { square, handles: [{ at, scale, node }] } = plane;
         const [x] = node.style.transform.match(/[-\\d.]+/g).map(Number);
@@ -141,8 +131,8 @@ def test_the_key_of_the_map_covers_nothing_of_the_image(ask):
     assert all(x > right for _, x, *_ in numbers)
 
 
-def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_shown(ask):
-    page = ask(motion="b1 = cos(t); b2 = 0; b3 = 1", A=[[0.0] * 3] * 3, X0=[0, 0, 40], duration=6)
+def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_shown(opened):
+    page = opened(motion="b1 = cos(t); b2 = 0; b3 = 1", A=[[0.0] * 3] * 3, X0=[0, 0, 40], duration=6)
     for time in (0.0, 1.0, 3.0):
         page.evaluate(PUT, [time])
         (found,) = names_of(page, "FOE now")
@@ -158,8 +148,8 @@ def test_the_focus_of_expansion_of_a_motion_that_varies_is_drawn_at_the_time_sho
 LOOK = """() => { const [{ span, theme }] = window.perceptObsLabs; return [span.low, span.high, theme.picked]; }"""
 
 
-def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(ask):
-    page = ask()
+def test_zoom_and_the_line_that_stands_out_are_steps_of_the_history(opened):
+    page = opened()
     undo, redo = control("undo"), control("redo")
     first = page.evaluate(LOOK)
     page.click(control("zoom in"))

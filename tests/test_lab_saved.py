@@ -39,7 +39,7 @@ FOUND = """() => { const [lab] = window.perceptObsLabs; return {
 @pytest.fixture
 def page(browser):
     """A page with what a notebook's page keeps of a lab, as nbconvert writes it."""
-    lab = observer_lab(duration=2.0)  # what there is does not depend on how long it runs
+    lab = observer_lab(duration=2.0, face="workbench")  # what there is does not depend on how long it runs
     kept = dependency_state([lab], drop_defaults=False)
     saved = embed_data(views=[lab], state=kept)["manager_state"]["state"]
     page = browser.new_page(offline=True)

@@ -1,19 +1,12 @@
-// Which time and which values are in sight: where the story is, what the hand asks for, and no more change than needed.
+// Which time and which values are in sight: all, what the hand asks for, and no more change than needed.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { keptScale, linearScale, logScale, spread } from "../src/common/model/scales.js";
-import { indicesIn, storyOf, Timeline, zoomed } from "../src/common/model/timeline.js";
+import { indicesIn, Timeline, zoomed } from "../src/common/model/timeline.js";
 import { spansOf } from "../src/common/model/tables.js";
 import { decades, distancesAround, rangeAround } from "../src/common/page/chart_parts.js";
 
 const WHOLE = { low: 0, high: 80 };
-const ASKED = { question: "a", choice: 1, held: false };
-
-test("time opens where the errors fall and events are, and shows all of a run that never settles", () => {
-  assert.deepEqual(storyOf(WHOLE, [1.91]), { low: 0, high: 8 });
-  assert.deepEqual(storyOf(WHOLE, [1.91], 20), { low: 0, high: 30 });
-  for (const settlings of [[1.91, Infinity], [null], [], [0], [60]]) assert.equal(storyOf(WHOLE, settlings), WHOLE);
-});
 
 test("a part is zoomed about a time that stays where it is, inside the whole", () => {
   assert.deepEqual(zoomed({ low: 10, high: 30 }, WHOLE, 0.5, 15), { low: 12.5, high: 22.5 });
@@ -21,25 +14,19 @@ test("a part is zoomed about a time that stays where it is, inside the whole", (
   assert.deepEqual(zoomed({ low: 0, high: 20 }, WHOLE, 2, 20), { low: 0, high: 40 });
 });
 
-test("while a hand moves settings the time in sight stays; another choice shows its story", () => {
+test("time opens with all of a run, and a zoom stays until the run is another one or the zoom is taken back", () => {
   const timeline = new Timeline();
-  const follow = (settling, asked = {}, whole = WHOLE) => {
-    timeline.follow(whole, { settlings: [settling], events: undefined }, { ...ASKED, ...asked });
-    return timeline.span.high;
-  };
-  assert.equal(follow(1.91), 8);
-  assert.equal(follow(7, { held: true }), 8);
-  assert.equal(follow(7), 8);
-  assert.equal(follow(7, { choice: 2 }), 30);
-  assert.equal(follow(1.91, { choice: 3 }), 8);
+  timeline.follow(WHOLE, "a", null);
+  assert.equal(timeline.span, WHOLE);
   timeline.zoom(0.5, 4);
-  assert.deepEqual(timeline.span, { low: 2, high: 6 });
-  assert.equal(follow(7, { choice: 4 }), 6);
-  assert.equal(follow(7, { question: "b", choice: 5 }), 30);
-  assert.equal(follow(7, { question: "b", choice: 5, held: true }, { low: 0, high: 10 }), 10);
-  timeline.zoom(0.5, 4);
-  timeline.forget();
-  assert.equal(follow(1.91, { question: "b", choice: 5 }), 8);
+  const sight = { span: timeline.span, of: timeline.of };
+  assert.deepEqual(sight, { span: { low: 2, high: 42 }, of: "a" });
+  timeline.follow(WHOLE, "a", sight);
+  assert.equal(timeline.span, sight.span);
+  timeline.follow({ low: 0, high: 10 }, "b", sight);
+  assert.deepEqual(timeline.span, { low: 0, high: 10 });
+  timeline.follow(WHOLE, "a", null);
+  assert.equal(timeline.span, WHOLE);
 });
 
 test("a span needs its own times and one beside it", () => {

@@ -140,10 +140,6 @@ export class PointsLab extends Lab {
     return this.answered()?.bound ?? null;
   }
 
-  story() {
-    return { settlings: [this.shown.settling], events: undefined };
-  }
-
   besides() {
     return { bound: this.guaranteed(), unseen: this.model.unseen };
   }

@@ -13,7 +13,7 @@ import { same } from "./settings.js";
  * @property {(number | null)[]} [sketch]  the error curve that was predicted: decades at equal steps of time
  * @typedef {object} Sight         the part of the time that the hand has asked for
  * @property {import("./timeline.js").Span} span
- * @property {string} question     in which it has: another one shows its own
+ * @property {string} of           scenario and times of the run in which it has: another one shows all
  * @typedef {object} Moment
  * @property {Settings} settings
  * @property {Preset | null} preset

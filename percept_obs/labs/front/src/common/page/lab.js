@@ -198,11 +198,6 @@ export class Lab extends LabBase {
     this.touched(true);
   }
 
-  reset() {
-    this.time.timeline.forget();
-    super.reset();
-  }
-
   keep() {
     this.change({ kept: this.settings.kept ? null : { ...structuredClone(this.settings), kept: null } }, true);
   }
@@ -234,7 +229,7 @@ export class Lab extends LabBase {
     const { timeline } = this.time;
     const before = timeline.span;
     change(timeline);
-    if (timeline.span !== before) this.state.look({ span: timeline.span, question: timeline.question });
+    if (timeline.span !== before) this.state.look({ span: timeline.span, of: timeline.of });
     clearTimeout(this.zooming);
     this.zooming = setTimeout(() => this.state.seen(), ZOOM_REST);
     this.view.steps(this.state);
@@ -405,21 +400,9 @@ export class Lab extends LabBase {
     const recorded = settings.scenario in (this.model.recordings ?? {});
     // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
     const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
-    const { name, act } = state.preset ?? { name: "", act: -1 };
-    const question = [settings.scenario, whole.low, whole.high, ...(act < 0 ? [] : [name, act])].join();
-    const { sight } = state.now;
-    const { timeline } = this.time;
-    // A result of other settings tells another story: the present one is opened when its result is there.
-    const now = this.late ? { ...timeline, held: true } : { question, choice: this.choices, held: this.held };
-    timeline.follow(whole, this.story(), { ...now, asked: sight?.question === now.question ? sight.span : null });
+    this.time.timeline.follow(whole, [settings.scenario, whole.low, whole.high].join(), state.now.sight);
     state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
     return this.peeked ?? state.cursor;
-  }
-
-  /** When each run settled, in seconds (null without a truth), and until when something else happens. */
-  story() {
-    const { runs, inside = [] } = this.shown;
-    return { settlings: runs.map(({ settling }) => settling), events: inside.at(-1)?.[1] };
   }
 
   /** Names of the time charts that are shown. */
