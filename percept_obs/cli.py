@@ -71,7 +71,7 @@ def site(options: argparse.Namespace) -> int:
     copies = {entry.name: COPIES[options.readers](json.loads(entry.read_bytes())) for entry in found}
     try:
         needed("site", *NEEDS)
-        build(options.directory, copies)
+        build(options.directory, copies, exam=options.readers == "teachers", address=options.address)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
         raise _Mistake(str(error), 1) from None
     return 0
@@ -191,6 +191,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add = command(site, "write the course as pages")
     add("directory", type=Path, metavar="DIR", help="folder of the pages")
     add("--for", **readers)
+    add(
+        "--address", default="", metavar="URL", help="where the pages will stand, for links to themselves and a sitemap"
+    )
 
     add = command(check, "judge the papers' equations")
     add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')

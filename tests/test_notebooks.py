@@ -68,6 +68,11 @@ def test_each_notebook_leads_to_the_next():
         assert f"]({following})" in texts[name], f"the end of {name} has no link to {following}"
 
 
+def test_the_first_notebook_lists_all_others():
+    text = json.dumps(read("00_start.ipynb"))
+    assert re.findall(r"\*\*\]\((\w+\.ipynb)\)", text) == NAMES[1:]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_links_lead_to_notebooks(name):
     text = "".join("".join(cell["source"]) for cell in read(name)["cells"] if cell["cell_type"] == "markdown")

@@ -23,13 +23,16 @@ from percept_obs.exercises import COPIES
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
+from percept_obs.recording.utias import DatasetUnavailable
 from percept_obs.site.extension import _let_keys_scroll, mathml
 from percept_obs.site.front_ends import TRIED
-from percept_obs.site.notebooks import drawing
+from percept_obs.site.named import named
+from percept_obs.site.notebooks import drawing, needing_the_recording, run_all
 from percept_obs.site.pages import ledger_addresses, reference
 
 NOTEBOOK = "00_start.ipynb"
 PAPER = "DE_LUCA2008"
+ADDRESS = "https://example.org/course"
 
 
 class Links(HTMLParser):
@@ -59,7 +62,8 @@ def pages(tmp_path_factory):
         }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the generator's own
-        site.build(target, copies, sampled({PAPER: NAMED[PAPER]}, NAMED), tell=lambda text: None)
+        ledgers = sampled({PAPER: NAMED[PAPER]}, NAMED)
+        site.build(target, copies, ledgers, tell=lambda text: None, exam=True, address=ADDRESS)
     return target
 
 
@@ -169,6 +173,49 @@ def test_a_signature_names_a_long_default(pages):
     text = (pages / "reference" / "percept-obs-papers.html").read_text(encoding="utf-8")
     assert "LEDGERS</span>" in text
     assert "Entry(place=" not in text
+
+
+@pytest.mark.slow
+def test_every_page_says_what_it_is_and_where(pages):
+    found = [path for path in pages.rglob("*.html") if "_static" not in path.parts]
+    sitemap = (pages / "sitemap.xml").read_text(encoding="utf-8")
+    descriptions = set()
+    for path in found:
+        text, address = path.read_text(encoding="utf-8"), f"{ADDRESS}/{path.relative_to(pages).as_posix()}"
+        assert f"<loc>{address}</loc>" in sitemap
+        (description,) = re.findall(r'<meta name="description" content="([^"]+)"', text)
+        assert len(description) <= 160 * 1.1  # as HTML writes it
+        descriptions.add(description)
+        assert f'<meta property="og:url" content="{address}"' in text
+        assert f'<link rel="canonical" href="{address}"' in text
+    assert len(descriptions) > 0.5 * len(found)
+    assert (pages / "_static" / "card.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_only_teachers_get_the_exam():
+    for exam in (True, False):
+        names = [name for name, _ in site._texts(exam)]
+        assert ("exam.md" in names) is exam
+        assert ("exam.md" in named([], NAMED, exam)["exam"]) is exam
+    assert "<summary>Solution" not in "".join(text for _, text in site._texts(False))
+
+
+def test_what_misses_its_recording_is_left_as_it_is_and_says_so(monkeypatch):
+    def missing():
+        raise DatasetUnavailable("no network")
+
+    code = {"cell_type": "code", "id": "c", "metadata": {}, "outputs": [], "execution_count": None}
+    title = {"cell_type": "markdown", "id": "t", "metadata": {}, "source": "# A title"}
+    whole = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}}
+    wanting = {**whole, "cells": [title, code | {"source": "from percept_obs.recording.utias import load_utias"}]}
+    plain = {**whole, "cells": [title]}
+    monkeypatch.setattr("percept_obs.site.notebooks.find_utias", missing)
+    assert needing_the_recording({"03": wanting, "00": plain}) == {"03"}
+    assert needing_the_recording({"00": plain}) == frozenset()
+    ((name, written),) = run_all({"03": wanting}, 1, frozenset({"03"}))
+    assert name == "03"
+    assert written.cells[0].source == "# A title"
+    assert "no cell of this page was run" in written.cells[1].source
 
 
 def test_an_address_of_its_own_for_every_equation():

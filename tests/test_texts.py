@@ -35,12 +35,13 @@ SECTIONS = {
 
 
 @pytest.mark.slow
-def test_the_guide_s_solutions_compute_what_they_say():
-    text = re.sub(r"^```.*$", "", GUIDE, flags=re.MULTILINE)
-    test = doctest.DocTestParser().get_doctest(text, {}, "guide", None, None)
+def test_the_exam_s_solutions_compute_what_they_say():
+    exam = ON_THE_SITE["exam.md"]
+    text = re.sub(r"^```.*$", "", exam, flags=re.MULTILINE)
+    test = doctest.DocTestParser().get_doctest(text, {}, "exam", None, None)
     assert len(test.examples) > 20
     assert doctest.DocTestRunner().run(test).failed == 0
-    questions = GUIDE[GUIDE.index("## Exam questions") :].split("<details>")[1:]
+    questions = exam.split("<details>")[1:]
     assert all(">>> " in question for question in questions)
 
 

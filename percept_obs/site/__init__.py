@@ -16,9 +16,17 @@ from typing import Any
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.site import front_ends
+from percept_obs.site.addresses import CARD, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
+from percept_obs.site.notebooks import (
+    NO_RECORDING,
+    SiteFault,
+    labs_of,
+    needing_the_recording,
+    run_all,
+    without_widgets,
+)
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
 __all__ = ["NEEDS", "SiteFault", "build"]
@@ -59,6 +67,8 @@ def build(
     ledgers: Mapping[str, Ledger] = NAMED,
     parallel: int = 2,
     tell: Callable[[str], object] = print,
+    exam: bool = False,
+    address: str = "",
 ) -> None:
     """Build the site.
 
@@ -74,12 +84,18 @@ def build(
         Number of notebooks that run at once.
     tell : function of str, optional
         Called with each message about the progress; `print` when left out.
+    exam : bool
+        Whether the exam's questions, with their solutions, have a page: for teachers.
+    address : str, optional
+        Where the site will stand, ``"https://example.org/course/"``; with it pages say their own address, and there is
+        a list of them all for search engines.
 
     Raises
     ------
     SiteFault
         If a notebook does not run, or a page has a fault such as a link that leads nowhere.
     """
+    address = address and address.rstrip("/") + "/"
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder)
         lab = first_lab()
@@ -88,12 +104,15 @@ def build(
         for path, text in [
             *ledger_pages(ledgers),
             *reference(),
-            *_texts(),
+            *_texts(exam),
             ("index.md", front(lab, notebooks, ledgers)),
         ]:
             _write(source / path, text)
         tell("writing the pages")
-        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers)})
+        (source / "_static" / CARD).write_bytes(card())
+        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), "html_baseurl": address})
+    if address:
+        write_sitemap(target, address)
     tell(f"wrote {target / 'index.html'}")
 
 
@@ -108,8 +127,11 @@ def _notebooks(
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
-    for name, notebook in run_all(notebooks, parallel):
-        tell(f"ran {name}")
+    missing = needing_the_recording(notebooks)
+    if missing:
+        tell(f"{NO_RECORDING} These stand on the site without their results: {', '.join(sorted(missing))}")
+    for name, notebook in run_all(notebooks, parallel, missing):
+        tell(f"{'wrote' if name in missing else 'ran'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
     stems = [name.removesuffix(".ipynb") for name in notebooks]
@@ -118,10 +140,10 @@ def _notebooks(
     shutil.copy(STARTER, source / "_static")
 
 
-def _texts() -> Pages:
+def _texts(exam: bool) -> Pages:
     """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
-    for text in TEXTS.iterdir():
+    for text in (each for each in TEXTS.iterdir() if exam or each.name != "exam.md"):
         folder = "_static/" if text.name.endswith(".css") else ""
         yield folder + text.name, text.read_text("utf-8")
 

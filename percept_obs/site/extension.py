@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from percept_obs.site.addresses import describe
+
 
 def setup(app: Any) -> dict[str, bool]:
     """Register the extension with Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
     app.connect("autodoc-process-docstring", _keep_bars)
     app.connect("html-page-context", _let_keys_scroll)
+    app.connect("html-page-context", describe)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 

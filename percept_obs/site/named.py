@@ -26,8 +26,15 @@ class Notebooks(dict[str, str]):
         return number
 
 
-def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, Any]:
-    """Return substitutions by their keys; an equation of a paper that is not on the site has no link.
+EXAM = {
+    True: "[Questions with their solutions](exam.md), each computed by code that runs as it stands.",
+    False: "Questions with their solutions stand on the site for teachers: `percept-obs site --for teachers DIR`.",
+}
+"""What stands for the exam, by whether the site has it."""
+
+
+def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger], exam: bool = True) -> dict[str, Any]:
+    """Return substitutions by their keys; what is not on the site, an equation or the exam, has no link.
 
     >>> found = named(["02_two_observers.ipynb"], NAMED)
     >>> found["nb"]["02"], found["nb"]["03"], found["MA2005"]["(11)"]
@@ -42,6 +49,7 @@ def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger]) -> dict[str, 
             }
             for name, ledger in NAMED.items()
         },
+        "exam": EXAM[exam],
         "longest_step": f"{LONGEST_STEP:g} s",
         "plant_step": f"{PLANT_STEP:g} s",
         "largest_step_rate": f"{LARGEST_STEP_RATE:g}",
