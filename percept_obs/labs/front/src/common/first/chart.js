@@ -114,6 +114,7 @@ export class TimeChart extends View {
     const present = this.x(now);
     this.line([[present, PAD.top - 6], [present, bottom]], theme.ink);
     this.dot(present, bottom, 6, theme.ink);
+    this.avoidLine([present, PAD.top], [present, bottom]);
     for (const line of chart.lines) this.nameLine(line, now, bottom);
     if (note) {
       const y = this.y(valueOf(chart.lines, note));

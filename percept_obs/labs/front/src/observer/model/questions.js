@@ -89,7 +89,7 @@ export const QUESTIONS = [
     answers: ["Yes, as fast", "Yes, later", "No"],
     right: 2,
     ...asked(ABOVE, { ...ABOVE, outputs: ["y1"] }),
-    kept: "both",
+    kept: "before: both",
     tells: "Its column stands still, near or far, so y1 says nothing. Its row would have told the distance.",
     on: "image",
     note: "its column stands still",
@@ -106,7 +106,7 @@ export const QUESTIONS = [
     answers: ["Faster", "Faster, but shaky", "Slower"],
     right: 1,
     ...asked({ noise: NOISE }, { noise: NOISE, ...gain(60) }),
-    kept: "gain 10",
+    kept: "before: gain 10",
     tells: "Faster, but the gain multiplies the noise as well: the estimate follows the noise.",
     on: "chart",
     note: "follows the noise",
@@ -123,7 +123,7 @@ export const QUESTIONS = [
     answers: ["It stays right", "It gets lost", "It starts over"],
     right: 0,
     ...asked({ ...CURVE, ...gain(16) }, { ...CURVE, ...gain(16) }, { ...CURVE, ...gain(4) }),
-    kept: "gain 4",
+    kept: "with gain 4",
     tells:
       "It stays right: its equations carry it through. An estimate that is still wrong (gain 4) learns nothing there.",
     on: "chart",
@@ -149,7 +149,7 @@ export const QUESTIONS = [
       const believed = { A: STILL, b: settings.b.map((value) => BELIEVED * value) };
       return { ...settings, believed, kept: settings };
     },
-    kept: "true speed",
+    kept: "before: true speed",
     tells:
       "No. A point 1.5 times as far, passed 1.5 times as fast, looks the same. Every distance is 1.5 times too large.",
     on: "chart",
@@ -167,7 +167,7 @@ export const QUESTIONS = [
     answers: ["Both", "Their sum", "Neither"],
     right: 1,
     ...asked(HIDDEN, { ...HIDDEN, outputs: ["y1"] }),
-    kept: "both",
+    kept: "before: both",
     tells: "Only the sum of y2 and 1/distance. Each of the two stays wrong, by as much as the other, the other way.",
     on: "image",
     note: "the estimate of y2 is wrong",

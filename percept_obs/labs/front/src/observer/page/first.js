@@ -4,8 +4,10 @@ import { places, range } from "../../common/first/controls.js";
 import { drawCamera, drawCone, drawGround } from "../../common/first/map.js";
 import { FirstScreen } from "../../common/first/screen.js";
 import { columnOf, derived } from "../../common/model/derived.js";
+import { settled } from "../../common/model/errors.js";
 import { between, valueBetween, within } from "../../common/model/playback.js";
 import { changeAt, same } from "../../common/model/settings.js";
+import { percent } from "../../common/model/words.js";
 import { affine, COPIES, imageVelocities } from "../../common/model/velocities.js";
 import { KEPT } from "../../common/page/looks.js";
 import { shapeOf, varies } from "../model/camera.js";
@@ -255,16 +257,18 @@ export class ObserverFirst extends FirstScreen {
     const scale = view.at[2];
     const flip = (/** @type {number[]} */ [u, v]) => [u, -v];
     const shown = (why ? copies : [copies[1], expects]).filter(Boolean).map(flip);
-    const longest = Math.max(...shown.map((v) => Math.hypot(...v)), 1e-9) * scale;
-    let size = Math.min(4, (Math.min(view.width, view.height) * 0.42) / longest) * scale;
-    for (const velocity of why ? shown.slice(0, 1) : shown) {
+    // One scale, whether the copies are shown or not.
+    const all = [...copies, expects].filter(Boolean).map(flip);
+    const longest = Math.max(...all.map((v) => Math.hypot(...v)), 1e-9) * scale;
+    let size = Math.min(4, (Math.min(view.width, view.height) * 0.6) / longest) * scale;
+    for (const velocity of all) {
       const [u, v] = velocity;
       const [across, down] = [u < 0 ? px : view.width - px, v < 0 ? py : view.height - py];
       size = Math.min(size, (across - 14) / Math.abs(u), (down - 14) / Math.abs(v));
     }
     // The names of the directions stand in the corner.
-    const inCorner = ([u, v]) => px + size * u < 78 && py + size * v < 72;
-    while (shown.some(inCorner) && size > 1) size *= 0.9;
+    const inCorner = (/** @type {number[]} */ [u, v]) => px + size * u < 78 && py + size * v < 72;
+    while (all.some(inCorner) && size > 1) size *= 0.9;
     size = Math.max(size, 0);
     const tip = (/** @type {number[]} */ [u, v]) => [size * u, size * v];
     if (why) {
@@ -276,6 +280,8 @@ export class ObserverFirst extends FirstScreen {
         view.arrow(from, [u, v], theme.ink, 2.5);
         const end = [from[0] + u, from[1] + v];
         const text = HERE[k];
+        if (length <= 8 && k === 1)
+          view.tag({ id: "still", text: "no motion at any distance", at: from, colour: theme.ink, rank: 0, gap: 16 });
         if (length > 8) view.tag({ id: text, text, at: end, colour: theme.ink, rank: k, gap: 5, towards: velocity });
       });
       return;
@@ -283,7 +289,7 @@ export class ObserverFirst extends FirstScreen {
     const colour = theme.lines[run.order];
     const [own, guess] = shown;
     const parts = (/** @type {number[]} */ [u, v]) => (single === null ? [u, v] : single === 0 ? [u, 0] : [0, v]);
-    const apart = guess ? Math.hypot(own[0] - guess[0], own[1] - guess[1]) * size > 14 : false;
+    const apart = guess ? Math.hypot(own[0] - guess[0], own[1] - guess[1]) * size > 6 : false;
     const draw = (velocity, tint, width, id, text, towards) => {
       const [u, v] = tip(velocity);
       if (single !== null) view.line([[px, py], [px + u, py + v]], tint, { width, alpha: 0.3 });
@@ -291,6 +297,11 @@ export class ObserverFirst extends FirstScreen {
       if (apart) view.tag({ id, text, at: [px + u, py + v], colour: tint, rank: 3, gap: 8, towards });
     };
     if (guess) draw(guess, colour, 5, "expected", "expected", guess);
+    const length = Math.hypot(...own) * size;
+    if (guess && !apart && length > 20) {
+      const at = [px + size * own[0], py + size * own[1]];
+      view.tag({ id: "agree", text: "seen as expected", at, colour, rank: 3, gap: 8, towards: [own[1], -own[0]] });
+    }
     draw(own, theme.ink, 1.8, "seen", "seen", [own[1], -own[0]]);
   }
 
@@ -329,6 +340,9 @@ export class ObserverFirst extends FirstScreen {
     const ahead = along(b.map((value) => (seen.rigid ? -value : value)));
     view.line([camera, ahead], theme.warning, { dash: [6, 5] });
     view.avoidLine(camera, ahead);
+    const share = 60 / Math.max(Math.hypot(ahead[0] - camera[0], ahead[1] - camera[1]), 60);
+    const named = [0, 1].map((c) => camera[c] + share * (ahead[c] - camera[c]));
+    view.tag({ id: "heading", text: "heading", at: named, colour: theme.warning, rank: 7, gap: 4, towards: [1, 0] });
     const turn = Math.atan2(along([0, 0, 1])[0] - camera[0], camera[1] - along([0, 0, 1])[1]);
     const ray = along(seen.place);
     view.line([camera, ray], theme.ink, { alpha: 0.75 });
@@ -370,7 +384,8 @@ export class ObserverFirst extends FirstScreen {
     if (!settings.believed || same(settings.believed, { A: settings.A, b: settings.b })) return;
     const { inWorld } = this.seen;
     const placeAt = (time) => inWorld(apply(flow(settings.believed, now - time), [0, 0, 0]));
-    const way = this.timesTo({ shown, now }).map((time) => on(placeAt(time)));
+    // Beside the true way, or one would hide the other.
+    const way = this.timesTo({ shown, now }).map((time) => on(placeAt(time)).map((value, c) => value + (c ? 0 : 7)));
     view.line(way, colour, { width: 2, dash: [5, 4] });
     view.tag({ id: "believed", text: "believed way", at: way[0], colour, rank: 2, gap: 5, towards: [1, 0] });
     view.tag({ id: "way", text: "true way", at: start, colour: theme.ink, rank: 2, gap: 5, towards: [-1, 0] });
@@ -494,9 +509,10 @@ export class ObserverFirst extends FirstScreen {
     const most = actual ? Math.max(...actual.filter(Number.isFinite)) : median(found) * 2;
     const near = found.filter((value) => value < 1.5 * most);
     const colour = theme.lines[run.order];
-    const settled = actual && Number.isFinite(run.settling) && run.settling > time[0] ? run.settling : null;
-    const told = settled !== null && (!secret || settled <= now);
-    const at = told ? between(time, settled) : null;
+    const since = actual && isSettled(shown) && run.settling > 0 ? time[0] + run.settling : Infinity;
+    const told = secret ? since <= now : since < Infinity;
+    const at = told ? between(time, since) : null;
+    const within10 = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
     return {
       end: Math.max(settings.scenario in this.lab.model.recordings ? 0 : settings.duration, time[time.length - 1]),
       high: 1.2 * Math.max(most, ...near),
@@ -507,7 +523,7 @@ export class ObserverFirst extends FirstScreen {
         ...(actual ? [{ id: "true", text: "true", time, values: actual, colour: theme.ink, width: 1.6 }] : []),
       ],
       spans: this.unseenSpans(shown),
-      found: at ? { time: settled, value: actual[at.sample], text: `found ${settled.toFixed(1)} s`, colour } : null,
+      found: at ? { time: since, value: found[at.sample], text: within10, colour } : null,
     };
   }
 
@@ -537,7 +553,7 @@ export class ObserverFirst extends FirstScreen {
   }
 
   sentence(scene) {
-    const { shown, now, end, why, secret } = scene;
+    const { shown, now, end, why } = scene;
     const { settings, time } = shown;
     const { seen } = this;
     const [run] = shown.runs;
@@ -547,8 +563,7 @@ export class ObserverFirst extends FirstScreen {
       if (near) return "One ray, three distances: here all of them move alike.";
       return "One ray, three distances: the nearer a point is, the faster it moves.";
     }
-    const settled = run.settling - time[0];
-    const found = Number.isFinite(settled) && settled <= now - time[0] && (!secret || settled <= now);
+    const found = isSettled(shown) && run.settling <= now - time[0];
     const distance = metres(Math.hypot(...seen.place));
     const ratio = seen.guess ? Math.hypot(...seen.guess) / Math.hypot(...seen.place) : Infinity;
     if (run.divergedAt !== null) return `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`;
@@ -601,6 +616,11 @@ function controlsOf(lab) {
 
 function keptLine(text, time, values, theme) {
   return { id: "kept", text, time, values, colour: theme.kept, dash: KEPT };
+}
+
+/** True if the first observer's error stays in the tolerance for long enough to be sure. */
+function isSettled({ runs: [{ settling }], time, settledPart }) {
+  return settled(settling, time.at(-1) - time[0], settledPart);
 }
 
 /** Radius in the image of the circle in which an instant tells too little. */
