@@ -134,7 +134,7 @@ def scenario_motion(settings):
     return np.array(scenarios.ma2005_eq36().motion.signal.samples[0][:9]).reshape(3, 3).tolist()
 
 
-def test_presets_begin_with_the_same_settings_whatever_the_lab_was_opened_with():
+def test_questions_begin_with_the_same_settings_whatever_the_lab_was_opened_with():
     own = observer_lab("ma2005_eq36", outputs=["y1"], duration=5.0, noise={"kind": "uniform", "size": 0.01})
     assert own.model["standard"] == observer_lab("ma2005_eq35").model["opening"]
     assert own.model["standard"] != own.model["opening"]

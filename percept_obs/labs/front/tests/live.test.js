@@ -79,7 +79,6 @@ class SmallLab extends Lab {
     const names = [
       "problem",
       "notice",
-      "preset",
       "steps",
       "words",
       "rested",
@@ -249,27 +248,25 @@ test("what leads back to where it began is no step, and a step forgets what was 
   assert.equal(state.redo(), false);
 });
 
-test("a preset's acts are steps, and the way back leads to the settings before them", () => {
+test("a question and its answer are steps, and the way back leads to the settings before them", () => {
   const state = new State(OPENING);
-  const at = () => [state.settings.seed, state.preset?.name, state.preset?.act, state.preset?.said ?? null];
-  const [asked, before] = [{ ...OPENING, seed: 5 }, OPENING.seed];
-  state.ask("noise", asked);
-  assert.deepEqual([state.settings, state.preset.before], [asked, OPENING]);
-  state.predict({ said: 1 });
-  state.act(0, { ...OPENING, seed: 1 });
-  assert.deepEqual([...at(), state.preset.of.seed], [1, "noise", 0, 1, 1]);
-  state.ask("bias", asked);
-  state.act(1, { ...OPENING, seed: 2 });
-  assert.deepEqual([...at(), state.preset.before], [2, "bias", 1, null, OPENING]);
+  const at = () => [state.settings.seed, state.question?.name, state.question?.said];
+  const of = (seed) => ({ ...OPENING, seed });
+  state.ask("noise", of(5));
+  assert.deepEqual([state.settings, state.question.before], [of(5), OPENING]);
+  state.answer(1, of(1));
+  assert.deepEqual([...at(), state.question.of.seed], [1, "noise", 1, 1]);
+  state.ask("bias", of(6));
+  state.answer(0, of(2));
+  assert.deepEqual([...at(), state.question.before], [2, "bias", 0, OPENING]);
   state.leave();
-  assert.deepEqual([state.settings, state.preset], [OPENING, null]);
+  assert.deepEqual([state.settings, state.question], [OPENING, null]);
   const back = [
-    [2, "bias", 1, null],
-    [5, "bias", -1, null],
-    [1, "noise", 0, 1],
-    [5, "noise", -1, 1],
-    [5, "noise", -1, null],
-    [before, undefined, undefined, null],
+    [2, "bias", 0],
+    [6, "bias", null],
+    [1, "noise", 1],
+    [5, "noise", null],
+    [OPENING.seed, undefined, undefined],
   ];
   for (const step of back) {
     state.undo();

@@ -33,7 +33,6 @@ export class ObserverLab extends Lab {
   constructor(widget, place, model) {
     super(widget, model, {
       words: WORDS,
-      presets: [],
       reasons: (shown) => [...reasons(shown, model), ...this.unbound(shown.settings)],
       ...{ names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, readingAt, summaryOf, pythonOf, causesOf },
     });

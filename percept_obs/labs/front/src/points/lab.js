@@ -39,7 +39,7 @@ export class PointsLab extends Lab {
 
   constructor(widget, place, model) {
     const shown = { names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: [], ...shown });
+    super(widget, model, { words: WORDS, ...shown });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
     this.planes = [plane, new Scene(this, { image: plane, ...scene })];

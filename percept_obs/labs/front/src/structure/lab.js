@@ -28,7 +28,7 @@ export class StructureLab extends Lab {
 
   constructor(widget, place, model) {
     const words = { names: NAMES, symbols: SYMBOLS, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, presets: [], labels: LABELS, chartOf, ...words });
+    super(widget, model, { words: WORDS, labels: LABELS, chartOf, ...words });
     const scene = sceneOf(this);
     const plane = new ImagePlane(this, {
       arrowsOf: scene.arrowsOf,

@@ -263,18 +263,18 @@ export class FirstScreen {
 
   /** The question that is open, if one is. */
   get open() {
-    return this.questions.find(({ name }) => name === this.lab.state.preset?.name);
+    return this.questions.find(({ name }) => name === this.lab.state.question?.name);
   }
 
   /** True while an answer is waited for. */
   get asking() {
-    return Boolean(this.open) && this.lab.state.preset.act < 0;
+    return Boolean(this.open) && this.lab.state.question.said === null;
   }
 
   /** True where the answer is about what is shown. */
   get answered() {
-    const { preset } = this.lab.state;
-    return Boolean(this.open) && preset.act >= 0 && same(preset.of, this.lab.settings);
+    const { question } = this.lab.state;
+    return Boolean(this.open) && question.said !== null && same(question.of, this.lab.settings);
   }
 
   /** True once the answer was watched. */
@@ -300,8 +300,7 @@ export class FirstScreen {
 
   answer(said) {
     const { lab, open } = this;
-    const settings = /** @type {Question} */ (open).after(lab.model);
-    lab.state.step({ settings, preset: { ...lab.state.preset, act: 0, said, of: settings } });
+    lab.state.answer(said, /** @type {Question} */ (open).after(lab.model));
     lab.state.cursor = null;
     this.secret = true;
     this.waiting = true;
@@ -321,8 +320,8 @@ export class FirstScreen {
   /** Bring the row of buttons to the question that is open. */
   showStrip() {
     const { open, lab } = this;
-    const { said = null, act = -1 } = open ? lab.state.preset : {};
-    const key = [open?.name, said, act, ...this.queue].join();
+    const { said = null } = open ? lab.state.question : {};
+    const key = [open?.name, said, ...this.queue].join();
     if (key === this.key_) return;
     const inside = this.strip.contains(document.activeElement);
     this.key_ = key;
@@ -331,9 +330,9 @@ export class FirstScreen {
       return button(text, () => this.ask(name), { "data-control": `question ${name}` });
     };
     const choice = (text, k) => {
-      const right = act >= 0 && k === /** @type {Question} */ (open).right;
+      const right = said !== null && k === /** @type {Question} */ (open).right;
       const pressed = { "aria-pressed": String(k === said), class: right ? "right" : "" };
-      return button(text, () => act < 0 && this.answer(k), { "data-control": `answer ${k}`, ...pressed });
+      return button(text, () => said === null && this.answer(k), { "data-control": `answer ${k}`, ...pressed });
     };
     const close = () => button("Done", () => this.done(), { class: "link", "data-control": "done" });
     const chips = this.queue.slice(0, IN_SIGHT).map(chip);

@@ -27,22 +27,9 @@ export function switchOf(settings, name) {
   return settings.switches?.[name] ?? "";
 }
 
-/** Presets whose acts have what each preset says for all of them, and a button that says no more than that it shows. */
-export function presetsOf(presets) {
-  const whole = (shared, { changes, beside, ...act }) => ({
-    ...{ button: "Show", ...act, changes: { ...shared, ...changes } },
-    beside: beside && { ...shared, ...beside },
-  });
-  return presets.map(({ changes, acts, asks = {}, ...preset }) => ({
-    ...preset,
-    asks,
-    acts: acts.map((act) => whole(changes, act)),
-  }));
-}
-
 /**
- * The settings of a preset's act: the standard ones, whatever the lab was opened with, with the act's changes; and
- * those of the run that it keeps beside it, with changes of its own.
+ * The settings of a question: the standard ones, whatever the lab was opened with, with changes; and those of the run
+ * that is kept `beside` it, with changes of its own.
  */
 export function settingsOf({ changes, beside = null }, standard) {
   const gains = { ...standard.gains };

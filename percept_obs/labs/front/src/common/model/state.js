@@ -1,22 +1,20 @@
-// State of a lab: settings, the preset that is open, the span of time and the line that stand out; and the way back.
+// State of a lab: settings, the question that is open, the span of time and the line that stand out; and the way back.
 
 import { same } from "./settings.js";
 
 /**
  * @typedef {import("../../types.js").Settings} Settings
- * @typedef {object} Preset         a question that is open
+ * @typedef {object} Question       one that is open
  * @property {string} name
- * @property {number} act          the act that is shown, from 0 on; -1 while it is only asked
- * @property {Settings | null} before  the settings to go back to
- * @property {Settings | null} of   those that the question or the act is about
- * @property {number | null} said   which answer was predicted
- * @property {(number | null)[]} [sketch]  the error curve that was predicted: decades at equal steps of time
+ * @property {Settings} before      the settings to go back to
+ * @property {Settings} of          those that it, or its answer, is about
+ * @property {number | null} said   which answer was chosen; null while it is asked
  * @typedef {object} Sight         the part of the time that the hand has asked for
  * @property {import("./timeline.js").Span} span
  * @property {string} of           scenario and times of the run in which it has: another one shows all
  * @typedef {object} Moment
  * @property {Settings} settings
- * @property {Preset | null} preset
+ * @property {Question | null} question
  * @property {Sight | null} sight
  * @property {string | number | null} picked  the line that stands out
  */
@@ -29,7 +27,7 @@ const LOOKING = "sight";
 export class State {
   constructor(settings) {
     /** @type {Moment} */
-    this.now = { settings, preset: null, sight: null, picked: null };
+    this.now = { settings, question: null, sight: null, picked: null };
     /** @type {number | null} */
     this.cursor = null;
     /** @type {Moment[]} */
@@ -44,13 +42,13 @@ export class State {
     return this.now.settings;
   }
 
-  get preset() {
-    return this.now.preset;
+  get question() {
+    return this.now.question;
   }
 
-  /** The settings before a preset, to which it leads back. */
+  /** The settings before a question, to which it leads back. */
   get before() {
-    return this.preset?.before ?? this.settings;
+    return this.question?.before ?? this.settings;
   }
 
   /** Take changes of a hand that may go on; those of the same settings are one step until release(). */
@@ -111,33 +109,24 @@ export class State {
     return true;
   }
 
-  /** Open with a question about the settings that are shown. */
-  open(name) {
-    this.now = { ...this.now, preset: { name, act: -1, before: null, of: this.settings, said: null } };
-  }
-
-  /** Ask a preset's question, over the settings that it is about. */
+  /** Ask a question, over the settings that it is about. */
   ask(name, settings) {
-    this.step({ settings, preset: { name, act: -1, before: this.before, of: settings, said: null } });
+    this.step({ settings, question: { name, before: this.before, of: settings, said: null } });
   }
 
-  /** Say what one expects. */
-  predict(found) {
-    if (this.preset) this.step({ preset: { ...this.preset, ...found } });
+  /** Answer it, over the settings that show whether the answer is right. */
+  answer(said, settings) {
+    if (this.question) this.step({ settings, question: { ...this.question, of: settings, said } });
   }
 
-  act(act, settings) {
-    this.step({ settings, preset: { said: null, name: "", ...this.preset, act, before: this.before, of: settings } });
-  }
-
-  /** Close the preset, and go back to the settings before it. */
+  /** Close the question, and go back to the settings before it. */
   leave() {
-    this.step({ settings: this.before, preset: null });
+    this.step({ settings: this.before, question: null });
   }
 
   reset(settings) {
     this.cursor = null;
-    this.step({ settings, preset: null, sight: null, picked: null });
+    this.step({ settings, question: null, sight: null, picked: null });
     this.release();
   }
 }

@@ -3,7 +3,7 @@
 import { Latest } from "../model/latest.js";
 import { within } from "../model/playback.js";
 import { Results } from "../model/results.js";
-import { changesInWords, same, settingsOf } from "../model/settings.js";
+import { changesInWords } from "../model/settings.js";
 import { readOf } from "../model/typed.js";
 import { verdict } from "../model/words.js";
 import { Address } from "./address.js";
@@ -25,7 +25,6 @@ const NULL = /** @type {any} */ (null);
  * `panel` before open(), names in `computing` the Kernels that make functions of settings and the Engine that makes
  * results of them, and gives these parts:
  *   words                       what the page calls the settings
- *   presets                     questions, with acts that answer them
  *   names, symbols              what settings are called in a sentence, and what letters stand for
  *   labels, chartOf             labels of the time charts by their names, and the parts of one
  *   causesOf                    settings without one cause each, in a lab that can tell some
@@ -75,13 +74,9 @@ export class Lab extends LabBase {
   }
 
   open(place) {
-    const { presets } = this.parts;
-    this.face = this.first ? (this.widget.get("face") ?? "first") : "workbench";
-    // A lab with settings of its own is about these, and not about the first question.
-    if (!this.first && same(this.settings, this.model.standard)) this.state.open(presets[0].name);
-    this.follow(build(this, place, presets));
-    this.view.preset();
-    this.first?.follow();
+    this.face = this.widget.get("face") ?? "first";
+    this.follow(build(this, place));
+    this.first.follow();
     this.address?.follow();
   }
 
@@ -157,7 +152,6 @@ export class Lab extends LabBase {
     }
     // What a choice hides must be gone before the next event can reach it.
     this.panel.show();
-    this.view.preset();
     return this.rest();
   }
 
@@ -168,25 +162,6 @@ export class Lab extends LabBase {
     this.view.notice(`${title}. ${changesInWords(before, this.settings, this.parts.names)}`);
   }
 
-  /** Ask a question, over the settings that it is about. */
-  ask(name) {
-    const { asks } = this.parts.presets.find((preset) => preset.name === name);
-    this.state.ask(name, settingsOf({ changes: asks }, this.model.standard));
-    this.touched(true);
-  }
-
-  predict(found) {
-    this.state.predict(found);
-    this.view.preset();
-    this.view.steps(this.state);
-    this.redraw();
-  }
-
-  act(act, number) {
-    this.state.act(number, settingsOf(act, this.model.standard));
-    this.touched(true);
-  }
-
   goBack() {
     this.state.leave();
     this.touched(true);
@@ -194,7 +169,7 @@ export class Lab extends LabBase {
 
   /** Show settings that somebody sent; they are about no question that is open here. */
   visit(settings) {
-    this.state.step({ settings, preset: null });
+    this.state.step({ settings, question: null });
     this.touched(true);
   }
 
@@ -437,7 +412,6 @@ export class Lab extends LabBase {
     }
     this.panel.show();
     this.view.steps(this.state);
-    this.view.preset();
     this.speak();
   }
 

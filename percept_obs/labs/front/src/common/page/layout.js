@@ -1,12 +1,10 @@
-// Where everything stands: pictures, and beside them questions, controls and formulas; words below.
+// Where everything stands: pictures, and beside them controls and formulas; words below.
 
-import { Card } from "./card.js";
 import { button, element, listen, setItems, setOptionalText, setText } from "./dom.js";
 import { topic } from "./fieldsets.js";
 import { Legend } from "./legend.js";
 import { swatch } from "./line_styles.js";
 import { Player } from "./player.js";
-import { Sketch } from "./sketch.js";
 import { zoomByHand } from "./time_charts.js";
 import { WhatIf } from "./what_if.js";
 
@@ -18,7 +16,7 @@ const NO_CLIPBOARD = "The browser does not let the lab copy; select the lines be
 const OWN_SPACE = "input, select, button, summary, a, .player";
 
 /** Build the page of a lab, and return its view: the functions that bring the page to what is shown. */
-export function build(lab, place, presets) {
+export function build(lab, place) {
   const { planes, charts, panel, formulas } = lab;
   const messages = messagesOf();
   const history = historyButtons(lab);
@@ -29,9 +27,7 @@ export function build(lab, place, presets) {
   const reading = element("p", { class: "reading" });
   const legend = new Legend(lab);
   const player = new Player(lab);
-  const sketch = new Sketch(lab);
   const whatIf = lab.parts.causesOf && new WhatIf(lab);
-  const card = new Card(lab, presets, sketch);
   const code = element("pre", { class: "code", hidden: true, tabindex: 0 });
   const keep = button("Keep", () => lab.keep(), {
     ...{ "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" },
@@ -61,7 +57,7 @@ export function build(lab, place, presets) {
     button("Copy as code", copyCode, { "data-control": "copy" }),
     ...(lab.address ? [button("Copy link", copyLink, { "data-control": "copy link", title: linkTitle })] : []),
     button("Reset", () => lab.reset(), { "data-control": "reset" }),
-    ...(lab.first ? [button("First screen", () => lab.turn("first"), { "data-control": "first screen" })] : []),
+    button("First screen", () => lab.turn("first"), { "data-control": "first screen" }),
   );
   const chartBox = element("div", { class: "charts", role: "group", "aria-label": "Charts", tabindex: 0 });
   for (const [name, chart] of Object.entries(charts)) {
@@ -69,13 +65,12 @@ export function build(lab, place, presets) {
     chartBox.append(chart.figure);
     zoomByHand(lab, chart, player);
   }
-  const questions = element("div", { class: "asked" }, card.list, card.body, ...(whatIf ? [whatIf.body] : []));
   const equations = topic("equations", "Equations, with the present numbers", formulas.body);
   const more = element("div", { class: "more" }, equations, symbolTable(lab.parts.symbols));
   const words = element("div", { class: "words" }, reading, verdicts, why, analysis);
   const sideTabs = tabs("Beside the pictures", [
-    { name: "question", title: presets.length ? "Question" : "What if?", node: questions },
     { name: "controls", title: "Controls", node: panel.body },
+    ...(whatIf ? [{ name: "causes", title: "What if?", node: whatIf.body }] : []),
     { name: "words", title: "In words", node: words },
     { name: "equations", title: "Equations", node: more },
   ]);
@@ -83,12 +78,12 @@ export function build(lab, place, presets) {
     return { name: figure.className, title: label.split(",")[0], node: figure };
   });
   const eyes = element("div", { class: "eyes" }, tabs("Picture", pictures), ...planes.map((plane) => plane.figure));
-  const scroll = element("div", { class: "scroll" }, questions, panel.body, more);
+  const scroll = element("div", { class: "scroll" }, ...(whatIf ? [whatIf.body] : []), panel.body, more);
   const root = element(
     "div",
     { class: "percept-lab", "data-face": lab.face },
     ...[messages.problem, messages.pythonError, messages.notice],
-    ...(lab.first ? [lab.first.body] : []),
+    lab.first.body,
     element(
       "div",
       { class: "stage" },
@@ -120,7 +115,6 @@ export function build(lab, place, presets) {
     root,
     ...messages.functions,
     turn: (face) => root.setAttribute("data-face", face),
-    preset: () => card.show(),
     steps: history.show,
     words(found) {
       setVerdicts(verdicts, found.verdicts);
@@ -137,10 +131,7 @@ export function build(lab, place, presets) {
       whatIf?.show();
     },
     read: (text) => setText(reading, text),
-    time(cursor) {
-      player.show(cursor);
-      sketch.show();
-    },
+    time: (cursor) => player.show(cursor),
     playing: () => player.playing,
     close: () => player.pause(),
     analysis: (sentences) => setItems(analysis, sentences),

@@ -10,7 +10,7 @@ export class PointerRun {
     this.chart = chart;
     this.path = svg("path");
     this.name = svg("text");
-    this.picture = svg("svg", { class: "sketched there", "aria-hidden": "true" }, this.path, this.name);
+    this.picture = svg("svg", { class: "there", "aria-hidden": "true" }, this.path, this.name);
     chart.figure.append(this.picture);
     /** @type {((task: {key: string, follow: any}) => void) | null} what computes runs */
     this.ask = null;
