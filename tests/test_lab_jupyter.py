@@ -187,6 +187,8 @@ def test_the_kernel_answers_what_is_typed_at_the_desk(browser_page, folder):
     page.locator(".mark.right").wait_for()
     rested(page)
     assert_python_has(folder, {"typed": {"rate 6 y1'": RIGHT}})
+    assert page.locator(".view.motion").bounding_box()["height"] >= 240
+    assert page.locator(".view.misses").bounding_box()["height"] >= 100
     assert log_entries(page) == ""
 
 

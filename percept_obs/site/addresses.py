@@ -70,7 +70,7 @@ def card() -> bytes:
     axes.annotate("", (7.8, 0), (0.4, 0), arrowprops={"arrowstyle": "->", "color": "black", "linewidth": 1.5})
     axes.plot(*point, marker="o", markersize=16, color="black")
     axes.plot(*point, marker="o", markersize=30, markerfacecolor="none", markeredgecolor="#0a5fbf", markeredgewidth=3)
-    figure.text(0.05, 0.86, TITLE, fontsize=32, fontweight="bold")
+    figure.text(0.05, 0.86, TITLE, fontsize=27, fontweight="bold")
     figure.text(0.05, 0.77, "percept_obs", fontsize=22, color="#59626c")
     written = io.BytesIO()
     figure.savefig(written, format="png", metadata={"Software": None})
