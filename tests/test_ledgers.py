@@ -7,6 +7,7 @@ import sys
 from collections import Counter
 from dataclasses import replace
 from typing import NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -21,12 +22,14 @@ from percept_obs.papers import (
     DE_LUCA2008,
     INABA2005,
     MA2005,
+    NAMED,
     Ledger,
     Verdict,
     ma2005_appendix,
     ma2005_examples,
 )
 from percept_obs.papers.entries import Known as How
+from percept_obs.papers.mathml import shown
 
 
 class Known(NamedTuple):
@@ -254,3 +257,16 @@ def test_the_sign_that_38_lost_is_that_of_p_and_not_of_a(place, value):
 def test_the_mended_38_has_the_eigenvalues_of_a_damped_oscillation():
     slope = ma2005_appendix.reduced(MA2005[38].corrected, *ma2005_appendix.ONE)
     assert sorted(np.linalg.eigvals(slope), key=np.imag) == pytest.approx([-0.5 - 0.5j, -0.5 + 0.5j])
+
+
+PARTS = {"msub": 2, "msup": 2, "mfrac": 2, "msubsup": 3, "mover": 2, "munder": 2}
+"""Elements of MathML, and how many parts each has."""
+
+
+def test_every_formula_of_a_ledger_is_whole():
+    for entry in (entry for ledger in NAMED.values() for entry in ledger.entries):
+        for part in entry.parts.values():
+            text = re.sub(r"&#?\w+;", "x", shown(part))
+            tree = ElementTree.fromstring(f"<all>{text}</all>")
+            torn = [node.tag for node in tree.iter() if len(node) != PARTS.get(node.tag, len(node))]
+            assert torn == [], (entry.place, part)

@@ -16,7 +16,7 @@ GREEK = dict(
         strict=True,
     )
 )
-BETTER = (("&#x1D540;", "<mi>I</mi>"), ("<mo>&dd;</mo>", "<mo>d</mo>"), ("<mi>&#960;</mi>", "<mi>pi</mi>"))
+BETTER = (("<mo> </mo>", "<mo>,</mo>"), ("&#x1D540;", "<mi>I</mi>"), ("<mo>&dd;</mo>", "<mo>d</mo>"), ("<mi>&#960;</mi>", "<mi>pi</mi>"))
 """Replacements in what sympy prints; the pi of the papers is an index."""
 
 
@@ -58,5 +58,5 @@ def _letter(name: str) -> str:
         if name.endswith(accent) and name != accent:
             return f'<mover accent="true">{_letter(name.removesuffix(accent))}<mo>{mark}</mo></mover>'
     if name[:1] == "d" and name[1:] in GREEK:  # of a rate in s
-        return f"<mi>d</mi><mi>{GREEK[name[1:]]}</mi>"
+        return f"<mrow><mi>d</mi><mi>{GREEK[name[1:]]}</mi></mrow>"
     return f"<mi>{GREEK.get(name, name)}</mi>"

@@ -49,5 +49,5 @@ def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: 
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let keys scroll code and tables that are wider than the page."""
     if "body" in context:
-        wide = r'<(pre|table border="1" class="dataframe")>'
+        wide = r'<(pre|table border="1" class="dataframe"|table class="ledger")>'
         context["body"] = re.sub(wide, r'<\1 tabindex="0">', context["body"])
