@@ -28,6 +28,8 @@ const [SWING, SWINGS] = [0.45, 2600];
 /** Depth before the camera, in metres, below which nothing is drawn. */
 const NEAREST = 0.2;
 const MOST = 1.5;
+/** What no picture shows may move no point, as an origin of its own does. */
+const LEAST_REACH = 1e-6;
 
 export class PointsFirst extends FirstScreen {
   firstLook = SWINGS;
@@ -107,19 +109,19 @@ export class PointsFirst extends FirstScreen {
     const hidden = places.map((_, k) => Number.isNaN(shown.outputs[2 * (at.sample * shown.points + k)]));
     const prelude = secret && !this.begun_ && now <= this.start && !this.open && !this.moved && !this.playing;
     if (!prelude) this.begun_ = true;
+    const reach = (k) => body.movable(k).reduce((sum, [x, z]) => sum + x * x + z * z, 0);
+    const held = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one))[0];
     let copy = /** @type {number[][] | null} */ (null);
     if (prelude) {
       this.looked ||= performance.now();
       const size = Math.exp(SWING * Math.sin((2 * Math.PI * (performance.now() - this.looked)) / SWINGS));
       copy = places.map((place) => place.map((value) => size * value));
-    } else if (body.unseen.length && !secret && !why) {
+    } else if (reach(held) > LEAST_REACH && !secret && !why) {
       if (this.amounts?.length !== body.unseen.length) this.amounts = body.larger();
       copy = body.copy(this.amounts);
     }
-    const reach = (k) => body.movable(k).reduce((sum, [x, z]) => sum + x * x + z * z, 0);
-    const order = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one));
     this.seen = {
-      ...{ body, places, found, hidden, prelude, copy, held: order[0] },
+      ...{ body, places, found, hidden, prelude, copy, held },
       ...{ inWorld: world(places), foundInWorld: world(found), copyInWorld: copy && world(copy) },
       off: valueBetween(meanErrorOf(shown), 1, 0, at),
       sees: !prelude && !why,
@@ -340,7 +342,7 @@ export class PointsFirst extends FirstScreen {
     const { copyInWorld, prelude } = this.seen;
     if (copyInWorld && !prelude && !this.twin.grip) copyInWorld.forEach(take);
     const { width, height } = this.world.size ?? { width: 350, height: 300 };
-    const scale = Math.min((width - 60) / (box[1] - box[0] + 0.5), (height - 80) / (box[3] - box[2] + 0.5));
+    const scale = Math.min((width - 50) / (box[1] - box[0] + 0.5), (height - 60) / (box[3] - box[2] + 0.5));
     return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, scale];
   }
 
@@ -359,7 +361,7 @@ export class PointsFirst extends FirstScreen {
     const before = ghost && { id: "kept", text: kept, time: ghost.time, values: valuesOf(ghost), colour: theme.kept };
     return {
       end: Math.max(shown.settings.duration, time.at(-1)),
-      high: 1.3 * within(Math.max(...off), 0.5, 20),
+      high: 1.3 * within(Math.max(...off.filter(Number.isFinite), 0), 0.5, 20),
       unit: "m",
       lines: [
         ...(before ? [{ ...before, dash: KEPT }] : []),
@@ -371,9 +373,8 @@ export class PointsFirst extends FirstScreen {
   }
 
   sentence(scene) {
-    const { shown, now, end, why, secret } = scene;
+    const { shown, now, end, why } = scene;
     const { seen } = this;
-    const { body } = seen;
     const { settling, divergedAt, settings, time } = shown;
     const off = `${seen.off.toFixed(1)} m`;
     if (seen.prelude) return "One picture shows directions only: near and small, or far and large, looks the same.";
@@ -385,7 +386,7 @@ export class PointsFirst extends FirstScreen {
     if (divergedAt !== null) return `The estimate left every bound after ${divergedAt.toFixed(1)} s.`;
     const away = seen.hidden.flatMap((hidden, k) => (hidden ? [k + 1] : []));
     if (away.length === seen.hidden.length) return "No mark is seen: nothing pulls the estimate.";
-    if (!secret && body.unseen.length && now >= end)
+    if (seen.copy && now >= end)
       return `Still ${off} off. The dashed copy makes the same pictures: drag it.`;
     const found = Number.isFinite(settling) && settling <= now - time[0];
     if (found && now >= end && !this.moved) return "Found. Now press a mark to hide it, or drag it.";
