@@ -54,7 +54,8 @@ export function places({ name, label, choices, get, set }) {
 export function tick({ name, label, before = "", get, set }) {
   const own = { type: "checkbox", "data-control": name, "aria-label": `${before} ${label}`.trim() };
   const box = element("input", { ...own, onchange: () => set(box.checked) });
-  const row = element("label", { class: "tick" }, box, element("span", { class: "before" }, `${before} `), label);
+  const first = before ? [element("span", { class: "before" }, `${before} `)] : [];
+  const row = element("label", { class: "tick" }, box, ...first, label);
   const show = () => {
     box.checked = get();
   };

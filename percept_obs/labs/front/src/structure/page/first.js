@@ -69,14 +69,13 @@ export class StructureFirst extends FirstScreen {
 
   /** Let the camera have come to a place of the map by now: its velocity changes, and the object stays. */
   drive([x, z]) {
-    const { settings } = this.lab;
     const { now, end } = /** @type {any} */ (this.scene);
-    const { start } = this.worlds;
+    const { start, shown } = this.worlds;
     const way = this.worlds.way(now);
     const [first, last] = [start, end].map((time) => this.worlds.before(time)[2]);
     const change = [x - way[0], 0, z - way[2]].map((value) => value / (now - start));
     change[2] = Math.min(change[2], (last - IN_FRONT * first) / (end - start));
-    this.lab.change({ v_c: settings.v_c.map((value, k) => Number((value + change[k]).toFixed(3))) });
+    this.lab.change({ v_c: shown.settings.v_c.map((value, k) => Number((value + change[k]).toFixed(3))) });
   }
 
   // What is seen at a time.
@@ -282,8 +281,8 @@ export class StructureFirst extends FirstScreen {
 
   sentence({ now, end, why, shown }) {
     const { known, run, free, found, estimate, reading, ...seen } = this.seen;
-    if (why && this.stories) return "In each story the car is in the same direction, as large. A film holds no more.";
-    if (why) return "Way and distance grow together: all directions stay, and a film is made of directions only.";
+    if (why && this.stories) return "In each story the car is in the same direction, as large: the same film.";
+    if (why) return "Ways and distances grow together, so all directions stay: the same film.";
     if (known.nothing) return "All of it is known: nothing is left to estimate.";
     if (free && this.stories) return "Cannot be told: who moves. The film shows the difference of two speeds only.";
     if (free && !known.rests) return "Cannot be told: how large and far the car is, for it may drive itself.";
