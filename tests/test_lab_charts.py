@@ -47,7 +47,7 @@ def page(show):
 def test_resets_the_tolerance_the_circle_and_what_is_off_the_scale_are_named(show):
     cases = {"2330 resets": {**BIAS, "start": ZERO}, "unobservable circle": CROSSING, "1.91 s": {}, "799": {}}
     for text, settings in cases.items():
-        page = show(observer_lab(**settings))
+        page = show(observer_lab("ma2005_eq35", **settings))
         assert text in page.evaluate(WRITTEN)
 
 

@@ -8,7 +8,11 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = {"observer": observer_lab, "structure": lambda: structure_lab(duration=3.0), "points": points_lab}
+LABS = {
+    "observer": observer_lab,
+    "structure": lambda: structure_lab(duration=3.0),
+    "points": lambda: points_lab(duration=30.0),
+}
 NOTEBOOK = {"width": 848, "height": 679}
 """Size of an output in JupyterLab whose window has 1280 x 800 pixels, with its file browser open."""
 

@@ -88,8 +88,9 @@ def test_the_innovation_is_drawn_against_the_noise(opened):
 
 def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(opened):
     gains = [{"identifier_based": {"gain": gain}} for gain in (60.0, 10.0)]
-    noise, pictures = {"kind": "uniform", "size": 0.01}, ["innovation", "step", "error"]
-    page = opened(noise=noise, pictures=pictures, duration=8.0, gains=gains[0], kept={"gains": gains[1]})
+    both = {"noise": {"kind": "uniform", "size": 0.01}, "duration": 8.0}
+    pictures = ["innovation", "step", "error"]
+    page = opened(**both, pictures=pictures, gains=gains[0], kept={**both, "gains": gains[1]})
     sizes = page.evaluate("""() => {
         const [{ drawn }] = window.perceptObsLabs;
         const size = ({ values }) => Math.hypot(...Array.from(values).slice(400)) / 20;
@@ -106,7 +107,8 @@ def test_more_gain_is_drawn_as_larger_steps_for_innovations_that_are_as_large(op
 
 def test_a_mark_on_an_axis_says_no_time_that_is_not_on_it(opened):
     page = opened()
-    page.click(control("zoom in"))
+    for _ in range(4):
+        page.click(control("zoom in"))
     page.fill(control("noise size number"), "0.003")
     page.fill(control("identifier_based gain number"), "60")
     page.keyboard.press("Tab")

@@ -143,6 +143,7 @@
  *
  * @typedef {object} ChartParts    one time chart, in the values and colours that it is drawn with
  * @property {string} title
+ * @property {string} [key]        by which its scale is kept, where its title changes with the run
  * @property {ChartLine[]} lines
  * @property {(bounds: (line: ChartLine, options?: any) => number[] | null) => Scale} scale  for what lines do in sight
  * @property {{time: ArrayLike<number>, low: any, high: any, colour: string}} [band]  between two arrays of numbers

@@ -16,7 +16,7 @@ export class TimeCharts {
     this.charts = Object.fromEntries(Object.entries(labels).map(([name, label]) => [name, new TimeChart(label)]));
     /** @type {Record<string, import("../../types.js").ChartParts>} */
     this.drawn = {};
-    /** @type {Record<string, any>} the scales that were drawn last, by the titles of charts */
+    /** @type {Record<string, any>} the scales that were drawn last, by the keys or titles of charts */
     this.scales = {};
     this.timeline = new Timeline();
   }
@@ -32,8 +32,9 @@ export class TimeCharts {
     this.scales = {};
     names.forEach((name, k) => {
       const parts = this.drawn[name];
-      const last = before[parts.title];
-      const scale = (this.scales[parts.title] = last && held ? last : keptScale(last, parts.scale(boundsOf)));
+      const { key = parts.title } = parts;
+      const last = before[key];
+      const scale = (this.scales[key] = last && held ? last : keptScale(last, parts.scale(boundsOf)));
       this.charts[name].draw({ ...parts, scale, span, theme, first: k === 0, last: k === names.length - 1 });
     });
   }

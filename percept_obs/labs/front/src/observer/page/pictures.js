@@ -92,7 +92,8 @@ const BUILD = {
     const full = withKept("excitation", shown, ghost, theme, pick);
     const lines = begun.time.length ? [growing, ...full] : full;
     const title = `Excitation: smallest eigenvalue of ∫ w wᵀ over ${readable(shown.excitation.window)} s`;
-    return { title, lines, scale: decades(lines, 1e-12, 1e4) };
+    // A run that ends sooner has a shorter window, and keeps its scale.
+    return { title, key: "excitation", lines, scale: decades(lines, 1e-12, 1e4) };
   },
 };
 
