@@ -16,7 +16,14 @@ GREEK = dict(
         strict=True,
     )
 )
-BETTER = (("<mo> </mo>", "<mo>,</mo>"), ("&#x1D540;", "<mi>I</mi>"), ("<mo>&dd;</mo>", "<mo>d</mo>"), ("<mi>&#960;</mi>", "<mi>pi</mi>"))
+BETTER = (
+    ("<mo> </mo>", "<mo>,</mo>"),
+    ("<mo><</mo>", "<mo>&lt;</mo>"),
+    ("&#x1D540;", "<mi>I</mi>"),
+    ("<mn>&#x1D7D8</mn>", "<mn>0</mn>"),
+    ("<mo>&dd;</mo>", "<mo>d</mo>"),
+    ("<mi>&#960;</mi>", "<mi>pi</mi>"),
+)
 """Replacements in what sympy prints; the pi of the papers is an index."""
 
 
