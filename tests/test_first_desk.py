@@ -30,6 +30,8 @@ OVERLAPS = """() => [...window.perceptObsLabs][0].figures.flatMap(({ texts, widt
         && one.box[3] > box[1]).map(({ text }) => [one.text, text]),
     ...(one.box[0] < 0 || one.box[1] < 0 || one.box[2] > width || one.box[3] > height ? [[one.text, "cut"]] : []),
 ]))"""
+PARTS = "() => Object.values([...window.perceptObsLabs][0].answer.grown)[0]"
+BOTH = "() => { const { picture } = [...window.perceptObsLabs][0].answer; return [picture.true, picture.mine]; }"
 PLAYED = "() => [...window.perceptObsLabs][0].replay.at === null"
 STANDS = "() => { const { replay } = [...window.perceptObsLabs][0]; replay.pause(); replay.put(%d); }"
 
@@ -89,10 +91,28 @@ def test_who_mends_the_slip_sees_both_arrows_fall_together(page):
     assert "both arrows are one" in text_of(page, ".says")
     assert "misses nothing" in page.get_attribute(".view.misses canvas", "aria-label")
     assert page.locator(LINE.replace("y1", "y2")).is_visible()  # the next line is asked for
-    true, mine = page.evaluate(
-        "() => { const { picture } = [...window.perceptObsLabs][0].answer; return [picture.true, picture.mine]; }"
-    )
+    true, mine = page.evaluate(BOTH)
     assert mine[0] == pytest.approx(true[0])
+
+
+def test_a_line_that_cannot_be_read_yet_keeps_the_arrow_of_what_stands_there(page):
+    page.fill(LINE, "a13 + (a11 - a33) y1 + a12 (")
+    rested(page)
+    mine = page.evaluate("() => [...window.perceptObsLabs][0].motions().mine[0]")
+    assert mine == pytest.approx(page.evaluate(PARTS)[1]["at"])
+    assert "so far misses by 66 %" in page.get_attribute(".view.misses canvas", "aria-label")
+    assert text_of(page, ".says") == "A line cannot be read yet: the place is marked."
+
+
+def test_what_the_sentence_says_of_arrows_is_so(browser):
+    for step, typed in [
+        (1, {"rate 1 X'": "a11 X + a12 Y + a13 Z + b1"}),
+        (7, {"rate 7 y1": "b1/b3"}),
+        (3, {"rate 3 X": "y1/y3"}),
+    ]:
+        for page in at_desk(browser, derivation_desk(step=step, typed=typed), reduced_motion="reduce"):
+            true, mine = page.evaluate(BOTH)
+            assert ("both arrows are one" in text_of(page, ".says")) is (mine == pytest.approx(true))
 
 
 def test_hints_open_one_by_one_and_a_sign_says_that_python_is_at_work(page):

@@ -16,6 +16,9 @@ const PAUSE = 1000;
 const SLOW = 250;
 const OPENING = "How does the image move? Watch a line being derived.";
 const GROWING = "Each term bends the blue arrow. With all of them right it lies on the true one.";
+const LINES = "Type the lines of this step, one after the other.";
+const AGREED = "Right, here and everywhere: both arrows are one. Type the next line.";
+const PLACE = "Where does distance drop out of the motion? A ring shows the place that you type.";
 const EMPTY = "Type what you derive: a blue arrow shows the motion that it means.";
 
 export class DeskLab extends LabBase {
@@ -107,20 +110,17 @@ export class DeskLab extends LabBase {
     return { key, text: this.answer?.settings.typed[key] ?? "" };
   }
 
-  /** Motions that are shown: of the whole lines, or of a line as far as it stands there while it is played. */
+  /** Motions that are shown: of a line that is played, or cannot be read yet, as far as it stands there. */
   motions() {
     const { picture } = this.answer;
     const { at, part, line } = this.replay;
-    if (at === null) return { ...picture, whole: picture.mine };
     const row = picture.names.findIndex((name) => line.key.endsWith(` ${name}`));
+    if (row < 0 || (at === null && picture.mine[row] !== null)) return { ...picture, whole: picture.mine };
+    const shown = at === null ? line.parts.at(-1) : part;
     const put = (values, value) => values.map((old, k) => (k === row ? value : old));
     const none = picture.field.places.map(() => null);
-    const field = { ...picture.field, mine: put(picture.field.mine, part?.field ?? none) };
-    return { ...picture, whole: picture.mine, mine: put(picture.mine, part?.at ?? null), field };
-  }
-
-  clear() {
-    this.change({ typed: {}, hints: {} }, true);
+    const field = { ...picture.field, mine: put(picture.field.mine, shown?.field ?? none) };
+    return { ...picture, whole: picture.mine, mine: put(picture.mine, shown?.at ?? null), field };
   }
 
   touched(chosen) {
@@ -215,17 +215,18 @@ export class DeskLab extends LabBase {
     if (answer.problem) return "";
     if (replay.at !== null) return replay.part ? GROWING : OPENING;
     const typed = answer.lines.filter(({ markup, refusal }) => markup || refusal);
-    if (!typed.length) return answer.picture ? EMPTY : "Type the lines of this step, one after the other.";
+    const { picture } = answer;
+    if (!typed.length) return picture ? (picture.foe ? PLACE : EMPTY) : LINES;
     if (!calm && !answer.right) return "Go on: what is not right is told when you pause.";
     if (typed.some(({ refusal }) => refusal)) return "A line cannot be read yet: the place is marked.";
     const last = answer.step === answer.steps.length;
     if (answer.right && typed.length === answer.lines.length)
       return last ? "This step is right, and it is the last one." : "This step is right. Go on to the next one.";
-    if (answer.right && answer.picture) return "Right, here and everywhere: both arrows are one. Type the next line.";
+    if (answer.right && picture && agrees(picture)) return AGREED;
     const begun = answer.lines.some(({ mark }) => mark === "begun");
     if (answer.right !== false || begun) return answer.words;
-    if (!answer.picture?.mine.some((value) => value !== null)) return `${answer.words} Hints open one by one.`;
-    if (agrees(answer.picture)) return "Here the slip hides: the arrows agree, although a line is wrong.";
+    if (!picture?.mine.some((value) => value !== null)) return `${answer.words} Hints open one by one.`;
+    if (agrees(picture)) return "Here the slip hides: the arrows agree, although a line is wrong.";
     const help = answer.hint ? ", or open a hint" : "";
     return `Your arrow misses the true one: mend the line${help}.`;
   }

@@ -63,7 +63,7 @@ export class Misses extends View {
     this.line([[now, PAD.top - 6], [now, bottom]], theme.ink);
     this.dot(now, bottom, 6, theme.ink);
     this.ring(now, y(miss), 4, blue, 2.5);
-    const yet = at < this.count ? "so far " : "";
+    const yet = (shown.at(-1)?.end ?? 0) < this.count ? "so far " : "";
     const said = miss < 5e-3 ? "misses nothing" : `${yet}misses by ${Math.round(100 * miss)} %`;
     this.tag({ id: "now", text: said, at: [now, y(miss)], colour: blue, rank: 0, towards: [-1, -1] });
     this.end();
