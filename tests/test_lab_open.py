@@ -172,7 +172,7 @@ OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
 @pytest.mark.slow
 @pytest.mark.node
 def test_of_points_a_typed_motion_and_a_typed_P_agree(node):
-    lab = points_lab()
+    lab = points_lab(state="body")
     places = [[0.1 * k, 1.2 - 0.1 * k, 2.5 + 0.05 * k] for k in range(12)]
     typed = {"weight": "typed", "P": "P = P + exp(-t) / 2", "size": 0.7}
     changes = [{"state": "origin", "spin": 0.3, "motion": SWUNG, **typed}, {"state": "independent", "motion": SWUNG}]

@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.points.analysis import in_words
-from percept_obs.labs.points.settings import LONGEST, PICTURES, ROUND, SCHEMA
+from percept_obs.labs.points.settings import DRIVE, LONGEST, PICTURES, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -85,7 +85,7 @@ class PointsLab(Lab):
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form
         if form is None and not set(settings) - {"face"}:
-            settings = ROUND | settings
+            settings = DRIVE | settings
         printed: dict[str, Texts] = {}
         opening = SCHEMA.opening
         if form is not None:
@@ -101,7 +101,7 @@ class PointsLab(Lab):
             opening,
             SCHEMA.opening,
             texts=with_texts("points_lab", printed),
-            round=ROUND,
+            drive=DRIVE,
             pictures=PICTURES,
             error=ERROR,
             **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},

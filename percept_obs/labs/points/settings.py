@@ -77,7 +77,7 @@ SCHEMA = Schema(
     kept=KEPT,
 )
 
-ROUND: Settings = {
+DRIVE: Settings = {
     "points": [[-1.1, -2.6, 4.0], [2.6, -2.6, 5.7], [-0.4, -2.6, 8.0]],
     "turning": 0.0,
     "input": 0.0,

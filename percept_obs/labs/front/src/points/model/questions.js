@@ -9,7 +9,7 @@ const NEVER = [0, 120];
 
 /** Settings before an answer, and after it with the run before beside it; they begin like those of the lab. */
 function asked(before, after) {
-  const round = (changes) => ({ standard, round: begun }) => settingsOf(changes, { ...standard, ...begun });
+  const round = (changes) => ({ standard, drive: begun }) => settingsOf(changes, { ...standard, ...begun });
   return { before: round({ changes: before }), after: round({ changes: after, beside: before }) };
 }
 
