@@ -204,7 +204,7 @@ export class TimeChart extends View {
 }
 
 /** The smallest of 1, 2 and 5 times a power of ten that is not below a value. */
-function roundStep(value) {
+export function roundStep(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return power * ([1, 2, 5].find((factor) => factor * power >= value * (1 - 1e-9)) ?? 10);
 }

@@ -3,6 +3,7 @@
 import { tick } from "../../common/first/controls.js";
 import { FirstScreen } from "../../common/first/screen.js";
 import { within } from "../../common/model/playback.js";
+import { readable } from "../../common/model/scales.js";
 import { isTyped } from "../../common/model/typed.js";
 import { element } from "../../common/page/dom.js";
 import { KEPT } from "../../common/page/looks.js";
@@ -171,7 +172,7 @@ export class StructureFirst extends FirstScreen {
     [this.others[0], TRUE, this.others[1]].forEach((world, k) => {
       const draw = (time, colour, look) => {
         const [y1, y2, length] = this.worlds.image(world, time);
-        const at = [width / 2 + (y1 - c1) * scale, high * (k + 0.64) - (y2 - c2) * scale];
+        const at = [width / 2 + (y1 - c1) * scale, high * (k + 0.5) + 12 - (y2 - c2) * scale];
         carAside(view, at, length * scale, colour, look);
       };
       pen.save();
@@ -207,7 +208,7 @@ export class StructureFirst extends FirstScreen {
     const { width, height } = this.image.size ?? { width: 360, height: 300 };
     const [across, up] = bounds.map(([low, high]) => Math.max(high - low, 1e-9));
     const scale = Math.min((width - 24) / across, ((height - FOOT) / 3 - 26) / Math.max(up, HIGH * longest));
-    return [(bounds[0][0] + bounds[0][1]) / 2, (bounds[1][0] + bounds[1][1]) / 2, scale];
+    return [(bounds[0][0] + bounds[0][1]) / 2, (bounds[1][0] + bounds[1][1]) / 2, Math.max(scale, 1 / across)];
   }
 
   // The worlds from above, one inside of the other: all cameras begin at one place.
@@ -335,4 +336,4 @@ function joined(gaps) {
 const TIMES = { [HALF]: "half", [TWICE]: "twice" };
 /** Speeds and lengths as they are written. */
 export const speed = (value) => (Math.abs(value) < 0.05 ? "0.0" : value.toFixed(1)).replace("-", "−");
-export const metres = (value) => `${Number(value.toPrecision(2))} m`;
+export const metres = (value) => `${readable(Number(value.toPrecision(2)))} m`;

@@ -1,6 +1,8 @@
 // The map of the first screen: worlds from above, one inside of the other, for all cameras begin at one place.
 
+import { roundStep } from "../../common/first/chart.js";
 import { within } from "../../common/model/playback.js";
+import { readable } from "../../common/model/scales.js";
 import { TRUE } from "../model/worlds.js";
 import { metres, speed } from "./first.js";
 import { cameraAbove, carAbove, WIDE } from "./first_marks.js";
@@ -11,7 +13,8 @@ const [SMALL, RIGHT, LARGE, ESTIMATE] = [0, 1, 2, 3];
 const [AHEAD, RIM] = [1.5, 11];
 /** Parts into which a way is divided. */
 const PARTS = 40;
-const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+/** Pixels that a square of the ground is wide at least. */
+const SQUARE = 45;
 
 /** Middle and scale of the map in which all worlds lie. */
 export function placeOfMap({ worlds, others, world: view }, { end }) {
@@ -29,7 +32,7 @@ export function placeOfMap({ worlds, others, world: view }, { end }) {
   }
   const { width, height } = view.size ?? { width: 400, height: 300 };
   const scale = Math.min((width - 60) / (box[1] - box[0] + 1e-6), (height - 76) / (box[3] - box[2] + 1e-6));
-  return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, scale];
+  return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1 / (box[1] - box[0] + 1))];
 }
 
 /** Draw the map, and return the frame of its handles. */
@@ -147,7 +150,7 @@ function drawSpeed(view, first, { world, k, colour, scale }, camera, { now, them
 /** Lines, and the length of one of their squares. */
 function drawGround(view, { x, y, cx, cz, scale }, theme) {
   const { width, height } = view;
-  const step = STEPS.find((metre) => metre * scale >= 45) ?? 1e4;
+  const step = roundStep(SQUARE / scale);
   const thin = { width: 1, alpha: 0.35 };
   for (let k = Math.ceil((cx - width / scale) / step); k * step < cx + width / scale; k++) {
     view.line([[x(k * step), 0], [x(k * step), height]], theme.line, thin);
@@ -156,6 +159,6 @@ function drawGround(view, { x, y, cx, cz, scale }, theme) {
     view.line([[0, y(k * step)], [width, y(k * step)]], theme.line, thin);
   }
   view.line([[10, 26], [10 + step * scale, 26]], theme.muted, { width: 2 });
-  view.write(`${step} m`, 10 + (step * scale) / 2, 15, theme.muted);
+  view.write(`${readable(step)} m`, 10 + (step * scale) / 2, 15, theme.muted);
   view.avoid(10 + (step * scale) / 2, 20, (step * scale) / 2, 10);
 }
