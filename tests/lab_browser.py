@@ -68,7 +68,7 @@ STATE = """(which) => {
         bars: charts(({ bars = [] }) => bars.length),
         verdicts: told(".verdicts li"),
         words: told(".verdicts li, .why li, .analysis li").join(" "),
-        labels: [...root.querySelectorAll("figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
+        labels: [...root.querySelectorAll(".stage figure:not([hidden]) canvas")].map((c) => c.ariaLabel),
         problems: told(".problem:not([hidden])"),
         notice: root.querySelector(".notice").textContent,
         silent: !root.querySelector(".silence").hidden,

@@ -81,7 +81,7 @@ async ([seed, count, most = 20000, wanted = []]) => {
 
     const numbers = (values) => Array.from(values).join();
     const linesOf = (drawn) => Object.entries(drawn).flatMap(([name, { lines }]) => lines.map((line) => [name, line.name, line.values]));
-    const canvases = () => [...root.querySelectorAll("figure:not([hidden]) canvas")];
+    const canvases = () => [...root.querySelectorAll(".stage figure:not([hidden]) canvas")];
     const pixelsOf = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
     const moving = () => lab.view.playing() || Boolean(root.querySelector('[data-control="swing"][aria-pressed="true"]'));
     const atRest = () => lab.settled && lab.shown.whole && lab.resting === null && (!lab.pending || moving());
@@ -89,6 +89,7 @@ async ([seed, count, most = 20000, wanted = []]) => {
     /** Whether pictures and words are of the present settings: compared with what is computed and drawn anew. */
     async function compare(when) {
         const began = performance.now();
+        if (lab.face === "first") lab.turn("workbench");
         while (!atRest() && performance.now() - began < 30000) await frame();
         if (!atRest()) return note(`event ${when}: the picture stays stale, of ${JSON.stringify(lab.settings)}`);
         const { Engine } = lab.constructor.computing;

@@ -300,7 +300,9 @@ export class FirstScreen {
 
   answer(said) {
     const { lab, open } = this;
-    lab.state.answer(said, /** @type {Question} */ (open).after(lab.model));
+    // A step back may have closed the question whose buttons are still there.
+    if (!open || !this.asking) return;
+    lab.state.answer(said, open.after(lab.model));
     lab.state.cursor = null;
     this.secret = true;
     this.waiting = true;
@@ -309,7 +311,8 @@ export class FirstScreen {
 
   done() {
     const { lab, open } = this;
-    const name = /** @type {Question} */ (open).name;
+    if (!open) return;
+    const { name } = open;
     this.queue = [...this.queue.filter((other) => other !== name), name];
     this.renew();
     lab.goBack();

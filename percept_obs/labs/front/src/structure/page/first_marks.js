@@ -56,7 +56,7 @@ export function carAbove(view, [x, y], length, colour, { full = false, alpha = 1
     [0.4 * length, 0.72 * depth, "transparent", full ? view.ground() : colour, 1],
   ]) {
     pen.beginPath();
-    pen.roundRect(x - across / 2, y - depth / 2 - down / 2, across, down, 0.2 * down);
+    pen.roundRect(x - across / 2, y - depth / 2 - down / 2, across, down, 0.2 * Math.abs(down));
     pen.fillStyle = fill;
     pen.fill();
     pen.strokeStyle = line;
