@@ -4,7 +4,7 @@ import io
 import re
 
 import pytest
-from lab_browser import control, rested
+from lab_browser import control, painted, rested
 from matplotlib.image import imread
 from test_desk_browser import LINE, at_desk, text_of
 
@@ -59,14 +59,15 @@ def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, width,
 
 @pytest.mark.parametrize("face", ["first", "workbench"])
 @pytest.mark.parametrize("step", [1, 4, 6, 7])
-@pytest.mark.parametrize("width", [390, 700, 830, 1240])
-def test_the_picture_is_high_and_not_of_one_colour(browser, width, step, face):
-    desk = derivation_desk(face=face, step=step)
-    for page in at_desk(browser, desk, viewport={"width": width, "height": 700}):
-        picture = page.locator(".view.motion")
-        assert picture.bounding_box()["height"] >= 120
-        pixels = imread(io.BytesIO(picture.screenshot()))[..., :3].reshape(-1, 3)
-        assert (abs(pixels - pixels[0]).max(axis=1) > 0.2).mean() > 0.005
+def test_the_picture_is_high_and_not_of_one_colour(browser, step, face):
+    for page in at_desk(browser, derivation_desk(face=face, step=step)):
+        for width in (390, 700, 830, 1240):
+            page.set_viewport_size({"width": width, "height": 700})
+            painted(page)
+            picture = page.locator(".view.motion")
+            assert picture.bounding_box()["height"] >= 120
+            pixels = imread(io.BytesIO(picture.screenshot()))[..., :3].reshape(-1, 3)
+            assert (abs(pixels - pixels[0]).max(axis=1) > 0.2).mean() > 0.005
 
 
 def test_a_line_is_typed_by_itself_and_judged_while_it_grows(browser):

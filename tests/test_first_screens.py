@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.map(({ name }) => name)"
 HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.open.holds(first.scene), first.spoken]; }"
-RANDOM = sampled(20, 200)
+RANDOM = sampled(7, 200)
 """Random settings in which labels are looked at."""
 VARY = """([seed]) => {
     const [lab] = window.perceptObsLabs;
