@@ -308,7 +308,7 @@ FOCUSED = """async () => {
 
 
 def moved_by_keyboard(page, first, moves=MappingProxyType(MOVES)):
-    """Names of the controls on which the Tab key comes by, all that can be used; one in `MOVED` is moved by its keys."""
+    """Names of the controls on which the Tab key comes by, all that can be used, one in `MOVED` moved by keys."""
     page.evaluate("document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = false))")
     open_topics_by_keyboard(page)
     wanted = set(
