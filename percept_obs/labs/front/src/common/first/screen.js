@@ -364,6 +364,7 @@ export class FirstScreen {
     const { why, secret, end } = this;
     const kept = (this.answered && this.open?.kept) || "kept run";
     const scene = { shown, ghost, kept, now, end, at: between(shown.time, now), why, secret, theme };
+    for (const view of this.views) view.measure();
     const stamp = performance.now();
     const motion = { held: lab.held, still: this.still.matches, passed: Math.min(stamp - this.drawn, LONGEST_STALL) };
     this.drawn = stamp;

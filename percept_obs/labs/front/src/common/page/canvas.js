@@ -18,14 +18,19 @@ export class Picture {
     this.size = null;
   }
 
+  /** The figure's last known size in CSS pixels, that of one that is hidden being the least. */
+  measure() {
+    const { figure } = this;
+    // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
+    this.size ??= { width: Math.max(120, figure.clientWidth), height: Math.max(60, figure.clientHeight) };
+    return this.size;
+  }
+
   /** Fit the canvas to its figure's last known size, with a font for its letters; return its size in CSS pixels. */
   fit(font) {
-    const { canvas, context, figure } = this;
+    const { canvas, context } = this;
     const ratio = window.devicePixelRatio || 1;
-    // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
-    this.size ??= { width: figure.clientWidth, height: figure.clientHeight };
-    const width = Math.max(120, this.size.width);
-    const height = Math.max(60, this.size.height);
+    const { width, height } = this.measure();
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
