@@ -109,7 +109,7 @@ class PointsLab(Lab):
             judged=JUDGED,
             unseen=UNSEEN,
         )
-        self.write_down(ROUND)  # which questions are about, whatever the lab opens with
+        self.write_down(DRIVE)  # which questions are about, whatever the lab opens with
 
     def typed_for_the_page(self, text: str) -> Settings:
         """Texts of a typed P, or of each state's coefficients under a typed motion."""
