@@ -202,7 +202,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     open_notebook(page, "00_start.ipynb")
     run_all(page)
     rested(page)
-    page.wait_for_function(f"{FIRST}.first.playing")
+    page.locator(control("first play")).scroll_into_view_if_needed()
     page.wait_for_function(PLAYED)
     assert page.inner_text(".says").startswith("Found: ")
     assert page.evaluate(SETTLED) == pytest.approx(2.25)
