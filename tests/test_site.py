@@ -11,7 +11,7 @@ from urllib.parse import unquote, urldefrag
 import matplotlib.figure
 import pytest
 from conftest import missing
-from front_ends import TRIALS, Shown
+from front_ends import SETTLED, TRIALS, Shown
 from jupyter_harness import NOTEBOOKS
 from lab_alone import DRAWN
 from lab_settings import FRONT
@@ -138,9 +138,11 @@ def test_the_first_lab_draws_within_a_second_and_a_half_of_computing(pages, brow
 
 @pytest.fixture(scope="module")
 def shown(pages, browser):
-    """Two labs in a page of the site, without a network."""
+    """Two labs in a page of the site, on their workbenches, without a network."""
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri())
+    page.wait_for_function(SETTLED, arg=2)
+    page.evaluate("() => [...window.perceptObsLabs].forEach((lab) => lab.turn('workbench'))")
     yield Shown(page, 2)
     page.close()
 
