@@ -125,7 +125,7 @@ test_what_is_expected_is_said_in_words = refuses(
     (structure_lab, {"ybar": [0.3, 0.3, 0.0]}, "it must be positive, for the point is in front"),
     (structure_lab, {"noise": {"kind": "uniform", "size": 0.1}}, "noise depth is None"),
     (structure_lab, {"duration": 100, "step": 1e-4}, "1e[+]06 steps are too many"),
-    (derivation_desk, {"hints": {"rate 1": 4}}, "it must be a whole number from 0 to 3"),
+    (derivation_desk, {"hints": {"rate 1": 5}}, "it must be a whole number from 0 to 4"),
     (derivation_desk, {"typed": {"rate 1 X'": 5}}, "rate 1 X'.* is 5; it must be a text of at most 2000 characters"),
 )
 
