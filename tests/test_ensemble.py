@@ -211,6 +211,7 @@ def test_it_keeps_names_units_and_settings_in_files(tmp_path):
         xr.testing.assert_identical(again.load(), found)
 
 
+@pytest.mark.slow
 def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkeypatch):
     over, store = {"gain": np.linspace(2, 20, 8)}, tmp_path / "kept.zarr"
     whole = ensemble(EQ35, ibo(BOTH), over, duration=0.5)

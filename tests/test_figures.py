@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure as MatplotlibFigure
 
@@ -135,7 +134,7 @@ def paint(figure, layout=False):
     """Draw, so that what matplotlib warns of comes to light; finding a layout takes most of the time."""
     if not layout:
         figure.figure.set_layout_engine("none")
-    FigureCanvasAgg(figure.figure).draw()
+    figure.figure.draw_without_rendering()
 
 
 # ---- signals
@@ -613,15 +612,19 @@ def example(name):
     return lambda **axes: eval(f"{text}, **axes)", values | {"axes": axes})
 
 
+LONG = {"bound_map", "cases", "chatter", "comparison", "entries", "fields", "observability", "scan", "settings_map"}
+"""Figures of studies, whose examples compute much."""
+
+
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "chatter")) for name in figures.__all__[1:]]
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in figures.__all__[1:]]
 )
 def test_each_figure_has_a_text_and_labels_with_units_and_draws_on_given_axes(name):
     import matplotlib.pyplot as plt
 
     draw, known = example(name), plt.get_fignums()
     figure = draw()
-    paint(figure)
+    figure.figure.set_layout_engine("none")  # finding a layout takes most of the time
     assert [t for ax in figure.axes if (t := ax.get_xlabel())] + [
         t for ax in figure.axes if (t := ax.get_ylabel())
     ] == LABELS[name]

@@ -50,8 +50,13 @@ def tree_of(path):
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
 def imports(package, module):
     """What a module imports, as absolute dotted names: `from a.b import c` gives a.b.c."""
+    return tuple(_imports(package, module))
+
+
+def _imports(package, module):
     path = modules(package)[module]
     here = [package.name, *path.relative_to(package).parent.parts]
     for statement in ast.walk(tree_of(path)):

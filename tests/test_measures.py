@@ -159,6 +159,7 @@ def rank_by_power_series(form, place, orders):
     return sp.Matrix(orders + 1, len(x), lambda k, j: Phi[0, j].expand().coeff(t, k)).rank()
 
 
+@pytest.mark.slow
 def test_ranks_agree_with_exact_power_series_on_ten_random_systems():
     found = []
     for seed in range(10):

@@ -202,6 +202,7 @@ def test_only_teachers_get_the_exam():
     assert "<summary>Solution" not in "".join(text for _, text in site._texts(False))
 
 
+@pytest.mark.slow
 def test_what_misses_its_recording_is_left_as_it_is_and_says_so(monkeypatch):
     def missing():
         raise DatasetUnavailable("no network")

@@ -140,6 +140,7 @@ def test_every_folder_s_public_names_are_in_the_reference():
             assert name in MODULES, f"{name} has public names; put it into percept_obs/site/pages.py"
 
 
+@pytest.mark.slow
 def test_docstrings_begin_with_what_is_returned_or_done():
     paths = [path for path in (ROOT / "percept_obs").rglob("*.py") if "node_modules" not in path.parts]
     trees = [ast.parse(path.read_text("utf-8")) for path in paths]
