@@ -27,7 +27,11 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 MAKE = {"observer": observer_lab, "structure": structure_lab, "points": points_lab}
-OPENING = {"observer": {"duration": 20.0}, "structure": {"duration": 3.0}, "points": {"duration": 8.0, "window": 4.0}}
+OPENING = {
+    "observer": {"duration": 20.0},
+    "structure": {"duration": 3.0, "period": 0.01, "step": 0.005},
+    "points": {"duration": 8.0, "window": 4.0},
+}
 HANDLE = {"observer": "foe", "structure": "ybar", "points": "point 2"}
 """The handle that is dragged."""
 MOVED = {
@@ -35,7 +39,7 @@ MOVED = {
     "structure": lambda settings: (settings["ybar"][:2], settings["ybar"][2:]),
     "points": lambda settings: (settings["points"][1][:2], [settings["points"][k][2] for k in range(3)]),
 }
-MOST_SAMPLES = {"observer": 4000, "structure": 20_000, "points": 800}
+MOST_SAMPLES = {"observer": 4000, "structure": 4000, "points": 800}
 WIDE_OPEN = {
     "observer": {"duration": 2.0, "observers": ["identifier_based", "sliding_mode"], "pictures": ["error", "inverse"]},
     "structure": {"period": 0.02, "step": 0.01, "duration": 1.0, "observers": ["ideal", "layer"]},

@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {
     "observer": observer_lab,
-    "structure": lambda: structure_lab(duration=3.0),
+    "structure": lambda: structure_lab(duration=3.0, period=0.01, step=0.01),
     "points": lambda: points_lab(duration=30.0),
 }
 NOTEBOOK = {"width": 848, "height": 679}

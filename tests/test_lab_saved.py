@@ -30,6 +30,8 @@ SHOW = """async ({ state, buffers }) => {
     await bundle.default.render({ model, el: document.body });
 }"""
 
+CHECK_ALL = """() => [...document.querySelectorAll("[data-control^='observer ']")].forEach(
+    (box) => box.disabled || box.checked || box.click())"""
 FOUND = """() => { const [lab] = window.perceptObsLabs; return {
     runs: lab.shown.runs.filter((run) => run.estimate.some((v) => Number.isFinite(v))).map((run) => run.name),
     refused: Object.keys(lab.kernels.refused(lab.settings)),
@@ -55,10 +57,7 @@ def test_every_observer_with_every_output_on_every_surface(page):
         surface, outputs = key.split(" ")
         page.select_option(control("surface"), surface)
         page.check(control(f"outputs {outputs}"))
-        for name in ALL:
-            box = page.locator(control(f"observer {name}"))
-            if box.is_enabled():
-                box.check()
+        page.evaluate(CHECK_ALL)
         page.wait_for_function(DRAWN)
         found = page.evaluate(FOUND)
         assert {*found["runs"], *found["refused"]} == set(ALL), key

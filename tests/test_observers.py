@@ -76,8 +76,8 @@ def test_error_dynamics_against_a_finite_difference(make, form):
     errors = vectorised(moving, [(s - e).subs(fixed) for s, e in zip(x, observer.estimate, strict=True)])
     at, step = np.array([float(values[s]) for s in moving]), 1e-6
     expected = (np.array(errors(*(at + step * velocity))) - np.array(errors(*(at - step * velocity)))) / (2 * step)
-    known = values | {e: sp.Float(float(v), 17) for e, v in zip(observer.error, errors(*at), strict=True)}
-    derived = np.array(observer.error_dynamics().subs(known), dtype=float).ravel()
+    known = values | dict(zip(observer.error, errors(*at), strict=True))
+    derived = vectorised([*known], [*observer.error_dynamics()])(*map(float, known.values()))
     np.testing.assert_allclose(derived, expected, rtol=1e-6, atol=1e-7)
 
 

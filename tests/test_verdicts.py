@@ -295,7 +295,7 @@ def test_a_good_estimate_is_trusted_for_points_and_structure_too():
 @pytest.mark.slow
 def test_trust_is_right_without_a_truth():
     """In 200 runs with ALL_SAMPLES=1."""
-    count = sampled(40, 200)
+    count = sampled(16, 200)
     missed, alarms, wrong, right = figures(range(count))
     assert missed <= 0.03
     assert alarms <= 0.05
