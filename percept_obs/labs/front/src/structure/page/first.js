@@ -3,7 +3,6 @@
 import { tick } from "../../common/first/controls.js";
 import { FirstScreen } from "../../common/first/screen.js";
 import { within } from "../../common/model/playback.js";
-import { readable } from "../../common/model/scales.js";
 import { isTyped } from "../../common/model/typed.js";
 import { element } from "../../common/page/dom.js";
 import { KEPT } from "../../common/page/looks.js";
@@ -11,7 +10,7 @@ import { isSampled } from "../model/camera.js";
 import { QUESTIONS } from "../model/questions.js";
 import { estimatedSpeeds, knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "../model/worlds.js";
 import { drawMap, placeOfMap } from "./first_map.js";
-import { carAside, HIGH } from "./first_marks.js";
+import { carAside, HIGH, metres, speed } from "./first_marks.js";
 
 const CAPTIONS = { image: "Three films", world: "From above", axis: "Estimate over truth" };
 /** Sizes of the other worlds at the start; one is moved by hand, between two bounds, as is its story. */
@@ -335,5 +334,3 @@ function joined(gaps) {
 
 const TIMES = { [HALF]: "half", [TWICE]: "twice" };
 /** Speeds and lengths as they are written. */
-export const speed = (value) => (Math.abs(value) < 0.05 ? "0.0" : value.toFixed(1)).replace("-", "−");
-export const metres = (value) => `${readable(Number(value.toPrecision(2)))} m`;

@@ -4,8 +4,7 @@ import { roundStep } from "../../common/first/chart.js";
 import { within } from "../../common/model/playback.js";
 import { readable } from "../../common/model/scales.js";
 import { TRUE } from "../model/worlds.js";
-import { metres, speed } from "./first.js";
-import { cameraAbove, carAbove, WIDE } from "./first_marks.js";
+import { cameraAbove, carAbove, metres, speed, WIDE } from "./first_marks.js";
 
 /** Which figure is drawn: the others are 0 and 2. */
 const [SMALL, RIGHT, LARGE, ESTIMATE] = [0, 1, 2, 3];

@@ -1,5 +1,7 @@
 // What the first screen of the structure lab draws of things: a car from the side and from above, a camera.
 
+import { readable } from "../../common/model/scales.js";
+
 /** Outline of a car from the side, in parts of its length: forwards to the left, down. */
 const CAR = [
   [-0.5, 0.1], [-0.5, -0.02], [-0.44, -0.06], [-0.27, -0.09], [-0.15, -0.23], [0.2, -0.23], [0.35, -0.08],
@@ -89,3 +91,7 @@ export function cameraAbove(view, [x, y], colour, { full = false, alpha = 1, siz
   pen.restore();
   view.avoid(x, y + 3 * size, 11 * size);
 }
+
+/** Speeds and lengths, as they are written. */
+export const speed = (value) => (Math.abs(value) < 0.05 ? "0.0" : value.toFixed(1)).replace("-", "−");
+export const metres = (value) => `${readable(Number(value.toPrecision(2)))} m`;
