@@ -14,7 +14,7 @@ TOLD = ".unknowns .told"
 @pytest.fixture(scope="module")
 def python():
     """The lab in Python."""
-    return structure_lab(duration=3.0)
+    return structure_lab(duration=3.0, period=0.01, step=0.001)
 
 
 def test_a_box_is_ticked_off_and_the_reason_is_python_s(fresh, python):
