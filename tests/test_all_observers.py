@@ -128,7 +128,7 @@ def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
             make(form)
     else:
         observer = make(form)
-        for scenario, duration in ((scenarios.ma2005_eq35, 5), (scenarios.ma2005_eq36, 10)):
+        for scenario, duration in ((scenarios.ma2005_eq35, 2), (scenarios.ma2005_eq36, 4)):
             assert_it_stays_at_the_truth(recorded(scenario, form.view, duration), observer)
 
 

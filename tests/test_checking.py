@@ -19,7 +19,7 @@ from percept_obs.system.derivation import Derivation
 RATE = "y1' = a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 - b3 y1) y3"
 RIGID = PerspectiveSystem(MOTIONS["rigid"], pinhole())
 TURN = {w: -w for w in RIGID.parameters[:3]}
-FORMS, SLIPS, PAIRS = sampled(100, 300), sampled(50, 300), sampled(20, 100)
+FORMS, SLIPS, PAIRS = sampled(40, 300), sampled(20, 300), sampled(8, 100)
 
 
 def accepted(seeds, among):

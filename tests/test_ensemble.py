@@ -88,7 +88,7 @@ def test_machine_code_says_the_same(observer):
     pytest.importorskip("numba")
     over = {"b1": [0.4, 0.5], "noise": [0.0, 0.01], "believed_b2": [0.25, 0.2]}
     fast, slow = (
-        ensemble(EQ35, observer, over, 5, 10, LOSSY, {"y1": 0.0}, after=5, language=language)
+        ensemble(EQ35, observer, over, 2, 5, LOSSY, {"y1": 0.0}, after=2.5, language=language)
         for language in ("numba", "python")
     )
     xr.testing.assert_allclose(fast, slow, rtol=1e-10)

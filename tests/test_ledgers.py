@@ -55,7 +55,7 @@ PAPERS = {
     "Chwa": Known(CHWA2019, 37, 1000),
     "De Luca": Known(DE_LUCA2008, 0, 350),
 }
-FEW = 3
+FEW = 2
 """Slips of each formula that the quick tests try."""
 each_paper = pytest.mark.parametrize("known", PAPERS.values(), ids=PAPERS)
 
