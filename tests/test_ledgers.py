@@ -263,6 +263,7 @@ PARTS = {"msub": 2, "msup": 2, "mfrac": 2, "msubsup": 3, "mover": 2, "munder": 2
 """Elements of MathML, and how many parts each has."""
 
 
+@pytest.mark.slow
 def test_every_formula_of_a_ledger_is_whole():
     for entry in (entry for ledger in NAMED.values() for entry in ledger.entries):
         for part in entry.parts.values():
