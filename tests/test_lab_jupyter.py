@@ -119,8 +119,9 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     page = browser_page
     cells = [
         OPEN.format(arguments=""),
-        *(f"from percept_obs.labs import {name}\n{name}()" for name in ("structure_lab", "points_lab")),
-        "other = observer_lab(outputs=['y1'])\nother",
+        "from percept_obs.labs import structure_lab\nstructure_lab(duration=3.0, face='workbench')",
+        "from percept_obs.labs import points_lab\npoints_lab(duration=8.0)",  # one opens with its first screen
+        "other = observer_lab(outputs=['y1'], face='workbench')\nother",
     ]
     write_notebook(folder, "kinds.ipynb", *cells)
     open_unfolded(page, "kinds.ipynb")

@@ -112,3 +112,16 @@ def test_nothing_is_cut_and_no_control_is_lost_on_a_small_screen(show, name, wid
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             seen |= set(page.evaluate(wide))
     assert wanted - seen == set()
+
+
+@pytest.mark.parametrize("name", LABS)
+def test_a_first_screen_that_is_folded_away_rests_and_is_drawn_again_when_it_is_unfolded(show, name):
+    page = show(LABS[name](), face="first")
+    fold = "(how) => { document.querySelector('.percept-lab').parentElement.style.display = how; }"
+    look = (
+        "() => { const [{ first, pending }] = window.perceptObsLabs; return [pending, first.image.size?.width > 0]; }"
+    )
+    for how, seen in (("none", False), ("", True)):
+        page.evaluate(fold, how)
+        page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.first.finish(); }")
+        page.wait_for_function(f"(seen) => ({look})().join() === `false,${{seen}}`", arg=seen)

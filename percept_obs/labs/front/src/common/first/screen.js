@@ -354,6 +354,8 @@ export class FirstScreen {
   /** Draw what is shown, as one scene. */
   draw(shown, ghost, theme) {
     const { lab } = this;
+    // Nobody sees a lab that is folded away; it is drawn when it has a size again.
+    if (this.views.some((view) => !view.measure())) return;
     if (this.waiting && !lab.late) {
       this.waiting = false;
       if (this.still.matches) this.finish();
@@ -364,7 +366,6 @@ export class FirstScreen {
     const { why, secret, end } = this;
     const kept = (this.answered && this.open?.kept) || "kept run";
     const scene = { shown, ghost, kept, now, end, at: between(shown.time, now), why, secret, theme };
-    for (const view of this.views) view.measure();
     const stamp = performance.now();
     const motion = { held: lab.held, still: this.still.matches, passed: Math.min(stamp - this.drawn, LONGEST_STALL) };
     this.drawn = stamp;

@@ -18,19 +18,22 @@ export class Picture {
     this.size = null;
   }
 
-  /** The figure's last known size in CSS pixels, that of one that is hidden being the least. */
+  /** The figure's last known size in CSS pixels; null while it is hidden. */
   measure() {
-    const { figure } = this;
     // Asking the page for a size makes it lay itself out, which in a large notebook takes longer than drawing.
-    this.size ??= { width: Math.max(120, figure.clientWidth), height: Math.max(60, figure.clientHeight) };
+    if (!this.size) this.resize(this.figure.clientWidth, this.figure.clientHeight);
     return this.size;
+  }
+
+  resize(width, height) {
+    this.size = width && height ? { width: Math.max(120, width), height: Math.max(60, height) } : null;
   }
 
   /** Fit the canvas to its figure's last known size, with a font for its letters; return its size in CSS pixels. */
   fit(font) {
     const { canvas, context } = this;
     const ratio = window.devicePixelRatio || 1;
-    const { width, height } = this.measure();
+    const { width, height } = this.measure() ?? { width: 120, height: 60 };
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);

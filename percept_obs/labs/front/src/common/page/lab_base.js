@@ -88,8 +88,7 @@ export class LabBase {
 
   resized(node, { width, height }) {
     const picture = this.figures.find(({ figure }) => figure === node);
-    // A figure that is hidden has no size; it is measured when it is drawn.
-    if (picture) picture.size = width && height ? { width: Math.max(120, width), height: Math.max(60, height) } : null;
+    if (picture) picture.resize(width, height);
     else this.width = width;
     this.schedule();
   }
