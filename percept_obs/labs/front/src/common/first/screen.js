@@ -122,6 +122,7 @@ export class FirstScreen {
       if (!entries.some(({ isIntersecting }) => isIntersecting) || this.begun) return;
       this.begun = true;
       seen.disconnect();
+      this.lab.redraw();
       if (this.still.matches) this.finish();
       else this.beginner = setTimeout(() => this.moved || this.open !== undefined || this.play(), this.firstLook);
     });

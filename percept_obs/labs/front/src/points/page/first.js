@@ -111,6 +111,8 @@ export class PointsFirst extends FirstScreen {
     const held = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one))[0];
     let copy = /** @type {number[][] | null} */ (null);
     if (prelude) {
+      // Nothing moves before somebody looks.
+      if (!this.begun) this.looked = performance.now();
       this.looked ||= performance.now();
       const size = Math.exp(SWING * Math.sin((2 * Math.PI * (performance.now() - this.looked)) / SWINGS));
       copy = places.map((place) => place.map((value) => size * value));
@@ -185,7 +187,7 @@ export class PointsFirst extends FirstScreen {
       const there = place && place[2] > NEAREST;
       mark.stand(there ? [place[0] / place[2], place[1] / place[2]] : null, frame, this.lab.late);
     });
-    return moving || seen.prelude;
+    return moving || (seen.prelude && this.begun);
   }
 
   /** How the first mark moves in the image, and how it would if all were half or twice as far and as large. */
