@@ -125,7 +125,8 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     ]
     write_notebook(folder, "kinds.ipynb", *cells)
     open_unfolded(page, "kinds.ipynb")
-    settings = "() => [...window.perceptObsLabs].map((lab) => lab.settings)"
+    settings = """() => [...document.querySelectorAll(".percept-lab")].map((root) =>
+        [...window.perceptObsLabs].find((lab) => lab.view.root === root).settings)"""  # as they stand in the page
     before = page.evaluate(settings)
     page.locator(control("seed number")).nth(1).fill("9")
     rested(page)
@@ -143,9 +144,13 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     page.check(f"{control('outputs y1')} >> nth=0")
     page.check(f"{control('observer spica')} >> nth=0")
     page.wait_for_function("() => [...window.perceptObsLabs].every((lab) => lab.shown.settings === lab.settings)")
-    page.wait_for_function(f"() => {FIRST}.shown.runs.length === 2 && !{FIRST}.pending")
-    assert_equals_python(state(page))
-    shown = state(page, 1)
+    changed = "(lab) => lab.settings.observers?.includes('spica')"
+    page.wait_for_function(f"() => [...window.perceptObsLabs].find({changed})?.shown.runs.length === 2")
+    page.wait_for_function("() => ![...window.perceptObsLabs].some((lab) => lab.pending)")
+    first = page.evaluate(f"() => [...window.perceptObsLabs].findIndex({changed})")
+    assert_equals_python(state(page, first))
+    drawn = page.evaluate("() => [...window.perceptObsLabs].findIndex((lab) => lab.settings.unknown)")  # in any order
+    shown = state(page, drawn)
     assert_structure_is_python(shown)
     assert set(shown["settings"]["unknown"]) != set(before[1]["unknown"])
 

@@ -299,8 +299,8 @@ body:not([data-jp-theme-light]) .percept-lab.dark {
   .percept-lab .side > .scroll { max-height: none; }
 }
 
-@container (min-width: 1060px) {
-  .percept-lab .stage { grid-template: "eyes graphs side" var(--tall) "words words words" auto / minmax(300px, 1.2fr) minmax(280px, 1.1fr) minmax(286px, 0.8fr); }
+@container (min-width: 820px) {
+  .percept-lab .stage { grid-template: "eyes graphs side" var(--tall) "words words words" auto / minmax(220px, 1fr) minmax(250px, 1fr) 286px; }
   .percept-lab .stage:has(.equations[open]) { grid-template-columns: minmax(200px, 0.7fr) minmax(240px, 0.8fr) minmax(360px, 1.5fr); }
   .percept-lab .eyes { flex-flow: column nowrap; }
   .percept-lab .eyes > figure { flex: 1 1 0; width: 100%; height: auto; }
