@@ -80,7 +80,7 @@ FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
 EVENTS = sampled(100, 10_000)
 """Random events in each lab, about one for each control."""
 MOVED = sampled(4, 1)
-"""Of so many controls that the Tab key reaches one is moved by its keys."""
+"""One in so many controls that the Tab key reaches is moved by its keys."""
 
 UNFOLD = "document.querySelectorAll('.percept-lab details').forEach((d) => (d.open = true))"
 

@@ -90,7 +90,7 @@ def outside(kind, value):
 
 
 ALIEN = (object(), 1j, b"1", {1, 2}, {1: 2}, range(3), sp.Symbol("x"))
-"""What no setting takes."""
+"""Values that no setting takes."""
 
 
 @pytest.mark.parametrize("name", [*LABS, "desk_lab"])

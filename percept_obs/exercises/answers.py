@@ -49,7 +49,7 @@ class Attempt:
 UNANSWERED = "Not answered yet. Put your answer in the place of the dots, and run both cells."
 NO_HINT = "A hint needs an answer first."
 REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""What an answer of another kind than is asked for raises where it is used."""
+"""Errors that an answer of another kind than is asked for raises where it is used."""
 
 
 def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:

@@ -1,4 +1,4 @@
-"""What search engines and other sites read of the pages: a description, a card, addresses, the list of all pages."""
+"""Descriptions, a card and addresses of the pages, for search engines and other sites."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ EXAM = {
     True: "[Questions with their solutions](exam.md), each computed by code that runs as it stands.",
     False: "Questions with their solutions stand on the site for teachers: `percept-obs site --for teachers DIR`.",
 }
-"""What stands for the exam, by whether the site has it."""
+"""Words for the exam, by whether the site has it."""
 
 
 def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger], exam: bool = True) -> dict[str, Any]:

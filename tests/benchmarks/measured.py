@@ -1,4 +1,4 @@
-"""What all benchmarks share: contenders in turns, the ratios of their times, and bars that are kept or not."""
+"""The harness of all benchmarks: contenders in turns, the ratios of their times, and bars that are kept or not."""
 
 import time
 

@@ -2,7 +2,7 @@
 
 import { within } from "../model/playback.js";
 import { readable } from "../model/scales.js";
-import { element, listen } from "../page/dom.js";
+import { scrubbed } from "./scrub.js";
 import { View } from "./view.js";
 
 const PAD = { left: 40, right: 16, top: 12, bottom: 22 };
@@ -44,23 +44,7 @@ export class TimeChart extends View {
     super("over-time", label);
     this.end_ = 1;
     this.floor = 0;
-    const pad = element("div", { class: "scrub", "aria-hidden": "true" });
-    let down = false;
-    const take = (event) => {
-      const { left } = this.figure.getBoundingClientRect();
-      const part = (event.clientX - left - PAD.left) / (this.width - PAD.left - PAD.right);
-      onTime(this.end_ * within(part, 0, 1));
-    };
-    listen(pad, {
-      pointerdown: (event) => {
-        down = true;
-        if (event.isTrusted) pad.setPointerCapture(event.pointerId);
-        take(event);
-      },
-      pointermove: (event) => down && take(event),
-      "pointerup pointercancel lostpointercapture": () => (down = false),
-    });
-    this.figure.append(pad);
+    scrubbed(this, PAD, (part) => onTime(this.end_ * part));
   }
 
   ground() {

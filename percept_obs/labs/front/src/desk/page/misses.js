@@ -1,8 +1,7 @@
 // A chart of how far a line misses, term by term.  It is the scrubber: one drags through what was typed.
 
-import { within } from "../../common/model/playback.js";
 import { View } from "../../common/first/view.js";
-import { element, listen } from "../../common/page/dom.js";
+import { scrubbed } from "../../common/first/scrub.js";
 
 const PAD = { left: 50, right: 16, top: 26, bottom: 24 };
 
@@ -11,23 +10,7 @@ export class Misses extends View {
   constructor(onPlace) {
     super("misses", "How far the line misses, term by term");
     this.count = 1;
-    const pad = element("div", { class: "scrub", "aria-hidden": "true" });
-    let down = false;
-    const take = (event) => {
-      const { left } = this.figure.getBoundingClientRect();
-      const part = (event.clientX - left - PAD.left) / (this.width - PAD.left - PAD.right);
-      onPlace(Math.round(this.count * within(part, 0, 1)));
-    };
-    listen(pad, {
-      pointerdown: (event) => {
-        down = true;
-        if (event.isTrusted) pad.setPointerCapture(event.pointerId);
-        take(event);
-      },
-      pointermove: (event) => down && take(event),
-      "pointerup pointercancel lostpointercapture": () => (down = false),
-    });
-    this.figure.append(pad);
+    scrubbed(this, PAD, (part) => onPlace(Math.round(this.count * part)));
   }
 
   ground() {
