@@ -10,8 +10,7 @@ from refusals import refuses
 from sample_sizes import sampled
 
 from percept_obs import PerspectiveSystem, check, ekf, ibo, instantaneous, pinhole, plane
-from percept_obs.checking import CannotRead, Verdict
-from percept_obs.checking.target import target_of
+from percept_obs.checking import CannotRead, Verdict, target_of
 from percept_obs.papers import INABA2005, MA2005
 from percept_obs.structure import StructureAndMotion
 from percept_obs.system.derivation import Derivation

@@ -3,6 +3,7 @@
 from percept_obs.checking.matching import Verdict
 from percept_obs.checking.reading import CannotRead
 from percept_obs.checking.review import Review, check
-from percept_obs.checking.target import Target, target_of
+from percept_obs.checking.target import Target
+from percept_obs.checking.targets import target_of
 
 __all__ = ["CannotRead", "Review", "Target", "Verdict", "check", "target_of"]

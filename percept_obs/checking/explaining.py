@@ -10,9 +10,10 @@ import sympy as sp
 from sympy.polys.fields import sfield
 
 from percept_obs.checking.deciding import points, rational, small
+from percept_obs.checking.lines import VALUE, ZEROS
 from percept_obs.checking.search import THROUGHOUT, Search, at, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
-from percept_obs.checking.target import VALUE, ZEROS, Target
+from percept_obs.checking.target import Target
 
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""

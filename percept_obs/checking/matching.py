@@ -8,8 +8,9 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from percept_obs.checking.deciding import proportional, same, same_zeros
+from percept_obs.checking.lines import EQUATION, INEQUALITY, VALUE, ZEROS, condition, relation_lines
 from percept_obs.checking.reading import Reading
-from percept_obs.checking.target import EQUATION, INEQUALITY, VALUE, ZEROS, Target, condition, relation_lines
+from percept_obs.checking.target import Target
 
 
 class Verdict(StrEnum):

@@ -12,7 +12,8 @@ import sympy as sp
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
 from percept_obs.checking.matching import Judged, Verdict, judged
 from percept_obs.checking.search import put
-from percept_obs.checking.target import Target, target_of
+from percept_obs.checking.target import Target
+from percept_obs.checking.targets import target_of
 
 MARKS = {
     Verdict.RIGHT: "✓",
@@ -198,4 +199,6 @@ def check(mine: Any, target: Any) -> Review:
         look at -b3 y3
     """
     goal = target_of(target)
-    return Review(goal, judged(goal.read(mine), goal))
+    readings = goal.read(mine)
+    goal = goal.asked(readings)
+    return Review(goal, judged(readings, goal))

@@ -12,9 +12,9 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.checking.deciding import points, same_zeros, small
+from percept_obs.checking.lines import VALUE, ZEROS, Line
 from percept_obs.checking.points import NoValue, Point
 from percept_obs.checking.slips import MENDS, Slip, factored, family, siblings_in, slips_in, symbols_in
-from percept_obs.checking.target import VALUE, ZEROS, Line
 
 Values = np.ndarray[Any, Any]
 ORDER = (

@@ -2,53 +2,25 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property, singledispatch
+from functools import cache, cached_property
 from itertools import count, product
 from typing import Any
 
 import sympy as sp
 from lark import Token
 from sympy.core.relational import Relational
-from sympy.logic.boolalg import Boolean
 
 from percept_obs.checking.deciding import entries_of, explicit, on_sides, sizes_of, written_out
+from percept_obs.checking.lines import Line, primed, relation_lines, typed
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Reading, read, words_of
 from percept_obs.compile import intermediates
-from percept_obs.compile.equations import Equations
-from percept_obs.observability.pointwise import InstantaneousObservability
-from percept_obs.observers import Observer
 from percept_obs.observers.parts import hats
-from percept_obs.structure import QUANTITIES, StructureAndMotion
 from percept_obs.system.derivation import Derivation, Step
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import rigid
-from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT, plane
-
-VALUE, EQUATION, INEQUALITY, ZEROS = "value", "equation", "inequality", "zeros"
-
-
-@dataclass(frozen=True)
-class Line:
-    """Line of a target.
-
-    The name is the left side as it is typed, "y1'", or words; empty if it has none.  The formula is the right side; of
-    other equations and inequalities the left side less the right one.  Equations are the same up to a number,
-    inequalities up to a positive one; of "zeros" it only matters where the formula is zero.
-    """
-
-    name: str
-    formula: sp.Expr
-    kind: str = VALUE
-
-    @property
-    def key(self) -> str:
-        """Name as `read` returns it."""
-        return typed(self.name)
+from percept_obs.system.surfaces import plane
 
 
 @cache
@@ -59,13 +31,6 @@ def _conventions() -> tuple[Convention, ...]:
         Convention(world, {w: -w for w in turn}),
         Convention("your image plane is n . X = d, that of the package n . X = 1", {n: n / d for n in normal}),
     )
-
-
-def typed(name: str) -> str:
-    """Return a name in letters and digits, with "dot" for a prime; empty for words."""
-    if not re.fullmatch(r"[\w^]+'*", name):
-        return ""
-    return key(name.replace("'", "dot"))
 
 
 @dataclass(frozen=True)
@@ -93,6 +58,10 @@ class Target:
         Lines that can be typed together: those of step 5 as "step5".
     matrices : mapping of letters to matrices
         Entries of the letters of matrices that may be typed.
+    relations : mapping of letters to expressions
+        Letters that are known by definition, such as X = y1 / y3 or e1 = y1 - yhat1: they can be read.
+    idle : tuple of Line
+        All lines with the terms whose gains are 0 by default, if there are such terms; see `asked`.
 
     See Also
     --------
@@ -114,6 +83,8 @@ class Target:
     nonzero: frozenset[sp.Symbol] = frozenset()
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix] = field(default_factory=dict)
+    relations: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    idle: tuple[Line, ...] = ()
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
@@ -140,7 +111,7 @@ class Target:
     @cached_property
     def letters(self) -> dict[str, sp.Symbol]:
         """All letters by their names without underscores: those of the lines, the pool, and their hats."""
-        used = set().union(self.pool, *(line.formula.free_symbols for line in self.lines))
+        used = set().union(self.pool, *(line.formula.free_symbols for line in (*self.lines, *self.idle)))
         known = {key(s.name): s for s in sorted(used, key=str)}
         return {key(s.name): s for s in _neighbours(used) if not self.pool} | known
 
@@ -150,11 +121,19 @@ class Target:
         letters = set(self.letters.values())
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
+    def asked(self, readings: Iterable[Reading]) -> Target:
+        """Return the target with terms whose gains are 0 by default if the readings have such gains, else itself."""
+        gains = set().union(*(line.formula.free_symbols for line in self.idle)) - set().union(
+            *(line.formula.free_symbols for line in self.lines)
+        )
+        typed_ = set().union(*(r.formula.free_symbols for r in readings)) if gains else set()
+        return replace(self, lines=self.idle, idle=()) if gains & typed_ else self
+
     def read(self, mine: Any) -> list[Reading]:
         """Return readings of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            found = read(mine, *self._known)
-            return [replace(r, formula=written_out(r.formula, self.matrices)) for r in found]
+            own, found = self._defined(read(mine, *self._known))
+            return [replace(r, formula=written_out(on_sides(own, r.formula), self.matrices)) for r in found]
         if isinstance(mine, Mapping):
             return [
                 replace(r, name=r.name or (f"step{name}" if isinstance(name, int) else typed(str(name))))
@@ -187,7 +166,14 @@ class Target:
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
         matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
-        return extra | named | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
+        related = {key(s.name): s for s in self.relations}
+        return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
+
+    def _defined(self, found: list[Reading]) -> tuple[Callable[[Any], Any], list[Reading]]:
+        """Return how somebody's own lines for letters that are known by definition are put in, and the other lines."""
+        related = {key(s.name): s for s in self.relations if key(s.name) not in {*self.rows, *self.blocks}}
+        own = {related[r.name]: r.formula for r in found if r.name in related}
+        return lambda formula: formula.xreplace(own), [r for r in found if r.name not in related] or found
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """Return a formula of sympy in the target's own letters, matched by name."""
@@ -207,177 +193,6 @@ def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
         names = ["".join((stem, *chosen)) for chosen in product("123", repeat=indices)]
         for other in [sp.Symbol(name, **symbol.assumptions0) for name in names]:
             yield from (other, *hats((other,)))
-
-
-@singledispatch
-def target_of(thing: Any) -> Target:
-    """Return the target of a check.
-
-    Parameters
-    ----------
-    thing : anything that the package derives, formula, sequence or mapping of them
-        As `percept_obs.check` takes it.
-
-    Raises
-    ------
-    ValueError
-        If no formula can be compared with it.
-
-    See Also
-    --------
-    percept_obs.check
-
-    Examples
-    --------
-    >>> from percept_obs.checking import target_of
-    >>> target_of("f = a yhat1 + b").lines[0].formula
-    a*yhat1 + b
-    """
-    if isinstance(thing, str):
-        names = {str(t) for t in words_of(thing) if t.type == "NAME"}
-        # sympy reads an accent before the index
-        spelled = {name: re.sub(r"(\d+)((?:hat|bar|tilde|dot)+)$", r"\2\1", name) for name in names}
-        named = {name: sp.Symbol(spelling, real=True) for name, spelling in spelled.items()}
-        return _joined(Target(tuple(_line(r.name, r.formula))) for r in read(thing, named))
-    if isinstance(thing, Mapping):
-        return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
-    if isinstance(thing, Sequence) and not isinstance(thing, Derivation):
-        return _joined(map(target_of, thing))
-    if isinstance(getattr(thing, "target", None), Target):
-        return thing.target
-    if hasattr(thing, "derivation") and callable(thing.derivation):
-        return target_of(thing.derivation())
-    raise ValueError(
-        f"nothing can be compared with a {type(thing).__name__}; give a system, a form, an observer, a step of a "
-        "derivation, an observability condition, or a formula"
-    )
-
-
-def _called(name: str, target: Target) -> Target:
-    """Name a target; of several lines the names are numbered."""
-    many = len(target.lines) > 1
-    named = (replace(line, name=f"{name}{k if many else ''}") for k, line in enumerate(target.lines, 1))
-    return replace(target, lines=tuple(named))
-
-
-def _joined(targets: Iterable[Target]) -> Target:
-    return Target(tuple(line for part in targets for line in part.lines))
-
-
-def _rates(symbols: Sequence[sp.Symbol], values: Iterable[sp.Expr]) -> tuple[Line, ...]:
-    return tuple(Line(f"{s.name}'", explicit(value)) for s, value in zip(symbols, values, strict=True))
-
-
-@target_of.register
-def _(thing: Target) -> Target:
-    return thing
-
-
-@target_of.register
-def _(thing: PerspectiveSystem) -> Target:
-    pool = frozenset((*thing.coordinates, *thing.parameters, *POINT))
-    return Target(_rates(thing.coordinates, thing.rate), pool, derivation=thing.derivation)
-
-
-@target_of.register
-def _(thing: PartitionedSystem) -> Target:
-    steps = thing.derivation if isinstance(thing, CanonicalForm) else None
-    return Target(_rates((*thing.x1, *thing.x2), thing.rate), _letters(thing), derivation=steps)
-
-
-@target_of.register
-def _(thing: Observer) -> Target:
-    target = target_of(thing.equations)
-    return replace(target, pool=target.pool | _letters(thing.form))
-
-
-@target_of.register
-def _(thing: Equations) -> Target:
-    pool = frozenset((*thing.state, *thing.measured, *thing.parameters, *thing.gains))
-    return Target(_rates(thing.state, thing.flow), frozenset(explicit(s) for s in pool if "^" not in s.name))
-
-
-def _letters(form: PartitionedSystem) -> frozenset[sp.Symbol]:
-    return frozenset((*form.x1, *form.x2, *form.parameters))
-
-
-@target_of.register
-def _(thing: InstantaneousObservability) -> Target:
-    return Target((Line("", thing.determinant, ZEROS),), _letters(thing.form))
-
-
-@target_of.register
-def _(thing: StructureAndMotion) -> Target:
-    scale = sp.Symbol(QUANTITIES[0], real=True)
-    pool = _letters(thing.form) | {sp.Symbol(name, real=True) for name in QUANTITIES}
-    return Target((Line("", thing.determinant, ZEROS),), pool, nonzero=frozenset({scale}))
-
-
-@target_of.register
-def _(thing: Step) -> Target:
-    if not thing.values:
-        raise ValueError(f"the step {thing.reason!r} has no formula of its own; check the one after it")
-    return Target(tuple(Line(name, value) for name, value in thing.values.items()))
-
-
-@target_of.register
-def _(thing: Derivation) -> Target:
-    lines: list[Line] = []
-    blocks = {}
-    for number, step in enumerate(thing, 1):
-        blocks[f"step{number}"] = tuple(range(len(lines), len(lines) + len(step.values)))
-        lines += [Line(name, value) for name, value in step.values.items()]
-    if not lines:
-        raise ValueError("the derivation has no formulas of its own to compare with; give one of its results")
-    return Target(tuple(lines), derivation=lambda: thing, blocks=blocks)
-
-
-@target_of.register(sp.Basic)
-@target_of.register(sp.MatrixBase)
-def _(thing: sp.Basic) -> Target:
-    return Target(tuple(_line("", explicit(thing))))
-
-
-def _line(name: str, formula: sp.Basic) -> list[Line]:
-    """Return the lines of an expression, a matrix or a relation."""
-    if isinstance(formula, sp.MatrixBase):
-        return [Line("", entry) for entry in formula]
-    if isinstance(formula, Relational):
-        return relation_lines(formula)
-    if isinstance(formula, sp.And | sp.Or):
-        return [Line("", condition(formula), ZEROS)]
-    return [Line(name, formula)]
-
-
-def relation_lines(relation: Relational) -> list[Line]:
-    """Return a relation as lines: y = f as a value, f = 0 and f != 0 as a set of zeros, matrices entry by entry."""
-    left, right = relation.lhs, relation.rhs
-    if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
-        pairs = zip(left, right, strict=True)
-        return [line for a, b in pairs for line in relation_lines(relation.func(a, b, evaluate=False))]
-    if isinstance(relation, sp.Eq | sp.Ne):
-        named = isinstance(relation, sp.Eq) and left.is_Symbol
-        if right == 0 and not named:
-            return [Line("", left, ZEROS)]
-        name = primed(left.name) if named else ""
-        return [Line(name, right) if named else Line("", left - right, EQUATION)]
-    return [Line("", relation.gts - relation.lts, INEQUALITY)]
-
-
-def primed(name: str) -> str:
-    """Return the name of a rate as it is typed: y1' for ydot1."""
-    return re.sub(r"dot(\d*)$", r"\1'", name)
-
-
-def condition(formula: Boolean) -> sp.Expr:
-    """Return the expression that is not zero where a condition of parts that are not zero holds."""
-    if isinstance(formula, sp.And):
-        return sp.Mul(*map(condition, formula.args))
-    if isinstance(formula, sp.Or):
-        return sp.Add(*(condition(part) ** 2 for part in formula.args))
-    if isinstance(formula, sp.Ne):
-        return formula.lhs - formula.rhs
-    raise ValueError(f"the condition {formula} cannot be compared; give one of parts that must not be zero, f != 0")
 
 
 def matrix_target(relations: Iterable[Relational]) -> Target:

@@ -11,7 +11,7 @@ import sympy as sp
 
 from percept_obs.checking import Target, target_of
 from percept_obs.checking.deciding import explicit
-from percept_obs.checking.target import Line
+from percept_obs.checking.lines import Line
 from percept_obs.compile import definitions, in_letters
 from percept_obs.labs.desk.systems import OBSERVERS, observer_of
 from percept_obs.labs.shared.equations import equations_of

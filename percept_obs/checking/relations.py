@@ -1,0 +1,70 @@
+"""Letters that are known by definition: the point X, Y, Z in terms of its image, w, phi and g, the error e."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import sympy as sp
+
+from percept_obs.checking.points import key
+from percept_obs.observers import Observer
+from percept_obs.observers.parts import hats
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import POINT, ImagingSurface
+
+Relations = Mapping[sp.Symbol, sp.Expr]
+
+
+def of_system(system: PerspectiveSystem) -> Relations:
+    """Return the point, and its velocity Xdot, Ydot, Zdot, in terms of image and inverse distance."""
+    point = _seen(system.surface)
+    velocity = system.motion.A * sp.ImmutableMatrix(list(point.values())) + system.motion.b
+    return point | _free(zip(_numbered(("Xdot", "Ydot", "Zdot")), velocity, strict=True), system.parameters)
+
+
+def of_form(form: PartitionedSystem) -> Relations:
+    """Return the point if one is seen, and w, phi and g of a canonical form, entry by entry."""
+    found = _seen(form.view) if isinstance(form.view, ImagingSurface) else {}
+    if not isinstance(form, CanonicalForm):
+        return found
+    parts = {"w": form.w, "phi": form.phi, "g": form.g}
+    return found | _free(
+        ((letter, entry) for name, part in parts.items() for letter, entry in _entries(name, part)),
+        (*form.coordinates, *form.parameters),
+    )
+
+
+def of_observer(observer: Observer) -> Relations:
+    """Return w and phi of the form, g at the estimate, and the error e = y - yhat of each coordinate."""
+    form = observer.form
+    truth = dict(zip(form.x2, hats(form.x2), strict=True))
+    found = dict(of_form(form))
+    if isinstance(form, CanonicalForm):
+        found |= {sp.Symbol(f"{s.name}hat", real=True): e.xreplace(truth) for s, e in _entries("g", form.g)}
+    error = ((e, y - yhat) for e, y, yhat in zip(observer.error, form.coordinates, observer.estimate, strict=True))
+    eq = observer.equations
+    return _free((*found.items(), *error), (*eq.state, *eq.measured, *eq.parameters, *eq.gains))
+
+
+def _seen(surface: ImagingSurface) -> dict[sp.Symbol, sp.Expr]:
+    return {s: entry / surface.inverse_distance for s, entry in zip(POINT, surface.ray, strict=True)}
+
+
+def _entries(name: str, part: sp.ImmutableMatrix) -> Iterable[tuple[sp.Symbol, sp.Expr]]:
+    """Yield letters of a matrix's entries, w1, w2 or w11, w12, and the entries."""
+    rows, columns = part.shape
+    for i in range(rows):
+        for j in range(columns):
+            index = f"{i + 1}{j + 1}" if min(rows, columns) > 1 else f"{max(i, j) + 1}" if len(part) > 1 else ""
+            yield sp.Symbol(f"{name}{index}", real=True), part[i, j]
+
+
+def _numbered(names: Sequence[str]) -> list[sp.Symbol]:
+    return [sp.Symbol(name, real=True) for name in names]
+
+
+def _free(pairs: Iterable[tuple[sp.Symbol, sp.Expr]], taken: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
+    """Keep letters that have no other meaning: w1 of a rigid motion is its angular velocity."""
+    known = {key(s.name) for s in taken}
+    return {s: e for s, e in pairs if key(s.name) not in known}
