@@ -9,8 +9,8 @@ SIZES = {"cell": (830, 600), "wide": (1240, 680), "phone": (390, 760)}
 
 READY = "() => [...(window.perceptObsLabs ?? [])].some((lab) => lab.first?.scene)"
 WATCHED = """() => { const [{ first, late }] = window.perceptObsLabs;
-    return !late && !first.playing && !first.waiting && first.telling; }"""
-END = "() => { const [{ first }] = window.perceptObsLabs; first.begun = true; first.finish(); }"
+    return !late && !first.clock.playing && !first.clock.waiting && first.questions.telling; }"""
+END = "() => { const [{ first }] = window.perceptObsLabs; first.clock.begun = true; first.clock.finish(); }"
 STILL = """() => new Promise((done) => { const [lab] = window.perceptObsLabs; let [calm, tries] = [0, 0];
     const look = () => { calm = lab.pending || lab.late ? 0 : calm + 1;
         return calm > 2 || ++tries > 300 ? done(true) : requestAnimationFrame(look); };
@@ -60,7 +60,7 @@ def at_the_end(page):
 
 def asked(page, name, answer=0):
     """Ask a question, answer it, and show the end of the run."""
-    page.evaluate("(name) => [...window.perceptObsLabs][0].first.ask(name)", name)
+    page.evaluate("(name) => [...window.perceptObsLabs][0].first.questions.ask(name)", name)
     page.click(control(f"answer {answer}"))
     page.wait_for_function(DRAWN)
     at_the_end(page)

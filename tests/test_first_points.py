@@ -14,7 +14,7 @@ SEEN = """() => { const [{ first, settings, shown }] = window.perceptObsLabs;
     const { places, found, copy, inWorld, foundInWorld, copyInWorld, hidden, off } = first.seen;
     return { places, found, copy, inWorld, foundInWorld, copyInWorld, hidden, off, settings,
         errors: shown.errors.map((error) => Array.from(error)) }; }"""
-SHOW = "(time) => { const [lab] = window.perceptObsLabs; lab.first.pause(); lab.point(time); lab.paint(); }"
+SHOW = "(time) => { const [lab] = window.perceptObsLabs; lab.first.clock.pause(); lab.point(time); lab.paint(); }"
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
-QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.map(({ name }) => name)"
-HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.open.holds(first.scene), first.spoken]; }"
+QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.all.map(({ name }) => name)"
+HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.questions.open.holds(first.scene), first.spoken]; }"
 RANDOM = sampled(7, 200)
 """Random settings in which labels are looked at."""
 VARY = """([seed]) => {
@@ -33,7 +33,7 @@ VARY = """([seed]) => {
         handle.move(handle.at.map((value) => value + (random() - 0.5) * handle.nudge * 60));
     }
     lab.first.setWhy(random() < 0.3);
-    lab.state.cursor = random() * lab.first.end;
+    lab.state.cursor = random() * lab.first.clock.end;
     return lab.rest();
 }"""
 
@@ -78,25 +78,25 @@ def test_no_label_covers_another_or_is_cut(name, size, browser):
                 page.evaluate("() => [...window.perceptObsLabs][0].first.again()")
 
 
-PLAYED = "() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }"
-AT_THE_END = "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+PLAYED = "() => { const [{ first }] = window.perceptObsLabs; return !first.clock.playing && !first.clock.secret; }"
+AT_THE_END = "() => { const [{ first }] = window.perceptObsLabs; return first.clock.present() === first.clock.end; }"
 NOW = "() => { const [lab] = window.perceptObsLabs; return [lab.settings, lab.state.cursor]; }"
 
 
 @pytest.mark.parametrize("name", LABS)
 def test_it_plays_once_by_itself_and_not_where_less_motion_is_asked_for(name, browser):
     with first_screen(browser, LABS[name]()) as page:
-        page.wait_for_function("() => [...window.perceptObsLabs][0].first.playing")
+        page.wait_for_function("() => [...window.perceptObsLabs][0].first.clock.playing")
         page.wait_for_function(
-            "() => { const [{ first }] = window.perceptObsLabs; return !first.playing && !first.secret; }"
+            "() => { const [{ first }] = window.perceptObsLabs; return !first.clock.playing && !first.clock.secret; }"
         )
         assert page.evaluate(
-            "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+            "() => { const [{ first }] = window.perceptObsLabs; return first.clock.present() === first.clock.end; }"
         )
     with first_screen(browser, LABS[name](), reduced_motion="reduce") as page:
-        page.wait_for_function("() => ![...window.perceptObsLabs][0].first.secret")
+        page.wait_for_function("() => ![...window.perceptObsLabs][0].first.clock.secret")
         assert page.evaluate(
-            "() => { const [{ first }] = window.perceptObsLabs; return first.present() === first.end; }"
+            "() => { const [{ first }] = window.perceptObsLabs; return first.clock.present() === first.clock.end; }"
         )
 
 

@@ -18,7 +18,7 @@ SEEN = """() => { const [{ first, settings, shown }] = window.perceptObsLabs;
         ratio: Number.isFinite(seen.ratio) ? seen.ratio : null, free: seen.free, settings,
         ratios: seen.ratios && Array.from(seen.ratios, (v) => Number.isFinite(v) ? v : null),
         different: worlds.difference({ size, share: null }), true: world(true_), half: world(half) }; }"""
-TIME = "(time) => { const [lab] = window.perceptObsLabs; lab.first.put(time); lab.paint(); }"
+TIME = "(time) => { const [lab] = window.perceptObsLabs; lab.first.clock.put(time); lab.paint(); }"
 
 
 @pytest.fixture
@@ -145,6 +145,6 @@ def test_nothing_is_found_while_the_known_speed_passes_zero(page):
 
 def test_the_future_of_an_estimate_is_not_given_away(page):
     page.click(control("first ahead"))
-    page.wait_for_function("() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.first.playing; }")
+    page.wait_for_function("() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.first.clock.playing; }")
     texts = page.evaluate("() => [...window.perceptObsLabs][0].first.chart.texts.map(({ text }) => text)")
     assert not any(text.startswith("found") for text in texts)

@@ -198,7 +198,7 @@ def test_the_kernel_answers_what_is_typed_at_the_desk(browser_page, folder):
     assert log_entries(page) == ""
 
 
-PLAYED = f"() => !{FIRST}.first.playing && !{FIRST}.first.secret"
+PLAYED = f"() => !{FIRST}.first.clock.playing && !{FIRST}.first.clock.secret"
 SETTLED = f"() => {FIRST}.shown.runs[0].settling"
 
 

@@ -123,5 +123,5 @@ def test_a_first_screen_that_is_folded_away_rests_and_is_drawn_again_when_it_is_
     )
     for how, seen in (("none", False), ("", True)):
         page.evaluate(fold, how)
-        page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.first.finish(); }")
+        page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.first.clock.finish(); }")
         page.wait_for_function(f"(seen) => ({look})().join() === `false,${{seen}}`", arg=seen)

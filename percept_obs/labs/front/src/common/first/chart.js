@@ -42,9 +42,9 @@ export class TimeChart extends View {
   /** @param {(time: number) => void} onTime  takes the time that a hand asks for */
   constructor(label, onTime) {
     super("over-time", label);
-    this.end_ = 1;
+    this.lastTime = 1;
     this.floor = 0;
-    scrubbed(this, PAD, (part) => onTime(this.end_ * part));
+    scrubbed(this, PAD, (part) => onTime(this.lastTime * part));
   }
 
   ground() {
@@ -56,7 +56,7 @@ export class TimeChart extends View {
   }
 
   x(time) {
-    return PAD.left + (time / this.end_) * (this.width - PAD.left - PAD.right);
+    return PAD.left + (time / this.lastTime) * (this.width - PAD.left - PAD.right);
   }
 
   y(value) {
@@ -67,7 +67,7 @@ export class TimeChart extends View {
 
   /** Draw the lines up to the present, and later ones pale or not; return true while the scale is on its way. */
   draw(/** @type {Chart} */ chart, now, theme, motion) {
-    this.end_ = chart.end;
+    this.lastTime = chart.end;
     this.floor = chart.bars ? 6 + BARS * chart.bars.rows.length : 0;
     const moving = this.glide([chart.high], motion);
     this.begin(theme);
@@ -129,7 +129,7 @@ export class TimeChart extends View {
   /** A bar for each of what is seen, full up to the present, and hatched where it is not seen. */
   drawBars({ text, rows }, now, bottom) {
     const { theme, context: pen } = this;
-    const [left, right] = [this.x(0), this.x(this.end_)];
+    const [left, right] = [this.x(0), this.x(this.lastTime)];
     this.write(text, left - 6, bottom - this.floor / 2 + 3, theme.muted, "right");
     this.avoid((left + right) / 2, bottom - this.floor / 2, (right - left) / 2, this.floor / 2);
     rows.forEach((spans, k) => {

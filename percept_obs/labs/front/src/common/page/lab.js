@@ -83,7 +83,7 @@ export class Lab extends LabBase {
   /** Show the first screen, or the workbench, of the same settings at the same time. */
   turn(face) {
     this.face = face;
-    this.first.pause();
+    this.first.clock.pause();
     this.view.turn(face);
     this.spoken = 0;
     this.schedule();

@@ -63,7 +63,7 @@ function rootMeanSquare(errors, part = 0.25) {
 /** A sample of the chart at a part of the run, at the run's or the kept run's estimate. */
 const sampleAt = ({ time }, part) => Math.floor(part * (time.length - 1));
 
-/** @type {import("../../common/first/screen.js").Question[]} */
+/** @type {import("../../common/first/questions.js").Question[]} */
 export const QUESTIONS = [
   {
     name: "straight",

@@ -29,7 +29,7 @@ const sampleAt = ({ time }, when) => Math.max(0, time.findIndex((value) => value
 const settles = ({ settling }) => Number.isFinite(settling);
 const onChart = (when) => ({ shown }) => ({ time: shown.time[sampleAt(shown, when)], own: sampleAt(shown, when) });
 
-/** @type {import("../../common/first/screen.js").Question[]} */
+/** @type {import("../../common/first/questions.js").Question[]} */
 export const QUESTIONS = [
   {
     name: "hide",

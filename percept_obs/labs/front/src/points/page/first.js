@@ -30,13 +30,13 @@ const MOST = 1.5;
 const LEAST_REACH = 1e-6;
 
 export class PointsFirst extends FirstScreen {
-  firstLook = SWINGS;
   /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
   amounts = /** @type {number[] | null} */ (null);
   looked = 0;
 
   constructor(lab) {
     super(lab, CAPTIONS, controlsOf(lab), QUESTIONS);
+    this.clock.firstLook = SWINGS;
     this.engine = new PointsEngine(lab.model);
     this.marks = Array.from({ length: IN_HAND }, (_, k) =>
       this.handle(this.image, {
@@ -47,7 +47,7 @@ export class PointsFirst extends FirstScreen {
     );
     this.begin = this.handle(this.world, {
       ...{ name: "first estimate", label: "The estimate's start", nudge: 0.1 },
-      onMove: (place) => this.start_(place),
+      onMove: (place) => this.startAt(place),
     });
     this.twin = this.handle(this.world, {
       ...{ name: "first copy", label: "A copy with the same pictures", nudge: 0.25 },
@@ -71,8 +71,8 @@ export class PointsFirst extends FirstScreen {
   /** Hide a mark from now on, or show it; at both ends of the time, for all of it. */
   hide(k) {
     const { hidden, duration } = this.lab.settings;
-    const now = this.present();
-    const whole = now <= this.start || now >= this.end;
+    const now = this.clock.present();
+    const whole = now <= this.clock.start || now >= this.clock.end;
     const from = whole ? 0 : now;
     const away = hidden[k] && hidden[k][0] <= now && now < hidden[k][1];
     const times = away ? (from > hidden[k][0] ? [hidden[k][0], from] : null) : [from, duration + 1];
@@ -82,7 +82,7 @@ export class PointsFirst extends FirstScreen {
   }
 
   /** Let the estimate start so that its first mark is as near to a place as its error's direction allows. */
-  start_([x, z]) {
+  startAt([x, z]) {
     const [error] = [this.lab.settings.error];
     const [from, to] = [this.seen.inWorld[0], this.seen.foundInWorld[0]];
     const way = [to[0] - from[0], to[2] - from[2]];
@@ -105,14 +105,15 @@ export class PointsFirst extends FirstScreen {
     const found = body.places(body.state(shown.estimate));
     const world = (list) => list.map((place) => body.toWorld(place));
     const hidden = places.map((_, k) => Number.isNaN(shown.outputs[2 * (at.sample * shown.points + k)]));
-    const prelude = secret && !this.begun_ && now <= this.start && !this.open && !this.moved && !this.playing;
-    if (!prelude) this.begun_ = true;
+    const untouched = !this.questions.open && !this.moved && !this.clock.playing;
+    const prelude = secret && !this.left && now <= this.clock.start && untouched;
+    if (!prelude) this.left = true;
     const reach = (k) => body.movable(k).reduce((sum, [x, z]) => sum + x * x + z * z, 0);
     const held = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one))[0];
     let copy = /** @type {number[][] | null} */ (null);
     if (prelude) {
       // Nothing moves before somebody looks.
-      if (!this.begun) this.looked = performance.now();
+      if (!this.clock.begun) this.looked = performance.now();
       this.looked ||= performance.now();
       const size = Math.exp(SWING * Math.sin((2 * Math.PI * (performance.now() - this.looked)) / SWINGS));
       copy = places.map((place) => place.map((value) => size * value));
@@ -131,7 +132,8 @@ export class PointsFirst extends FirstScreen {
   }
 
   seen = /** @type {any} */ (null);
-  begun_ = false;
+  /** True once the copy of the first look was left behind. */
+  left = false;
 
   drawImage(scene, motion, note) {
     const { image: view } = this;
@@ -187,7 +189,7 @@ export class PointsFirst extends FirstScreen {
       const there = place && place[2] > NEAREST;
       mark.stand(there ? [place[0] / place[2], place[1] / place[2]] : null, frame, this.lab.late);
     });
-    return moving || (seen.prelude && this.begun);
+    return moving || (seen.prelude && this.clock.begun);
   }
 
   /** How the first mark moves in the image, and how it would if all were half or twice as far and as large. */

@@ -32,7 +32,7 @@ function lost({ runs: [run] }) {
   return found.length ? [found[0][0], lastOf(found)[1]] : [];
 }
 
-/** @type {import("../../common/first/screen.js").Question[]} */
+/** @type {import("../../common/first/questions.js").Question[]} */
 export const QUESTIONS = [
   {
     name: "speedometer",

@@ -220,7 +220,7 @@ export class StructureFirst extends FirstScreen {
     const { late, settings } = this.lab;
     const grip = (place) => [place[0], place[2]];
     this.other.stand(seen.free ? grip(worlds.places(this.others[1], now).object) : null, frame, late);
-    const fixed = worlds.turns || isTyped(settings) || isSampled(settings) || this.asking;
+    const fixed = worlds.turns || isTyped(settings) || isSampled(settings) || this.questions.asking;
     const long = now - worlds.start > SHORT * (end - worlds.start);
     this.camera.stand(long && !fixed ? grip(worlds.places(TRUE, now).camera) : null, frame, late);
     return moving;

@@ -44,7 +44,7 @@ export function drawMap(view, first, scene, note) {
   const x = (value) => width / 2 + (value - cx) * scale;
   const y = (value) => height / 2 - 6 - (value - cz) * scale;
   const on = (place) => [x(place[0]), y(place[2])];
-  if (first.moved && !first.open) view.avoid(width - 56, 22, 56, 22);
+  if (first.moved && !first.questions.open) view.avoid(width - 56, 22, 56, 22);
   drawGround(view, { x, y, cx, cz, scale }, theme);
   if (seen.free) {
     const which = (value) => on(worlds.places({ ...less, [stories ? "share" : "size"]: value }, now).object);
