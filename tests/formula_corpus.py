@@ -10,7 +10,7 @@ import sympy as sp
 from examples import MOTIONS
 
 from percept_obs import PerspectiveSystem, instantaneous, observers, pinhole
-from percept_obs.checking.target import target_of
+from percept_obs.checking import target_of
 from percept_obs.papers import CHWA2019, INABA2005, MA2005
 from percept_obs.points.scenarios import moving_body
 from percept_obs.structure import COROLLARIES
@@ -58,8 +58,8 @@ def target(name):
 
     Rates of an image: "pinhole", "rigid sphere", "own surface 2"; then the outputs that are measured, "y1" or "y1+y2",
     and a part: "w", "phi", "g", "jacobian", "derivation", "condition".  Flow of an observer, of the pinhole with both
-    outputs if not said: "ibo", "ekf y1".  Further "points B", "chwa case 1", "chwa case 1 form", "ledger ma2005 (15)", and
-    "formula f = a + b" for one of one's own.
+    outputs if not said: "ibo", "ekf y1".  Further "points B", "chwa case 1", "chwa case 1 form", "ledger ma2005 (15)";
+    "formula f = a + b" is one of one's own.
     """
     kind, _, rest = name.partition(" ")
     if kind == "formula":

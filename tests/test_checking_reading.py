@@ -51,7 +51,7 @@ y1, y2, y3, yhat1, a13, a31, v_c1, w1, lam, theta, ybar3, d, a3, y = LETTERS.val
     ],
 )
 def test_formulas_are_read_as_they_are_meant(text, formula):
-    (reading,) = read(text, LETTERS)
+    (reading,) = read(text, LETTERS).lines
     assert reading.formula == formula
 
 
@@ -63,9 +63,9 @@ def test_a_line_has_a_name_and_a_system_several():
         r"\dot{y}_{1} = y_2 \\ \dot{y_2} = -y_1",
         "y1′ = y2, y2′ = −y1",
     ):
-        assert [(r.name, r.formula) for r in read(text, LETTERS, labels)] == [("y1dot", y2), ("y2dot", -y1)]
-    assert [r.formula for r in read("q = y1 + 1\ny2' = q^2", LETTERS, labels)] == [(y1 + 1) ** 2]
-    assert [r.formula for r in read("y1' = y2 = y3", LETTERS, labels)] == [y2, y3]
+        assert [(r.name, r.formula) for r in read(text, LETTERS, labels).lines] == [("y1dot", y2), ("y2dot", -y1)]
+    assert [r.formula for r in read("q = y1 + 1\ny2' = q^2", LETTERS, labels).lines] == [(y1 + 1) ** 2]
+    assert [r.formula for r in read("y1' = y2 = y3", LETTERS, labels).lines] == [y2, y3]
 
 
 def test_what_sympy_prints_is_read():
@@ -77,7 +77,9 @@ def test_what_sympy_prints_is_read():
         sp.Matrix([[y1, 0], [y2 / y3, 1]]),
     ):
         assert (
-            read(sp.latex(formula), LETTERS)[0].formula == sp.ImmutableMatrix(formula) if formula.is_Matrix else formula
+            read(sp.latex(formula), LETTERS).lines[0].formula == sp.ImmutableMatrix(formula)
+            if formula.is_Matrix
+            else formula
         )
 
 
@@ -292,7 +294,7 @@ def test_whatever_is_typed_is_read_or_refused():
     for _ in range(3000):
         text = " ".join(draw.choices([*words.split(), ""], k=draw.randint(1, 12)))
         try:
-            outcomes["read"] += bool(read(text, LETTERS, ["y1dot"]))
+            outcomes["read"] += bool(read(text, LETTERS, ["y1dot"]).lines)
         except CannotRead:
             outcomes["refused"] += 1
     assert outcomes["read"] > 30

@@ -83,18 +83,33 @@ class Reading:
     formula: sp.Basic
 
 
-def read(
-    text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), functions: Functions | None = None
-) -> list[Reading]:
+@dataclass(frozen=True)
+class Definition:
+    """Letter that a text gives a meaning, with its formulas, several in a chain q = a b = c, and if a line uses it."""
+
+    name: str
+    formulas: tuple[sp.Basic, ...]
+    used: bool
+
+
+@dataclass(frozen=True)
+class Text:
+    """All that was read: lines with the definitions put in, and these by themselves."""
+
+    lines: tuple[Reading, ...]
+    definitions: tuple[Definition, ...] = ()
+
+
+def read(text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), functions: Functions | None = None) -> Text:
     """Read the lines of a text, typed as "y1' = a13 + (a11 - a33) y1 + ..." or LaTeX as sympy prints it.
 
-    A line that defines a new letter, "q = a31 y1 + a32 y2 + a33", is not returned; the letter has this meaning from
-    there on.  Letters are named without underscores, matrices among them (the inverse of one is ``P^-1``); labels may
-    stand on the left besides them, and functions besides the usual ones are of numbers or matrices: ``norm(e1)``.
+    A line that gives a new letter a meaning, "q = a31 y1 + a32 y2 + a33", is a definition; the letter has this meaning
+    from there on.  Letters are named without underscores, matrices among them (the inverse of one is ``P^-1``); labels
+    may stand on the left besides them, and functions besides the usual ones are of numbers or matrices: ``norm(e1)``.
 
     >>> x, y = sp.symbols("x y1")
-    >>> read("y1' = 2x(x - 3/4)^2", {"x": x, "y1": y}, ["y1dot"])
-    [Reading(name='y1dot', formula=2*x*(x - 3/4)**2)]
+    >>> read("y1' = 2x(x - 3/4)^2", {"x": x, "y1": y}, ["y1dot"]).lines
+    (Reading(name='y1dot', formula=2*x*(x - 3/4)**2),)
     >>> read("x + z", {"x": x})
     Traceback (most recent call last):
         ...
@@ -102,7 +117,7 @@ def read(
         x + z
             ^
     """
-    return _Reader(text, letters, labels, functions or {}).lines()
+    return _Reader(text, letters, labels, functions or {}).read()
 
 
 def words_of(text: str, letters: Mapping[str, Any] | None = None, labels: Iterable[str] = ()) -> list[Token]:
@@ -127,6 +142,9 @@ class _Reader:
     def __init__(self, text: str, letters: Mapping[str, Any], labels: Iterable[str], functions: Functions) -> None:
         self.text, self.letters, self.labels, self.functions = text, dict(letters), set(labels), functions
         self.known = set(letters)
+        self.defined: dict[str, tuple[sp.Basic, ...]] = {}
+        self.uses: dict[str, set[str]] = {"": set()}  # by each definition, and by lines
+        self.place = ""
         pieces = [
             _REPLACED.get(c) or "".join(_REPLACED.get(d, d) for d in unicodedata.normalize("NFD", c)) for c in text
         ]
@@ -239,7 +257,7 @@ class _Reader:
             ways[end] = ways[end][:2]
         return ways[-1]
 
-    def lines(self) -> list[Reading]:
+    def read(self) -> Text:
         state = _parser().parse_interactive(start="lines")
         *words, end = self.words()
         try:
@@ -251,7 +269,10 @@ class _Reader:
         found = [reading for line in tree.children for reading in self.value(line)]
         if not tree.children:
             self.refuse('there is no formula; type one, such as "y1 + 2 y2"')
-        return found
+        used = self.uses[""]
+        for name in reversed(self.defined):
+            used |= self.uses[name] if name in used else set()
+        return Text(tuple(found), tuple(Definition(n, values, n in used) for n, values in self.defined.items()))
 
     def value(self, node: Any) -> Any:
         if isinstance(node, Tree):
@@ -260,6 +281,7 @@ class _Reader:
             return sp.Rational(str(node)) if node.type == "NUMBER" else sp.pi
         if node not in self.letters:
             self.refuse("only a matrix has a transpose, A^T", node)
+        self.uses[self.place].add(str(node))
         return self.letters[node]
 
     def scalar(self, node: Any) -> sp.Expr:
@@ -275,10 +297,15 @@ class _Reader:
         return value
 
     def named(self, tree: Tree, label: Token, *sides: Any) -> list[Reading]:
-        values = [self.value(side) for side in sides]
-        if all(part in self.labels or part in self.letters for part in label.split(",")):
+        known = all(part in self.labels or part in self.letters for part in label.split(","))
+        self.place = "" if known else str(label)
+        self.uses.setdefault(self.place, set())
+        values = tuple(self.value(side) for side in sides)
+        self.place = ""
+        if known:
             return [Reading(str(label), value) for value in values]
         self.letters[str(label)] = values[-1]
+        self.defined[str(label)] = values
         return []
 
     def unnamed(self, tree: Tree, side: Any) -> list[Reading]:

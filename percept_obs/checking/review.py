@@ -199,6 +199,6 @@ def check(mine: Any, target: Any) -> Review:
         look at -b3 y3
     """
     goal = target_of(target)
-    readings = goal.read(mine)
+    readings = goal.read(mine).lines
     goal = goal.asked(readings)
     return Review(goal, judged(readings, goal))

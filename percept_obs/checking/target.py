@@ -15,7 +15,7 @@ from sympy.core.relational import Relational
 from percept_obs.checking.deciding import entries_of, explicit, on_sides, sizes_of, written_out
 from percept_obs.checking.lines import Line, primed, relation_lines, typed
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import Reading, read, words_of
+from percept_obs.checking.reading import Reading, Text, read, words_of
 from percept_obs.compile import intermediates
 from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
@@ -73,7 +73,7 @@ class Target:
     >>> from percept_obs import PerspectiveSystem, affine, pinhole
     >>> from percept_obs.checking import target_of
     >>> target = target_of(PerspectiveSystem(affine(), pinhole()))
-    >>> target.read("y3' = -b3 y3^2")[0].formula
+    >>> target.read("y3' = -b3 y3^2").lines[0].formula
     -b3*y3**2
     """
 
@@ -129,32 +129,45 @@ class Target:
         typed_ = set().union(*(r.formula.free_symbols for r in readings)) if gains else set()
         return replace(self, lines=self.idle, idle=()) if gains & typed_ else self
 
-    def read(self, mine: Any) -> list[Reading]:
-        """Return readings of text, sympy, or a list or a mapping of either."""
+    def read(self, mine: Any) -> Text:
+        """Return what is read of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            own, found = self._defined(read(mine, *self._known))
-            return [replace(r, formula=written_out(on_sides(own, r.formula), self.matrices)) for r in found]
+            found = read(mine, *self._known)
+            own, lines = self._defined(found.lines)
+            return replace(
+                found,
+                lines=tuple(replace(r, formula=written_out(on_sides(own, r.formula), self.matrices)) for r in lines),
+            )
         if isinstance(mine, Mapping):
-            return [
+            parts = {name: self.read(part) for name, part in mine.items()}
+            named = [
                 replace(r, name=r.name or (f"step{name}" if isinstance(name, int) else typed(str(name))))
-                for name, part in mine.items()
-                for r in self.read(part)
+                for name, part in parts.items()
+                for r in part.lines
             ]
+            return Text(tuple(named), tuple(d for part in parts.values() for d in part.definitions))
         if isinstance(mine, Sequence) and all(isinstance(part, str) for part in mine):
             return self.read("\n".join(mine))
         if isinstance(mine, Sequence):
-            return [reading for part in mine for reading in self.read(part)]
+            texts = [self.read(part) for part in mine]
+            return Text(
+                tuple(r for part in texts for r in part.lines), tuple(d for part in texts for d in part.definitions)
+            )
+        return Text(self._of_sympy(mine))
+
+    def _of_sympy(self, mine: Any) -> tuple[Reading, ...]:
+        """Return the lines of an expression, a matrix or a relation."""
         if not isinstance(mine, sp.Basic | sp.MatrixBase | int | float):
             raise ValueError(f"a {type(mine).__name__} is no formula; give text, sympy, or a list or mapping of them")
         formula = sp.sympify(mine, strict=True)
         if formula.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             raise ValueError(f"the formula {formula} has no finite value; look for a division by zero")
         if isinstance(formula, sp.Eq) and (formula.lhs.is_Symbol or isinstance(formula.lhs, sp.MatrixSymbol)):
-            return [Reading(key(formula.lhs.name), self.own(formula.rhs))]
+            return (Reading(key(formula.lhs.name), self.own(formula.rhs)),)
         whole = self.own(formula)
         if isinstance(whole, Relational) and isinstance(whole.lhs, sp.MatrixBase):
-            return [Reading("", whole.func(*sides, evaluate=False)) for sides in zip(*whole.args, strict=True)]
-        return [Reading("", whole)]
+            return tuple(Reading("", whole.func(*sides, evaluate=False)) for sides in zip(*whole.args, strict=True))
+        return (Reading("", whole),)
 
     def words(self, text: str) -> list[Token]:
         """Return the tokens of a text, with the letters of this target told apart."""
@@ -169,7 +182,7 @@ class Target:
         related = {key(s.name): s for s in self.relations}
         return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
 
-    def _defined(self, found: list[Reading]) -> tuple[Callable[[Any], Any], list[Reading]]:
+    def _defined(self, found: Sequence[Reading]) -> tuple[Callable[[Any], Any], Sequence[Reading]]:
         """Return how somebody's own lines for letters that are known by definition are put in, and the other lines."""
         related = {key(s.name): s for s in self.relations if key(s.name) not in {*self.rows, *self.blocks}}
         own = {related[r.name]: r.formula for r in found if r.name in related}

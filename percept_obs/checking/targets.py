@@ -54,7 +54,7 @@ def target_of(thing: Any) -> Target:
         # sympy reads an accent before the index
         spelled = {name: re.sub(r"(\d+)((?:hat|bar|tilde|dot)+)$", r"\2\1", name) for name in names}
         named = {name: sp.Symbol(spelling, real=True) for name, spelling in spelled.items()}
-        return _joined(Target(tuple(lines_of(r.name, r.formula))) for r in read(thing, named))
+        return _joined(Target(tuple(lines_of(r.name, r.formula))) for r in read(thing, named).lines)
     if isinstance(thing, Mapping):
         return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
     if isinstance(thing, Sequence) and not isinstance(thing, Derivation):

@@ -54,7 +54,7 @@ def reader(*letters: Any, **terms: Any) -> Callable[[str], Printed]:
         letters = (words | given).values()
         known = {key(each.name): each for letter in letters for each in (dot(letter), letter)} | known
         parts = " ".join(text.split()).split(";")
-        lines = (line for part in parts for line in read(part, known, list(known), functions))
+        lines = (line for part in parts for line in read(part, known, list(known), functions).lines)
         return tuple(equal(known[line.name], line.formula) if line.name else line.formula for line in lines)
 
     return read_all

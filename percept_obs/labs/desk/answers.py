@@ -54,7 +54,7 @@ def entry_of(sheet: Sheet, row: int, text: str) -> Entry:
     except CannotRead as error:
         return Entry("", None, _first_line(error), error.position)
     try:
-        readings = goal.read(text)
+        readings = goal.read(text).lines
     except CannotRead as error:
         return Entry(shown, None, _first_line(error), error.position)
     names = {reading.name for reading in readings}

@@ -50,7 +50,7 @@ def read_weight(text: str) -> Diagonal:
     >>> read_weight("q = exp(-t); P = [1, 1, 1 + q]")
     (1, 1, 1 + exp(-t))
     """
-    readings = read(text, {"t": TIME, "P": SIZE})
+    readings = read(text, {"t": TIME, "P": SIZE}).lines
     if [reading.name for reading in readings] != ["P"]:
         names = ", ".join(reading.name or "an expression" for reading in readings) or "no value"
         raise ValueError(f"P gives {names}; it must be one expression, such as P = 1 + exp(-t)")

@@ -94,7 +94,7 @@ def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Type
     named = {key(letter): block for letter, block in blocks} | {key(s.name): sp.ImmutableMatrix([s]) for s in symbols}
     letters = {key(symbol.name): symbol for symbol in (TIME, *symbols)}
     found: dict[sp.Symbol, sp.Expr] = {}
-    for reading in read(text, letters, list(named)):
+    for reading in read(text, letters, list(named)).lines:
         block = named.get(reading.name)
         if block is None:
             raise ValueError(
