@@ -22,8 +22,13 @@ SHOWN = """() => {
         node.checkVisibility({ visibilityProperty: true })).map((node) => node.dataset.control),
     words: [document.querySelector(".percept-lab").innerText,
         ...[...window.perceptObsLabs][0].figures.flatMap(({ texts }) => texts.map(({ text }) => text))].join(" "),
-    across: document.documentElement.scrollWidth };
+    across: document.documentElement.scrollWidth,
+    share: [...document.querySelectorAll("figure.view, .as-typed")].filter((node) => node.checkVisibility())
+        .reduce((sum, node) => sum + node.offsetWidth * node.offsetHeight, 0)
+        / (({ offsetWidth, offsetHeight }) => offsetWidth * offsetHeight)(document.querySelector(".first-screen")) };
 }"""
+"""The share is that of both pictures and of one's line as mathematics, which the arrows are about."""
+
 OVERLAPS = """() => [...window.perceptObsLabs][0].figures.flatMap(({ texts, width, height }) =>
     texts.flatMap((one, k) => [
     ...texts.slice(k + 1).filter(({ box }) => one.box[0] < box[2] && one.box[2] > box[0] && one.box[1] < box[3]
@@ -52,6 +57,7 @@ def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, width,
         assert len(letters) <= 60, " ".join(letters)
         assert len(shown["controls"]) <= 12, shown["controls"]
         assert shown["across"] <= width
+        assert shown["share"] >= 0.7
         assert page.evaluate(OVERLAPS) == []
         for picture, least in [(".view.motion", 240), (".view.misses", 100)]:
             assert page.locator(picture).bounding_box()["height"] >= least
@@ -83,7 +89,7 @@ def test_a_line_is_typed_by_itself_and_judged_while_it_grows(browser):
         rested(page)
         assert page.locator(LINE).input_value() == TYPED
         assert "misses the true one" in text_of(page, ".says")
-        assert text_of(page, ".pill") == "Type here and mend it"
+        assert text_of(page, ".pill") == "Type here"
 
 
 def test_who_mends_the_slip_sees_both_arrows_fall_together(page):

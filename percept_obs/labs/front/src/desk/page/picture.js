@@ -7,7 +7,7 @@ import { Handle } from "../../common/page/handle.js";
 import { arrowMark, foeMark } from "../../common/page/marks.js";
 
 /** Half the side of what is seen, in units of the image; greatest length there of an arrow at the point. */
-const [HALF, LENGTH] = [1.12, 0.8];
+const [HALF, LENGTH] = [1.12, 1.1];
 /** Part of the distance between two places that a long arrow of the field takes, and how pale it is. */
 const [FULL, PALE] = [0.9, 0.45];
 /** Part of the true motion below which a difference cannot be seen. */
@@ -40,7 +40,7 @@ export class MotionPicture extends View {
     const frame = {
       ...{ scale, box: { left: 0, top: 0, width, height } },
       x: (y1) => width / 2 + y1 * scale,
-      y: (y2) => height / 2 - y2 * scale,
+      y: (y2) => Math.min(height, width) / 2 - y2 * scale, // what is left of a high place is below
     };
     const [blue] = theme.lines;
     this.axes(frame);

@@ -9,7 +9,7 @@ const SAID = {
 };
 /** Marks of lines after which the next one is asked for. */
 const PASSED = ["right", "carried", "unknown"];
-const INVITED = "Type here and mend it";
+const INVITED = "Type here";
 const UNFINISHED = "not complete yet";
 
 let count = 0;
