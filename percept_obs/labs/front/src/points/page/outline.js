@@ -1,5 +1,13 @@
 // A body as it is drawn: a dart whose nose and wing tips are its three marks, or a polygon through all marks.
 
+/** Names of the copies at other distances; the dashes of a copy. */
+export const HERE = ["near, small", "here", "far, large"];
+export const DASH = [5, 5];
+/** Metres off below which the estimate has no handle, and its arrows no name. */
+export const CLOSE = 0.4;
+/** Depth before the camera, in metres, below which nothing is drawn. */
+export const NEAREST = 0.2;
+
 /** How far the notch between the wings of a dart is from the nose, as a share of the way to each wing. */
 const NOTCH = 0.4;
 
@@ -40,4 +48,9 @@ export function drawMark(view, [x, y], number, hidden, theme) {
   pen.textBaseline = "middle";
   pen.fillStyle = hidden ? theme.warning : theme.paper;
   pen.fillText(String(number), x, y + 0.5);
+}
+
+/** Middle of some places. */
+export function middleOf(places) {
+  return places[0].map((_, i) => places.reduce((sum, place) => sum + place[i], 0) / places.length);
 }
