@@ -250,7 +250,7 @@ def drawn(draw, slips, among):
             return case, row, made
 
 
-def _is_found(term, marked):
+def is_found(term, marked):
     """Return True if a term is marked, or inside of one that is where few are."""
     inside = len(marked) <= 2 and any(term in sp.preorder_traversal(m) for m in marked)
     wanted = sp.expand(term)
@@ -294,7 +294,7 @@ def reviewed(seed, slips, among):
         there = {m.term for m in made[:-1] if m.term == 0 or m.term in sp.preorder_traversal(made[-1].formula)} | {
             made[-1].term
         }
-        terms = [lost if m.slip.kind == "dropped" else _is_found(m.term, marked) for m in made if m.term in there]
+        terms = [lost if m.slip.kind == "dropped" else is_found(m.term, marked) for m in made if m.term in there]
         term = all(terms)
         slip = len(kinds) == 1 and kinds[0] in AS_FOUND.get(made[0].slip.kind, (made[0].slip.kind,))
         about += f": {[(m.slip.kind, m.slip.before, m.slip.after) for m in made]}, found {kinds} in {marked}"

@@ -20,11 +20,27 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 FOLDER = Path(__file__).parent / "data" / "formulas"
 PAPERS = {"ma2005": MA2005, "inaba2005": INABA2005, "chwa2019": CHWA2019}
 SURFACES = {make.__name__: make for make in surfaces.SURFACES}
-y1, y2 = sp.symbols("y1 y2", real=True)
+y1, y2, k = sp.symbols("y1 y2 k", real=True)
+R, square = sp.sqrt(X**2 + Y**2 + Z**2), y1**2 + y2**2
 OWN = {
     "1": ImagingSurface("facing X", (Y / X, Z / X), X, (1, y1, y2)),
     "2": ImagingSurface("tilted", (X / (Y + Z), Y / (Y + Z)), Y + Z, (y1, y2, 1 - y2)),
     "3": ImagingSurface("stretched", (2 * X / Z, Y / Z), Z, (y1 / 2, y2, 1)),
+    "4": ImagingSurface("turned", (X / (Z + k * X), Y / (Z + k * X)), Z + k * X, (y1, y2, 1 - k * y1)),
+    "5": ImagingSurface("bent", (X / Z + k * (Y / Z) ** 2, Y / Z), Z, (y1 - k * y2**2, y2, 1)),
+    "6": ImagingSurface(
+        "stereographic",
+        (X / (R + Z), Y / (R + Z)),
+        R,
+        (2 * y1 / (1 + square), 2 * y2 / (1 + square), (1 - square) / (1 + square)),
+    ),
+    "7": ImagingSurface("hemisphere", (X / R, Y / R), R, (y1, y2, sp.sqrt(1 - square))),
+    "8": ImagingSurface(
+        "cylinder", (sp.atan(X / Z), Y / sp.sqrt(X**2 + Z**2)), sp.sqrt(X**2 + Z**2), (sp.sin(y1), y2, sp.cos(y1))
+    ),
+    "9": ImagingSurface(
+        "roll", (X / sp.sqrt(Y**2 + Z**2), Y / sp.sqrt(Y**2 + Z**2)), sp.sqrt(Y**2 + Z**2), (y1, y2, sp.sqrt(1 - y2**2))
+    ),
 }
 
 

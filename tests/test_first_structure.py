@@ -145,6 +145,8 @@ def test_nothing_is_found_while_the_known_speed_passes_zero(page):
 
 def test_the_future_of_an_estimate_is_not_given_away(page):
     page.click(control("first ahead"))
-    page.wait_for_function("() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.first.clock.playing; }")
+    page.wait_for_function(
+        "() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.first.clock.playing; }"
+    )
     texts = page.evaluate("() => [...window.perceptObsLabs][0].first.chart.texts.map(({ text }) => text)")
     assert not any(text.startswith("found") for text in texts)
