@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
@@ -28,11 +28,13 @@ def of_form(form: PartitionedSystem) -> Relations:
     found = _seen(form.view) if isinstance(form.view, ImagingSurface) else {}
     if not isinstance(form, CanonicalForm):
         return found
-    parts = {"w": form.w, "phi": form.phi, "g": form.g}
-    return found | _free(
-        ((letter, entry) for name, part in parts.items() for letter, entry in _entries(name, part)),
-        (*form.coordinates, *form.parameters),
-    )
+    entries = parts(form)
+    return found | _free(zip(_numbered(entries), entries.values(), strict=True), (*form.coordinates, *form.parameters))
+
+
+def parts(form: CanonicalForm) -> dict[str, sp.Expr]:
+    """Return the entries of w, phi and g by name."""
+    return dict(each for name in ("w", "phi", "g") for each in _entries(name, getattr(form, name)))
 
 
 def of_observer(observer: Observer) -> Relations:
@@ -41,7 +43,7 @@ def of_observer(observer: Observer) -> Relations:
     truth = dict(zip(form.x2, hats(form.x2), strict=True))
     found = dict(of_form(form))
     if isinstance(form, CanonicalForm):
-        found |= {sp.Symbol(f"{s.name}hat", real=True): e.xreplace(truth) for s, e in _entries("g", form.g)}
+        found |= {sp.Symbol(f"{name}hat", real=True): e.xreplace(truth) for name, e in _entries("g", form.g)}
     error = ((e, y - yhat) for e, y, yhat in zip(observer.error, form.coordinates, observer.estimate, strict=True))
     eq = observer.equations
     return _free((*found.items(), *error), (*eq.state, *eq.measured, *eq.parameters, *eq.gains))
@@ -51,16 +53,16 @@ def _seen(surface: ImagingSurface) -> dict[sp.Symbol, sp.Expr]:
     return {s: entry / surface.inverse_distance for s, entry in zip(POINT, surface.ray, strict=True)}
 
 
-def _entries(name: str, part: sp.ImmutableMatrix) -> Iterable[tuple[sp.Symbol, sp.Expr]]:
-    """Yield letters of a matrix's entries, w1, w2 or w11, w12, and the entries."""
+def _entries(name: str, part: sp.ImmutableMatrix) -> Iterable[tuple[str, sp.Expr]]:
+    """Yield names of a matrix's entries, w1, w2 or w11, w12, and the entries."""
     rows, columns = part.shape
     for i in range(rows):
         for j in range(columns):
             index = f"{i + 1}{j + 1}" if min(rows, columns) > 1 else f"{max(i, j) + 1}" if len(part) > 1 else ""
-            yield sp.Symbol(f"{name}{index}", real=True), part[i, j]
+            yield f"{name}{index}", part[i, j]
 
 
-def _numbered(names: Sequence[str]) -> list[sp.Symbol]:
+def _numbered(names: Iterable[str]) -> list[sp.Symbol]:
     return [sp.Symbol(name, real=True) for name in names]
 
 

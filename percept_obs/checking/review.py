@@ -98,7 +98,7 @@ class Review:
         else:  # it says what was looked at: whoever is asked for one line has not left out the others
             which = f": {', '.join(names)}" if all(names) else f", {len(rows)} of {len(self.target.lines)} lines"
         notes = sorted({line.note for line in self.lines if line.note})
-        return "; ".join([f"Right{which}", *notes]) + "."
+        return "; ".join([f"Right{which}", *notes, *filter(None, [self.target.note])]) + "."
 
     def __str__(self) -> str:
         out = [self.summary]
@@ -199,6 +199,8 @@ def check(mine: Any, target: Any) -> Review:
         look at -b3 y3
     """
     goal = target_of(target)
-    readings = goal.read(mine).lines
-    goal = goal.asked(readings)
-    return Review(goal, judged(readings, goal))
+    meant = goal.asked(goal.read(mine))
+    lines = judged(meant.read(mine).lines, meant)
+    if not lines:
+        raise ValueError("there are definitions only; add the line that is asked for")
+    return Review(meant, lines)

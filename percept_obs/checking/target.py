@@ -15,7 +15,7 @@ from sympy.core.relational import Relational
 from percept_obs.checking.deciding import entries_of, explicit, on_sides, sizes_of, written_out
 from percept_obs.checking.lines import Line, primed, relation_lines, typed
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import Reading, Text, read, words_of
+from percept_obs.checking.reading import Definition, Functions, Reading, Text, read, words_of
 from percept_obs.compile import intermediates
 from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
@@ -62,6 +62,12 @@ class Target:
         Letters that are known by definition, such as X = y1 / y3 or e1 = y1 - yhat1: they can be read.
     idle : tuple of Line
         All lines with the terms whose gains are 0 by default, if there are such terms; see `asked`.
+    others : mapping of names to functions of a text
+        Targets of lines that may be typed instead, such as "e1dot", the error's rate of an observer.
+    functions : mapping of names to functions
+        Functions that may be typed besides the usual ones, such as "norm".
+    note : str
+        What is to be said of a right formula.
 
     See Also
     --------
@@ -85,6 +91,9 @@ class Target:
     matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix] = field(default_factory=dict)
     relations: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     idle: tuple[Line, ...] = ()
+    others: Mapping[str, Callable[[Text], Target]] = field(default_factory=dict)
+    functions: Functions = field(default_factory=dict)
+    note: str = ""
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
@@ -121,23 +130,21 @@ class Target:
         letters = set(self.letters.values())
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
-    def asked(self, readings: Iterable[Reading]) -> Target:
-        """Return the target with terms whose gains are 0 by default if the readings have such gains, else itself."""
-        gains = set().union(*(line.formula.free_symbols for line in self.idle)) - set().union(
-            *(line.formula.free_symbols for line in self.lines)
-        )
-        typed_ = set().union(*(r.formula.free_symbols for r in readings)) if gains else set()
-        return replace(self, lines=self.idle, idle=()) if gains & typed_ else self
+    def asked(self, text: Text) -> Target:
+        """Return the target that a text means: of its names, or with a gain that is 0 by default; else itself."""
+        names = [line.name for line in text.lines if line.name in self.others]
+        if names and not any(line.name in self.rows for line in text.lines):
+            return self.others[names[-1]](text)
+        letters, full = ({s for line in lines for s in line.formula.free_symbols} for lines in (self.lines, self.idle))
+        typed_ = {s for line in text.lines for s in line.formula.free_symbols}
+        return replace(self, lines=self.idle, idle=()) if (full - letters) & typed_ else self
 
     def read(self, mine: Any) -> Text:
         """Return what is read of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            found = read(mine, *self._known)
-            own, lines = self._defined(found.lines)
-            return replace(
-                found,
-                lines=tuple(replace(r, formula=written_out(on_sides(own, r.formula), self.matrices)) for r in lines),
-            )
+            found = self._defined(read(mine, *self._known, self.functions))
+            lines = (replace(r, formula=written_out(r.formula, self.matrices)) for r in found.lines)
+            return replace(found, lines=tuple(lines))
         if isinstance(mine, Mapping):
             parts = {name: self.read(part) for name, part in mine.items()}
             named = [
@@ -180,13 +187,20 @@ class Target:
         matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
         related = {key(s.name): s for s in self.relations}
-        return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *_LABELS]
+        return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *self.others, *_LABELS]
 
-    def _defined(self, found: Sequence[Reading]) -> tuple[Callable[[Any], Any], Sequence[Reading]]:
-        """Return how somebody's own lines for letters that are known by definition are put in, and the other lines."""
-        related = {key(s.name): s for s in self.relations if key(s.name) not in {*self.rows, *self.blocks}}
-        own = {related[r.name]: r.formula for r in found if r.name in related}
-        return lambda formula: formula.xreplace(own), [r for r in found if r.name not in related] or found
+    def _defined(self, found: Text) -> Text:
+        """Take somebody's lines for letters that are known by definition as definitions, and put them in."""
+        mine = {*self.rows, *self.blocks}
+        related = {key(s.name): s for s in self.relations if key(s.name) not in mine}
+        own = {related[r.name]: r.formula for r in found.lines if r.name in related}
+        lines = [r for r in found.lines if r.name not in related]
+        if not own or not lines:
+            return found
+        used = set().union(*(r.formula.free_symbols for r in lines))
+        more = (Definition(key(s.name), (formula,), s in used) for s, formula in own.items())
+        put = (replace(r, formula=on_sides(lambda side: side.xreplace(own), r.formula)) for r in lines)
+        return Text(tuple(put), (*found.definitions, *more))
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """Return a formula of sympy in the target's own letters, matched by name."""

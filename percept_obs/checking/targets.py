@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import singledispatch
 from typing import Any
@@ -13,14 +13,16 @@ import sympy as sp
 from percept_obs.checking import relations
 from percept_obs.checking.deciding import explicit
 from percept_obs.checking.lines import ZEROS, Line, lines_of
-from percept_obs.checking.reading import read, words_of
+from percept_obs.checking.reading import Text, read, words_of
 from percept_obs.checking.target import Target
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
+from percept_obs.observers.parts import hats
 from percept_obs.structure import QUANTITIES, StructureAndMotion
 from percept_obs.system.derivation import Derivation, Step
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
@@ -92,27 +94,100 @@ def _(thing: Target) -> Target:
 @target_of.register
 def _(thing: PerspectiveSystem) -> Target:
     pool = frozenset((*thing.coordinates, *thing.parameters, *POINT))
-    return Target(
-        _rates(thing.coordinates, thing.rate), pool, derivation=thing.derivation, relations=relations.of_system(thing)
-    )
+    lines = _rates(thing.coordinates, thing.rate)
+    moves = dict.fromkeys((f"{s.name}dot" for s in POINT), lambda text: _moves(thing.motion))
+    slope = dict.fromkeys("FJ", lambda text: _jacobian(thing.jacobian(), pool))
+    return Target(lines, pool, thing.derivation, relations=relations.of_system(thing), others=moves | slope)
 
 
 @target_of.register
 def _(thing: PartitionedSystem) -> Target:
-    steps = thing.derivation if isinstance(thing, CanonicalForm) else None
-    return Target(
-        _rates((*thing.x1, *thing.x2), thing.rate), _letters(thing), steps, relations=relations.of_form(thing)
-    )
+    lines = _rates((*thing.x1, *thing.x2), thing.rate)
+    return Target(lines, _letters(thing), relations=relations.of_form(thing))
+
+
+@target_of.register
+def _(thing: CanonicalForm) -> Target:
+    lines, known = _rates((*thing.x1, *thing.x2), thing.rate), relations.of_form(thing)
+    parts = dict.fromkeys((*relations.parts(thing), *_PARTS, "wT"), lambda text: _parts(thing))
+    return Target(lines, _letters(thing), thing.derivation, relations=known, others=parts)
 
 
 @target_of.register
 def _(thing: Observer) -> Target:
-    full = target_of(thing.equations)
-    off = {explicit(gain): sp.S.Zero for gain, value in thing.gain_values.items() if value == 0}
+    pool = target_of(thing.equations).pool | _letters(thing.form)
+    others: dict[str, Callable[[Text], Target]] = {
+        **dict.fromkeys((f"{e.name}dot" for e in thing.error), lambda text: _errors(thing)),
+        **dict.fromkeys("FJ", lambda text: _slope(thing)),
+        "Vdot": lambda text: _energy(thing, text),
+    }
+    known = relations.of_observer(thing)
+    return _default(Target(target_of(thing.equations).lines, pool, relations=known, others=others), thing)
+
+
+def _default(target: Target, observer: Observer) -> Target:
+    """Leave out terms whose gains are 0 by default; they may be typed."""
+    off = {explicit(gain): sp.S.Zero for gain, value in observer.gain_values.items() if value == 0}
     off |= {base: sp.S.Zero for power in off for base in power.free_symbols}
-    lines = tuple(replace(line, formula=line.formula.xreplace(off)) for line in full.lines)
-    pool = full.pool | _letters(thing.form)
-    return Target(lines, pool, relations=relations.of_observer(thing), idle=full.lines if lines != full.lines else ())
+    lines = tuple(replace(line, formula=line.formula.xreplace(off)) for line in target.lines)
+    return target if lines == target.lines else replace(target, lines=lines, idle=target.lines)
+
+
+def _moves(motion: Motion) -> Target:
+    """Return the target of a point's velocity."""
+    velocity = motion.A * sp.ImmutableMatrix(POINT) + motion.b
+    return Target(_rates(POINT, velocity), frozenset((*POINT, *motion.parameters)))
+
+
+def _parts(form: CanonicalForm) -> Target:
+    """Return the target of w, phi and g, whole or entry by entry."""
+    entries = relations.parts(form)
+    names = list(entries)
+    blocks = {part: tuple(k for k, name in enumerate(names) if name.rstrip("0123456789") == part) for part in _PARTS}
+    lines = tuple(Line(name, entry) for name, entry in entries.items())
+    return Target(lines, _letters(form), blocks=blocks | {"wT": blocks["w"]})
+
+
+_PARTS = ("w", "phi", "g")
+
+
+def _errors(observer: Observer) -> Target:
+    """Return the target of an observer's error dynamics, in terms of truth and error."""
+    form, eq = observer.form, observer.equations
+    lines = _rates(observer.error, observer.error_dynamics())
+    pool = frozenset((*observer.error, *form.coordinates, *form.parameters, *eq.parameters, *eq.gains))
+    truth = zip(hats(form.coordinates), form.coordinates, observer.error, strict=True)
+    known = {yhat: y - e for yhat, y, e in truth} | dict(relations.of_form(form))
+    pool = frozenset(explicit(s) for s in pool if "^" not in s.name)
+    others: dict[str, Callable[[Text], Target]] = {"Vdot": lambda text: _energy(observer, text)}
+    return _default(Target(lines, pool, relations=known, others=others), observer)
+
+
+def _slope(observer: Observer) -> Target:
+    """Return the target of the Jacobian of an observer's estimates, without that of its other states."""
+    eq, estimates = observer.equations, hats((*observer.form.x1, *observer.form.x2))
+    if not set(estimates) <= set(eq.state):
+        raise ValueError(f"the {observer.name} observer has other states than estimates; look at observer.jacobian()")
+    slope = sp.ImmutableMatrix([eq.flow[eq.state.index(s)] for s in estimates]).jacobian(estimates)
+    return _default(_jacobian(slope, target_of(eq).pool), observer)
+
+
+def _jacobian(slope: sp.MatrixBase, pool: frozenset[sp.Symbol]) -> Target:
+    lines = tuple(Line(f"F{i + 1}{j + 1}", explicit(slope[i, j])) for i in range(slope.rows) for j in range(slope.cols))
+    return Target(lines, pool, blocks=dict.fromkeys("FJ", tuple(range(len(lines)))))
+
+
+def _energy(observer: Observer, text: Text) -> Target:
+    """Return the target of V and its rate along the error dynamics, for the V that the text begins with."""
+    found = {d.name: d.formulas[-1] for d in text.definitions}
+    if "V" not in found:
+        raise ValueError("V' needs a V: begin with its line, such as V = (e1^2 + e2^2 + e3^2) / 2, and then V' = ...")
+    form, eq, errors = observer.form, observer.equations, _errors(observer)
+    V = found["V"].xreplace(dict(errors.relations))
+    rates = dict(zip((*form.x1, *form.x2), form.rate, strict=True)) | dict(zip(eq.state, eq.flow, strict=True))
+    rates |= dict(zip(observer.error, (line.formula for line in errors.lines), strict=True))
+    rate = sp.Add(*(V.diff(s) * explicit(rates[s]) for s in V.free_symbols & set(rates)))
+    return replace(errors, lines=(Line("V", V), Line("V'", rate)), idle=(), others={})
 
 
 @target_of.register
