@@ -304,16 +304,6 @@ def test_an_entry_of_a_ledger_is_a_target_whose_matrices_are_typed_by_their_lett
         check("dxi2 = -P wbar xi1", MA2005[38])
 
 
-test_what_is_not_true_or_has_no_formula_is_no_target = refuses(
-    lambda entry: check("y1 = 1", entry),
-    (MA2005[28], r"nothing can be compared with \(28\): it is false as stated"),
-    (MA2005["c3 > c4 alpha0"], "nothing can be compared with c3 > c4 alpha0: it depends"),
-    (MA2005["figure 3"], "it has no formula"),
-    (INABA2005["S(y)"], "matrices in several forms"),
-    (INABA2005[14], "integrals of them, are not compared"),
-)
-
-
 test_matrices_that_would_take_long_are_refused = refuses(
     lambda text: check(text, MA2005[38]),
     ("dxi1 = " + "A " * 4000 + "xi1", "more than 8 letters of matrices stand in a row"),

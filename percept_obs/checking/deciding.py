@@ -1,5 +1,6 @@
 """Decide in bounded time, without simplifying anything, whether two formulas are the same."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
@@ -42,7 +43,7 @@ def sizes_of(*matrices: sp.MatrixSymbol) -> dict[sp.Symbol, sp.Integer]:
 
 
 def _explicit(formula: sp.Basic, sizes: Mapping[sp.Symbol, sp.Integer]) -> sp.Basic:
-    powers = {s: _power(s) for s in formula.atoms(sp.Symbol) if "^" in s.name}
+    powers = {s: _power(s) for s in formula.atoms(sp.Symbol) if re.fullmatch(r"\w+\^\d+", s.name)}
     formula = formula.xreplace(powers) if powers else formula
     formula = formula.as_dummy() if formula.atoms(ExprWithLimits) else formula
     formula = formula.xreplace(sizes) if sizes else formula
@@ -148,6 +149,8 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
     """
     if proportional(one, other):
         return True
+    if other == 0:
+        return False  # which vanishes everywhere
     first, second = (_vanishing(e, set(nonzero)) for e in (one, other))
     if first is None or second is None:
         return None
@@ -205,15 +208,3 @@ def letters_in_a_row(value: sp.Basic) -> int:
         return 0
     parts = [letters_in_a_row(part) for part in value.args]
     return 1 if value.is_symbol else sum(parts) if isinstance(value, sp.MatMul) else max(parts, default=0)
-
-
-def written_out(formula: Any, matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix]) -> Any:
-    """Replace letters of matrices by matrices in a formula or a relation."""
-    if not matrices or not formula.atoms(sp.MatrixSymbol):
-        return formula
-
-    def replaced(side: Any) -> Any:
-        side = side.xreplace(matrices).doit(integrals=False)
-        return side.as_explicit() if isinstance(side, sp.MatrixExpr) else side
-
-    return on_sides(replaced, formula)

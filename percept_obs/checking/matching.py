@@ -76,7 +76,9 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
             if all(part in rows for part in names) and len(names) == len(formula):
                 block: Sequence[int] = [rows[part] for part in names]
             else:
-                block = target.blocks.get(name, range(start, min(start + len(formula), count)))
+                forms = [rows for key, rows in target.blocks.items() if key in (name, f"{name}, another form")]
+                forms = [rows for rows in forms if _all_right(formula, target, rows)] or forms
+                block = forms[0] if forms else range(start, min(start + len(formula), count))
                 start += len(formula) if name not in target.blocks else 0
             if len(block) != len(formula):
                 raise ValueError(f"a matrix with {len(formula)} entries does not fit: {_asked(target)} are asked for")
@@ -101,8 +103,14 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
     return assigned
 
 
+def _all_right(matrix: sp.MatrixBase, target: Target, rows: Sequence[int]) -> bool:
+    return len(matrix) == len(rows) and all(
+        _verdict(entry, target, row) == Verdict.RIGHT for entry, row in zip(matrix, rows, strict=True)
+    )
+
+
 def _asked(target: Target) -> str:
-    named = [line.name for line in target.lines if line.name]
+    named = dict.fromkeys(line.whole for line in target.lines if line.name)
     return ", ".join(named or [f"{len(target.lines)} lines in a row"])
 
 

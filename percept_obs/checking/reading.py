@@ -318,7 +318,7 @@ class _Reader:
         return [Reading("", self.compared(*parts))]
 
     def compared(self, left: Any, sign: Token, right: Any) -> sp.Basic:
-        sides = self.scalar(left), self.scalar(right)
+        sides = self.value(left), self.value(right)
         if any(side.has(sp.I) for side in sides):
             self.refuse("a root of a negative number cannot be compared", left)
         return next(relation for relation, signs in _RELATIONS.items() if sign in signs)(*sides, evaluate=False)

@@ -92,7 +92,7 @@ class Review:
         if self.right is None:
             return CANNOT_BE_TOLD
         rows = sorted({line.row for line in self.lines})
-        names = [self.target.lines[row].name for row in rows]
+        names = list(dict.fromkeys(self.target.lines[row].whole for row in rows))
         if len(rows) == len(self.target.lines):
             which = ""
         else:  # it says what was looked at: whoever is asked for one line has not left out the others

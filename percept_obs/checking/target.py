@@ -10,10 +10,10 @@ from typing import Any
 
 import sympy as sp
 from lark import Token
-from sympy.core.relational import Relational
 
-from percept_obs.checking.deciding import entries_of, explicit, on_sides, sizes_of, written_out
-from percept_obs.checking.lines import Line, primed, relation_lines, typed
+from percept_obs.checking.deciding import explicit, on_sides
+from percept_obs.checking.lines import Line, of_matrices, typed
+from percept_obs.checking.matrices import Matrices, in_entries
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Definition, Functions, Reading, Text, read, words_of
 from percept_obs.compile import intermediates
@@ -57,7 +57,7 @@ class Target:
     blocks : mapping of names to rows
         Lines that can be typed together: those of step 5 as "step5".
     matrices : mapping of letters to matrices
-        Entries of the letters of matrices that may be typed.
+        Entries of the letters of matrices that may be typed, and numbers of the letters that are sizes of them.
     relations : mapping of letters to expressions
         Letters that are known by definition, such as X = y1 / y3 or e1 = y1 - yhat1: they can be read.
     idle : tuple of Line
@@ -88,7 +88,7 @@ class Target:
     derivation: Callable[[], Derivation] | None = None
     nonzero: frozenset[sp.Symbol] = frozenset()
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-    matrices: Mapping[sp.MatrixExpr, sp.ImmutableMatrix] = field(default_factory=dict)
+    matrices: Matrices = field(default_factory=dict)
     relations: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     idle: tuple[Line, ...] = ()
     others: Mapping[str, Callable[[Text], Target]] = field(default_factory=dict)
@@ -142,9 +142,9 @@ class Target:
     def read(self, mine: Any) -> Text:
         """Return what is read of text, sympy, or a list or a mapping of either."""
         if isinstance(mine, str):
-            found = self._defined(read(mine, *self._known, self.functions))
-            lines = (replace(r, formula=written_out(r.formula, self.matrices)) for r in found.lines)
-            return replace(found, lines=tuple(lines))
+            found = self._defined(read(mine, *self.known, self.functions))
+            written = (replace(r, formula=in_entries(r.formula, self.matrices)) for r in found.lines)
+            return replace(found, lines=tuple(part for r in written for part in _entry_by_entry(r)))
         if isinstance(mine, Mapping):
             parts = {name: self.read(part) for name, part in mine.items()}
             named = [
@@ -171,20 +171,17 @@ class Target:
             raise ValueError(f"the formula {formula} has no finite value; look for a division by zero")
         if isinstance(formula, sp.Eq) and (formula.lhs.is_Symbol or isinstance(formula.lhs, sp.MatrixSymbol)):
             return (Reading(key(formula.lhs.name), self.own(formula.rhs)),)
-        whole = self.own(formula)
-        if isinstance(whole, Relational) and isinstance(whole.lhs, sp.MatrixBase):
-            return tuple(Reading("", whole.func(*sides, evaluate=False)) for sides in zip(*whole.args, strict=True))
-        return (Reading("", whole),)
+        return tuple(_entry_by_entry(Reading("", self.own(formula))))
 
     def words(self, text: str) -> list[Token]:
         """Return the tokens of a text, with the letters of this target told apart."""
-        return words_of(text, *self._known)
+        return words_of(text, *self.known)
 
     @property
-    def _known(self) -> tuple[dict[str, Any], list[str]]:
+    def known(self) -> tuple[dict[str, Any], list[str]]:
         """Letters that are read, and further names for the left of a line."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
-        matrices = {key(m.name): m for m in self.matrices if m.is_symbol}
+        matrices = {key(m.name): m for m in self.matrices if isinstance(m, sp.MatrixSymbol)}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
         related = {key(s.name): s for s in self.relations}
         return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *self.others, *_LABELS]
@@ -204,9 +201,19 @@ class Target:
 
     def own(self, formula: sp.Basic) -> sp.Basic:
         """Return a formula of sympy in the target's own letters, matched by name."""
-        formula = explicit(written_out(formula, self.matrices))
+        formula = explicit(in_entries(formula, self.matrices))
         own = {s: self.letters.get(key(s.name), s) for s in formula.free_symbols}
         return on_sides(lambda side: side.xreplace(own), formula)
+
+
+def _entry_by_entry(reading: Reading) -> Iterable[Reading]:
+    """Yield the equations of an equation of matrices; other readings as they are."""
+    formula = reading.formula
+    if isinstance(formula, sp.Eq | sp.Ne) and any(isinstance(side, sp.MatrixBase) for side in formula.args):
+        pairs = zip(*of_matrices(formula).args, strict=True)
+        yield from (Reading("", formula.func(*sides, evaluate=False)) for sides in pairs)
+    else:
+        yield reading
 
 
 _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
@@ -220,31 +227,3 @@ def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:
         names = ["".join((stem, *chosen)) for chosen in product("123", repeat=indices)]
         for other in [sp.Symbol(name, **symbol.assumptions0) for name in names]:
             yield from (other, *hats((other,)))
-
-
-def matrix_target(relations: Iterable[Relational]) -> Target:
-    """Return a target whose matrices can be typed by their letters, "xi' = G A xi", and are compared entry by entry.
-
-    The inverse of a letter has entries of its own, for written out it is too long.  Refused are a matrix in several
-    forms and integrals: entries do not tell whether those are the same.
-    """
-    relations = tuple(relations)
-    named = [r.lhs for r in relations if isinstance(r.lhs, sp.MatrixSymbol)]
-    integrals = sp.Tuple(*relations).atoms(sp.Integral)
-    if len(set(named)) < len(named) or any(isinstance(i.function, sp.MatrixExpr) for i in integrals):
-        raise ValueError("matrices in several forms, or integrals of them, are not compared; name one of the formulas")
-    symbols = sp.Tuple(*relations).atoms(sp.MatrixSymbol)
-    sizes = sizes_of(*symbols)
-    names = {m: m.name for m in symbols} | {m.inv(): f"{m.name}inv" for m in symbols if m.is_square}
-    matrices = {m: entries_of(m.xreplace(sizes), "{}_{}{}", 1, name) for m, name in names.items()}
-    lines: list[Line] = []
-    blocks = {}
-    for relation in relations:
-        left, right = relation.args
-        if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
-            rows = [Line(f"{primed(left.name)}, row {k}", e) for k, e in enumerate(written_out(right, matrices), 1)]
-            blocks[key(left.name)] = tuple(range(len(lines), len(lines) + len(rows)))
-            lines += rows
-        else:
-            lines += relation_lines(written_out(relation, matrices))
-    return Target(tuple(lines), blocks=blocks, matrices=matrices)

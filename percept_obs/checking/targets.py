@@ -6,20 +6,22 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import singledispatch
+from itertools import accumulate, pairwise
 from typing import Any
 
 import sympy as sp
 
 from percept_obs.checking import relations
 from percept_obs.checking.deciding import explicit
-from percept_obs.checking.lines import ZEROS, Line, lines_of
+from percept_obs.checking.lines import EQUATION, ZEROS, Line, lines_of
 from percept_obs.checking.reading import Text, read, words_of
 from percept_obs.checking.target import Target
 from percept_obs.compile.equations import Equations
 from percept_obs.observability.pointwise import InstantaneousObservability
 from percept_obs.observers import Observer
 from percept_obs.observers.parts import hats
-from percept_obs.structure import QUANTITIES, StructureAndMotion
+from percept_obs.points import LuenbergerObserver
+from percept_obs.structure import QUANTITIES, Corollary, StructureAndMotion
 from percept_obs.system.derivation import Derivation, Step
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import Motion
@@ -209,7 +211,35 @@ def _(thing: InstantaneousObservability) -> Target:
 def _(thing: StructureAndMotion) -> Target:
     scale = sp.Symbol(QUANTITIES[0], real=True)
     pool = _letters(thing.form) | {sp.Symbol(name, real=True) for name in QUANTITIES}
-    return Target((Line("", thing.determinant, ZEROS),), pool, nonzero=frozenset({scale}))
+    others = dict.fromkeys(("det", "Omega", "g", "Omegag"), lambda text: _case(thing, pool))
+    return Target((Line("", thing.determinant, ZEROS),), pool, nonzero=frozenset({scale}), others=others)
+
+
+@target_of.register
+def _(thing: Corollary) -> Target:
+    return target_of(thing.choice())
+
+
+def _case(choice: StructureAndMotion, pool: frozenset[sp.Symbol]) -> Target:
+    """Return the target of a choice of unknowns: Omega, g and Omega_g of ybar' = Omega + g, and the determinant."""
+    form = choice.form
+    parts = {"Omega": form.phi, "g": form.w.T * sp.Matrix(choice.theta), "Omegag": form.w.T}
+    lines = [Line(f"{name}, entry {k}", e) for name, part in parts.items() for k, e in enumerate(part, 1)]
+    ends = [0, *accumulate(len(part) for part in parts.values())]
+    blocks = {name: tuple(range(*span)) for name, span in zip(parts, pairwise(ends), strict=True)}
+    return Target((*lines, Line("det", choice.determinant, EQUATION)), pool, blocks=blocks)
+
+
+@target_of.register
+def _(thing: LuenbergerObserver) -> Target:
+    form = thing.form
+    pool = frozenset((*form.y, *form.state, *thing.estimate, *thing.error, *thing.inverse, *form.motion.parameters))
+    error = dict(zip(thing.error, (x - xhat for x, xhat in zip(form.state, thing.estimate, strict=True)), strict=True))
+    others = dict.fromkeys(
+        (f"{rho.name}dot" for rho in thing.error),
+        lambda text: Target(_rates(thing.error, thing.error_dynamics()), pool - set(form.state) - set(thing.estimate)),
+    )
+    return Target(_rates(thing.estimate, thing.flow), pool - set(error), relations=error, others=others)
 
 
 @target_of.register

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from typing import Any, ClassVar
-from xml.dom.minidom import Element
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import UndefinedFunction
@@ -18,6 +17,7 @@ from percept_obs.checking.points import key
 from percept_obs.checking.reading import FUNCTIONS as READ_FUNCTIONS
 from percept_obs.checking.reading import read
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict
+from percept_obs.papers.scalars import FUNCTIONS, Scalar
 
 
 def column(*entries: Any) -> sp.ImmutableMatrix:
@@ -93,104 +93,8 @@ def at_most(left: Any, right: Any) -> sp.LessThan:
     return sp.LessThan(left, right, evaluate=False)
 
 
-class _Scalar(sp.Function):
-    """A number made of matrices; ``doit`` works out its value once the matrices are explicit."""
-
-    shown: ClassVar[str]
-    spoken: ClassVar[str]
-    value: ClassVar[Callable[..., sp.Expr]]
-
-    def _eval_is_commutative(self) -> bool:
-        return True
-
-    def _eval_is_extended_real(self) -> bool:
-        return True
-
-    def doit(self, **hints: Any) -> sp.Expr:
-        parts = [part.doit(**hints) for part in self.args]
-        if all(isinstance(part, sp.MatrixBase) for part in parts):
-            return self.value(*parts)
-        return self.func(*parts)
-
-    def _mathml_presentation(self, printer: Any) -> Element:
-        row = printer.dom.createElement("mrow")
-        for k, words in enumerate(self.spoken.split()):
-            if k:
-                row.appendChild(printer._print(self.args[k - 1]))
-            word = row.appendChild(printer.dom.createElement("mo"))
-            word.appendChild(printer.dom.createTextNode(words))
-        return row
-
-    def _latex(self, printer: Any, exp: str = "") -> str:
-        text = self.shown % tuple(map(printer.doprint, self.args))
-        return rf"{text}^{{{exp}}}" if exp else text
-
-
-class Norm(_Scalar):
-    """Euclidean norm of a vector."""
-
-    shown = r"\left\lVert %s \right\rVert"
-    spoken = "‖ ‖"
-
-    @staticmethod
-    def value(*matrices: sp.MatrixBase) -> sp.Expr:
-        """Root of the sum of squares."""
-        return sp.sqrt(sum(entry**2 for entry in matrices[0]))
-
-
-class SumNorm(_Scalar):
-    """Sum of the absolute values of a vector's entries, each written e sgn(e)."""
-
-    shown = r"\left\lVert %s \right\rVert_1"
-    spoken = "‖ ‖₁"
-
-    @staticmethod
-    def value(*matrices: sp.MatrixBase) -> sp.Expr:
-        """Sum of e sgn(e)."""
-        return sum((entry * sp.sign(entry) for entry in matrices[0]), sp.S.Zero)
-
-
-class Inner(_Scalar):
-    """Inner product a^T b of two vectors."""
-
-    shown = r"\left\langle %s, %s \right\rangle"
-    spoken = "⟨ , ⟩"
-
-    @staticmethod
-    def value(*matrices: sp.MatrixBase) -> sp.Expr:
-        """Sum of products."""
-        (product,) = matrices[0].T * matrices[1]
-        return product
-
-
-class SmallestEigenvalue(_Scalar):
-    """Smallest eigenvalue of a symmetric matrix of at most two rows."""
-
-    shown = r"\lambda_{\min}\left\{ %s \right\}"
-    spoken = "λₘᵢₙ{ }"
-
-    @staticmethod
-    def value(*matrices: sp.MatrixBase) -> sp.Expr:
-        """The entry of one row; of two rows, half of trace less root."""
-        matrix = matrices[0]
-        if matrix.shape == (1, 1):
-            return matrix[0]
-        # The trace stays as a sum of squares, from which sympy sees that it is not negative.
-        trace, determinant = matrix.trace(), sp.expand(matrix.det())
-        return (trace - sp.sqrt(trace**2 - 4 * determinant)) / 2
-
-
 WORDS = {*READ_FUNCTIONS, "lambda_min", "pi"}
 """Words that stand for no number."""
-
-FUNCTIONS = {
-    "norm": Norm,
-    "norm1": SumNorm,
-    "inner": Inner,
-    "signs": lambda vector: vector.applyfunc(sp.sign),
-    "lambdamin": SmallestEigenvalue,
-}
-"""Functions that `reader` reads besides the usual ones."""
 
 
 def explicit(expression: sp.Basic, values: Values | None = None) -> Any:
@@ -229,7 +133,7 @@ def _somewhere(expression: sp.Expr) -> sp.Expr:
 
 def _is_refuted(expression: sp.Expr) -> bool:
     """Return True if an expression, as it stands, has a rational value other than zero."""
-    if expression.has(_Scalar):
+    if expression.has(Scalar):
         return False
     value = _somewhere(expression)
     return bool(value.is_Rational and value != 0)
@@ -237,7 +141,7 @@ def _is_refuted(expression: sp.Expr) -> bool:
 
 def _is_proven(expression: sp.Expr) -> bool:
     expanded = sp.expand(expression)
-    expanded = expanded.xreplace({scalar: sp.Dummy(real=True) for scalar in expanded.atoms(_Scalar)})
+    expanded = expanded.xreplace({scalar: sp.Dummy(real=True) for scalar in expanded.atoms(Scalar)})
     if expanded == 0:
         return True
     somewhere = _somewhere(expanded)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property, partial
+from typing import Any
 
 import sympy as sp
 
-from percept_obs.checking.target import Target, matrix_target
+from percept_obs.checking import Target, target_of
+from percept_obs.checking.printed import matrix_target
 from percept_obs.papers.mathml import shown
+from percept_obs.papers.scalars import FUNCTIONS
 
 Printed = tuple[sp.Basic, ...]
 Values = dict[sp.Basic, sp.Basic]
@@ -131,6 +134,8 @@ class Entry:
         What is to be put in the place of what, in a misprint.
     known : Known
         How the verdict is known.
+    asks : function, optional
+        Returns what a formula of your own is compared with, where the statement is printed in words.
 
     See Also
     --------
@@ -155,6 +160,7 @@ class Entry:
     expected: Verdict = Verdict.HOLDS
     correction: Values = field(default_factory=dict)
     known: Known = Known.DERIVED
+    asks: Callable[[], Any] | None = None
 
     @property
     def number(self) -> int | None:
@@ -191,12 +197,20 @@ class Entry:
         Raises
         ------
         ValueError
-            If there is no formula, or none that is true.
+            If the statement has no formula; it says so.
         """
-        if not self.printed or self.expected in (Verdict.FALSE, Verdict.DEPENDS):
-            why = f"it {self.expected}" if self.printed else "it has no formula"
-            raise ValueError(f"nothing can be compared with {self.place}: {why.replace('it false', 'it is false')}")
-        return matrix_target(self.corrected)
+        if not self.printed and self.asks is None:
+            raise ValueError(f"nothing can be compared with {self.place}, a statement without a formula: {self.says}")
+        target = replace(
+            matrix_target(self.corrected) if self.asks is None else target_of(self.asks()), note=self._said
+        )
+        return replace(target, functions=FUNCTIONS)
+
+    @property
+    def _said(self) -> str:
+        """What is to be said of a formula that is the printed one and not true."""
+        what = {Verdict.FALSE: "it is false as stated", Verdict.DEPENDS: "it depends"}.get(self.expected)
+        return f"as the paper has it, but {what}: {self.note}" if what and self.printed else ""
 
     @property
     def verdict(self) -> str:

@@ -13,9 +13,10 @@ import numpy as np
 import sympy as sp
 from scipy.integrate import cumulative_simpson, simpson
 
-from percept_obs.papers.base import Inner, Norm, at_most, reader, separates, vanishes, vectors
+from percept_obs.papers.base import at_most, reader, separates, vanishes, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
 from percept_obs.papers.inaba2005_theorem import DURATION, PERIOD, WEAKENING, WINDOW, body, followed, transition
+from percept_obs.papers.scalars import Inner, Norm
 from percept_obs.points import PointsForm, PointsRun, PointsScenario, constant
 from percept_obs.points.gramian import gramian
 from percept_obs.points.manoeuvre import PATH, TURNING

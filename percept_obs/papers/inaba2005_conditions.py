@@ -8,8 +8,9 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.papers.base import Norm, at_most, column, equal, explicit, filled_in, identities, reader, vanishes
+from percept_obs.papers.base import at_most, column, equal, explicit, filled_in, identities, reader, vanishes
 from percept_obs.papers.entries import Check, Finding, Printed, Values, Verdict, at, judged
+from percept_obs.papers.scalars import Norm
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block, rigid_body
 from percept_obs.points.gramian import gramian as windowed
 from percept_obs.points.gramian import linear_gramian as windowed_linear

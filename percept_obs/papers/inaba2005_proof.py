@@ -9,8 +9,6 @@ from functools import cache
 import sympy as sp
 
 from percept_obs.papers.base import (
-    Inner,
-    Norm,
     at_most,
     column,
     dot,
@@ -24,6 +22,7 @@ from percept_obs.papers.base import (
     vectors,
 )
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
+from percept_obs.papers.scalars import Inner, Norm
 from percept_obs.points import LuenbergerObserver, PointsForm, luenberger, point_block
 from percept_obs.system.motion import linear
 from percept_obs.system.surfaces import pinhole

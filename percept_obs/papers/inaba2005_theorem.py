@@ -9,8 +9,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from percept_obs.papers.base import Norm, less, reader, separates, vectors
+from percept_obs.papers.base import less, reader, separates, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
+from percept_obs.papers.scalars import Norm
 from percept_obs.points import (
     LyapunovMatrix,
     PointsForm,

@@ -14,16 +14,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm, solve_continuous_lyapunov
 
 from percept_obs.observers.identifier_based import G
-from percept_obs.papers.base import (
-    Norm,
-    column,
-    dot,
-    explicit,
-    identities,
-    reader,
-    vanishes,
-    weakened,
-)
+from percept_obs.papers.base import column, dot, explicit, identities, reader, vanishes, weakened
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.papers.ma2005_observers import IBO_IN_VECTORS, IBO_MENDED, OBSERVED, phi, x1, x2, xhat1, xhat2
 from percept_obs.papers.ma2005_observers import ghat as ghat_of_11
@@ -50,6 +41,7 @@ from percept_obs.papers.ma2005_proofs import (
     xi1,
     xi2,
 )
+from percept_obs.papers.scalars import Norm
 
 Array = NDArray[np.float64]
 

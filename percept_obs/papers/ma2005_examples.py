@@ -14,9 +14,10 @@ from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.identifier_based import A, P
 from percept_obs.observers.parts import gamma, sigma2
 from percept_obs.observers.sliding_mode import delta, lambda0
-from percept_obs.papers.base import Norm, at_most, column, dot, equal, exactly, explicit, identities, reader, separates
+from percept_obs.papers.base import at_most, column, dot, equal, exactly, explicit, identities, reader, separates
 from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged, not_checkable
 from percept_obs.papers.ma2005_proofs import SMALL, with_g_left_out
+from percept_obs.papers.scalars import Norm
 from percept_obs.recording import Camera, Recording, Uniform, record
 from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
 from percept_obs.system.motion import affine

@@ -14,7 +14,6 @@ from percept_obs.observability import instantaneous, windowed
 from percept_obs.observers import identifier_based
 from percept_obs.observers.parts import M, gamma
 from percept_obs.papers.base import (
-    Norm,
     column,
     exactly,
     explicit,
@@ -27,6 +26,7 @@ from percept_obs.papers.base import (
     weakened,
 )
 from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged
+from percept_obs.papers.scalars import Norm
 from percept_obs.recording import Recording, Scenario, record
 from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
 from percept_obs.system.forms import CanonicalForm
@@ -124,7 +124,7 @@ def w_is_bounded(printed: Printed) -> Finding:
 
 
 def excitation(printed: Printed) -> Finding:
-    """(14): the proofs integrate |w^T e2|^2, so the integrand must be the matrix of that quadratic form."""
+    """(14): the proofs integrate |w^T e2|^2, so it bounds the matrix of that quadratic form, by a matrix."""
     (line,) = printed
     for form in (FIRST, BOTH):
         e2 = column(*sp.symbols(f"e1:{len(form.x2) + 1}", real=True))
@@ -134,7 +134,7 @@ def excitation(printed: Printed) -> Finding:
             values = exactly(one_direction_seen().recording.motion.values)
             trace = float(explicit(line.lhs.function, {w: FIRST.w.subs(values)})[0])
             return judged(False, numbers={"w^T w, y1 alone": trace, **unseen_error()})
-    return judged(True)
+    return judged(line.rhs == beta * sp.Identity(n2))
 
 
 def not_at_every_instant(printed: Printed) -> Finding:
@@ -253,9 +253,9 @@ ENTRIES = (
     at("(14)", "66", "3.1", "persistency of excitation")(
         (sp.GreaterThan(sp.Integral(w.T * w, (tau, t, t + rho)), beta, evaluate=False),),
         excitation,
-        "w w^T is meant: with y1 alone w^T w is a number, positive where a direction is never seen",
+        "w w^T at least beta I is meant: with y1 alone w^T w is a number, positive where a direction is never seen",
         Verdict.MISPRINT,
-        correction={w.T * w: w * w.T},
+        correction={w.T * w: w * w.T, beta: beta * sp.Identity(n2)},
     ),
     at("(14) at each instant", "66", "3.1", "equivalent of (14), y1 and y2")(
         reads("SUM_BOTH > epsilon^2"),

@@ -11,19 +11,9 @@ from percept_obs.observers import Observer, identifier_based, sliding_mode
 from percept_obs.observers.identifier_based import A, G, P
 from percept_obs.observers.parts import M, gamma, hats, sigma2
 from percept_obs.observers.sliding_mode import alpha, alpha1, delta
-from percept_obs.papers.base import (
-    Norm,
-    column,
-    dot,
-    equal,
-    explicit,
-    identities,
-    is_identity,
-    reader,
-    vanishes,
-    vectors,
-)
+from percept_obs.papers.base import column, dot, equal, explicit, identities, is_identity, reader, vanishes, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
+from percept_obs.papers.scalars import Norm
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem

@@ -14,8 +14,6 @@ from percept_obs.observers import Observer, sliding_mode
 from percept_obs.observers.parts import M, gamma, sigma2
 from percept_obs.observers.sliding_mode import alpha, delta
 from percept_obs.papers.base import (
-    Inner,
-    Norm,
     at_most,
     column,
     dot,
@@ -32,6 +30,7 @@ from percept_obs.papers.base import (
 )
 from percept_obs.papers.entries import Check, Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.papers.ma2005_observability import EXAMPLES, lipschitz_constant
+from percept_obs.papers.scalars import Inner, Norm
 from percept_obs.recording import Camera, record
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import affine
