@@ -1,4 +1,4 @@
-"""First screens in pages of their own: opening them, asking a question, and reading what is written in the pictures."""
+"""Labs in pages of their own: opening their first screens, asking a question, and reading what pictures say."""
 
 from contextlib import contextmanager
 
@@ -17,9 +17,40 @@ STILL = """() => new Promise((done) => { const [lab] = window.perceptObsLabs; le
     look(); })"""
 """Wait until no view is on its way."""
 
-TEXTS = """() => { const [lab] = window.perceptObsLabs;
-    const wide = lab.first.views.filter(({ figure }) => figure.checkVisibility());
-    return wide.map((view) => ({ width: view.width, height: view.height, texts: view.texts })); }"""
+TEXTS = """() => {
+    const [lab] = window.perceptObsLabs;
+    const seen = lab.figures.filter(({ figure }) => figure.checkVisibility());
+    const pen = CanvasRenderingContext2D.prototype;
+    const { fillText } = pen;
+    const drawn = [];
+    pen.fillText = function (text, x, y) {
+        drawn.push([this.canvas, text, x, y]);
+        fillText.call(this, text, x, y);
+    };
+    for (const picture of seen) picture.paintedFor = "";  // what lies below is drawn anew as well
+    lab.stale = true;
+    lab.draw();
+    pen.fillText = fillText;
+    return seen.map(({ canvas, below, figure, width, height, texts }) => {
+        const told = ([, text, x, y]) => texts.some(({ text: other, box }) => text === other
+            && box[0] <= x && x <= box[2] && box[1] <= y && y <= box[3]);
+        const own = drawn.filter(([where]) => where === canvas || where === below);
+        const { left, top } = figure.getBoundingClientRect();
+        const range = document.createRange();
+        const above = [...figure.querySelectorAll("button, p, figcaption, text")].filter((node) =>
+            node.checkVisibility({ visibilityProperty: true }) && node.textContent.trim()).map((node) => {
+            if (node.tagName === "BUTTON") range.selectNode(node);
+            else range.selectNodeContents(node);
+            const box = range.getBoundingClientRect();
+            const sides = [box.left - left, box.top - top, box.right - left, box.bottom - top];
+            return { text: node.textContent, box: sides };
+        });
+        const unknown = above.filter(({ text }) => !texts.some((each) => each.text === text));
+        return { width, height, texts: [...texts, ...unknown], secret: own.filter((each) => !told(each))
+            .map(([, text]) => text) };
+    });
+}"""
+"""Texts of all pictures in sight, on the canvas and above it, and those that a painter wrote without reporting them."""
 
 COUNTS = """() => {
     const [{ first }] = window.perceptObsLabs;
@@ -68,9 +99,10 @@ def asked(page, name, answer=0):
 
 
 def overlaps(page):
-    """Texts of the pictures that are cut, and pairs that cover each other."""
+    """Texts of the pictures that are cut or not reported, and pairs that cover each other."""
     found = []
     for view in page.evaluate(TEXTS):
+        found += [("not reported", text) for text in view["secret"]]
         boxes = [(each["text"], each["box"]) for each in view["texts"]]
         found += [
             text

@@ -1,10 +1,13 @@
-"""The first screens of the labs: few words and controls, large pictures, no label on another, and answers that hold."""
+"""The faces of the labs: few words and controls at first, large pictures, no label on another, answers that hold."""
+
+import io
 
 import numpy as np
 import pytest
-from first_screens import COUNTS, SIZES, asked, at_the_end, first_screen, overlaps
-from lab_alone import DRAWN
-from lab_browser import control
+from first_screens import COUNTS, READY, SIZES, asked, at_the_end, first_screen, overlaps
+from lab_alone import DRAWN, opened
+from lab_browser import control, painted
+from matplotlib.image import imread
 from sample_sizes import sampled
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
@@ -14,7 +17,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.all.map(({ name }) => name)"
 HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.questions.open.holds(first.scene), first.spoken]; }"
-RANDOM = sampled(7, 200)
+EVERY = 200
+RANDOM = sampled(7, EVERY)
 """Random settings in which labels are looked at."""
 VARY = """([seed]) => {
     const [lab] = window.perceptObsLabs;
@@ -76,6 +80,107 @@ def test_no_label_covers_another_or_is_cut(name, size, browser):
             assert overlaps(page) == [], seed
             if seed % 5 == 0:
                 page.evaluate("() => [...window.perceptObsLabs][0].first.again()")
+
+
+CHANGE = """([seed]) => {
+    const [lab] = window.perceptObsLabs;
+    let state = seed;
+    const random = () => (state = (state * 16807) % 2147483647) / 2147483647;
+    for (let k = 0; k < 5; k++) random();
+    const pick = (list) => list[Math.floor(random() * list.length)];
+    if (random() < 0.3) lab.reset();
+    const kinds = ["range", "checkbox", "radio", "select-one"];
+    const controls = [...lab.view.root.querySelectorAll(".side [data-control]")];
+    for (let k = 0; k < 6; k++) {
+        const box = pick(controls);
+        if (!box.isConnected || box.disabled || !kinds.includes(box.type) || box.closest("[hidden]")) continue;
+        if (box.type === "range") box.value = Number(box.min) + random() * (box.max - box.min);
+        else if (box.type === "select-one") box.value = pick([...box.options].filter((o) => !o.disabled)).value;
+        else box.click();
+        for (const type of ["input", "change"]) box.dispatchEvent(new Event(type, { bubbles: true }));
+    }
+    const { duration, period, step = period } = lab.settings;
+    const finest = Math.min(period, step);  // a long recording at a short period only takes long
+    if (duration > 4000 * finest) lab.change({ duration: Math.max(1, 4000 * finest) }, true);
+    if (random() < 0.3) lab.keep();
+    lab.planes[1].see({ turn: 6 * random() - 3, tilt: 3 * random() - 1.5 }, 0.5 + 2 * random());
+    lab.rest();
+    window.part = random();
+}"""
+"""Change some controls of the workbench, and the look of its scene."""
+LATER = """() => { const [lab] = window.perceptObsLabs; const { low, high } = lab.span;
+    if (Number.isFinite(high)) lab.point(low + window.part * (high - low)); }"""
+KNOWN = """() => { const [lab] = window.perceptObsLabs;
+    return [...lab.first.questions.all.map(({ name }) => name), ...Object.keys(lab.model.scenarios ?? {})]; }"""
+SHOW = """(name) => {
+    const [lab] = window.perceptObsLabs;
+    const question = lab.first.questions.all.find((each) => each.name === name);
+    lab.reset();
+    if (question) lab.change(question.after(lab.model), true);
+    else lab.chooseScenario(name);
+    lab.rest();
+}"""
+"""Show what answers a question, or a scenario."""
+
+
+def each_picture(page):
+    """Show the pictures of the workbench one by one where there is room for one only."""
+    for tab in page.locator(".eyes .tabs button:visible").all() or [None]:
+        if tab:
+            tab.click()
+            painted(page)
+        yield
+
+
+@pytest.mark.parametrize("name", LABS)
+def test_no_label_of_the_workbench_covers_another_or_is_cut(name, browser):
+    page = opened(browser, LABS[name]())
+    page.set_default_timeout(15_000)
+    page.wait_for_function(DRAWN)
+    known = page.evaluate(KNOWN)
+    for k, (width, height) in enumerate(SIZES.values()):
+        page.set_viewport_size({"width": width, "height": height})
+        shown = [(SHOW, each) for each in (known if RANDOM == EVERY else known[k::3])]
+        seeds = range(1, RANDOM + 1) if RANDOM == EVERY else range(k + 1, RANDOM + 1, 3)
+        for act, argument in [*shown, *((CHANGE, [1000 * seed + 7]) for seed in seeds)]:
+            page.evaluate(act, argument)
+            page.wait_for_function(DRAWN)
+            page.evaluate(LATER)
+            for _ in each_picture(page):
+                page.wait_for_function(DRAWN)
+                assert overlaps(page) == [], (width, argument)
+    page.close()
+
+
+HIGH = 120
+"""Least height of a picture in pixels."""
+
+
+@pytest.mark.parametrize("name", LABS)
+@pytest.mark.parametrize("kept", [False, True])
+def test_every_picture_is_high_and_not_of_one_colour(name, kept, browser, tmp_path):
+    lab = LABS[name]()
+    lab.save(tmp_path / "lab.html")
+    page = browser.new_page() if kept else opened(browser, lab, face="first")
+    if kept:
+        page.goto((tmp_path / "lab.html").as_uri())
+    page.wait_for_function(READY)
+    counted = []
+    for face in ("first", "workbench"):
+        page.evaluate("(face) => [...window.perceptObsLabs][0].turn(face)", face)
+        for width, height in SIZES.values():
+            page.set_viewport_size({"width": width, "height": height})
+            painted(page)
+            page.wait_for_function(DRAWN)
+            for _ in each_picture(page):
+                pictures = page.locator("figure:visible:has(canvas)").all()
+                counted.append(len(pictures))
+                for picture in pictures:
+                    assert picture.bounding_box()["height"] >= HIGH, (face, width, picture.get_attribute("class"))
+                    pixels = imread(io.BytesIO(picture.screenshot()))[..., :3].reshape(-1, 3)
+                    assert (abs(pixels - pixels[0]).max(axis=1) > 0.2).mean() > 0.005
+    assert min(counted) >= 3
+    page.close()
 
 
 PLAYED = "() => { const [{ first }] = window.perceptObsLabs; return !first.clock.playing && !first.clock.secret; }"

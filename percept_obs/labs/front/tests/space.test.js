@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { advanced, begun, between, stepped, valueBetween } from "../src/common/model/playback.js";
 import { scaled, unseenDirection } from "../src/common/model/velocities.js";
 import * as space from "../src/common/model/space.js";
+import { LabelledPicture, meet } from "../src/common/page/labels.js";
 import { drawVelocities } from "../src/common/page/velocities.js";
 
 const near = (one, other, slack = 1e-12) =>
@@ -108,17 +109,14 @@ test("a time between samples has its part of the way, and none at a sample", () 
   assert.equal(valueBetween([0, 5, 0, 7, 0, 1], 2, 1, { sample: 1, part: 0.5 }), 4);
 });
 
-/** A pen that only remembers where it wrote the names of arrows, as boxes of letters six pixels wide. */
+/** A picture that only remembers where it writes, with letters six pixels wide. */
 function scribe() {
-  const written = /** @type {{text: string, ends: number[], y: number}[]} */ ([]);
-  const fillText = (text, x, y) => {
-    const width = 6 * text.length;
-    const left = { left: x, center: x - width / 2, right: x - width }[pen.textAlign];
-    if (/^(½×|1×|2×)/.test(text)) written.push({ text, ends: [left, left + width], y });
-  };
+  const measureText = (text) => ({ width: 6 * text.length });
   /** @type {any} */
-  const pen = new Proxy({ written, fillText }, { get: (known, name) => known[name] ?? (() => undefined) });
-  return pen;
+  const pen = new Proxy({ measureText }, { get: (known, name) => known[name] ?? (() => undefined) });
+  const empty = { texts: [], taken: [], busy: [], labels: [], places: new Map(), caption: () => undefined };
+  const given = { ...empty, context: pen, pen, width: 330, height: 300, theme: {} };
+  return Object.assign(Object.create(LabelledPicture.prototype), given);
 }
 
 test("names of arrows are all there, and none covers another, wherever the arrows lead", () => {
@@ -126,17 +124,17 @@ test("names of arrows are all there, and none covers another, wherever the arrow
   for (let k = 0; k < 500; k++) {
     const turn = (k * Math.PI) / 25;
     const between = (k % 20) / 10;
-    const place = [((k * 7) % 19) / 19, ((k * 11) % 23) / 23];
+    const place = [0.2 + (0.6 * ((k * 7) % 19)) / 19, 0.2 + (0.6 * ((k * 11) % 23)) / 23];
     const velocities = [-1, 0, 1].map((way) => [Math.cos(turn + way * between), Math.sin(turn + way * between)]);
-    const pen = scribe();
-    const frame = { box, scale: 250, x: (y1) => box.left + 250 * y1, y: (y2) => box.top + 250 * (1 - y2) };
-    drawVelocities(pen, frame, [{ place, velocities, colour: "black" }], 1, {});
-    const names = pen.written.flatMap(({ text }) => text.split(", "));
+    const picture = scribe();
+    const frame = { picture, box, scale: 250, x: (y1) => box.left + 250 * y1, y: (y2) => box.top + 250 * (1 - y2) };
+    drawVelocities(frame, [{ place, velocities, colour: "black" }], 1, {});
+    picture.end();
+    const names = picture.texts.flatMap(({ text }) => text.split(", "));
     assert.deepEqual(names.sort(), ["½×", "1×", "2×"].sort());
-    for (const [i, one] of pen.written.entries()) {
-      for (const other of pen.written.slice(i + 1)) {
-        const apart = Math.abs(one.y - other.y) >= 10 || one.ends[1] <= other.ends[0] || other.ends[1] <= one.ends[0];
-        assert.ok(apart, `${JSON.stringify(one)} covers ${JSON.stringify(other)}`);
+    for (const [i, one] of picture.texts.entries()) {
+      for (const other of picture.texts.slice(i + 1)) {
+        assert.ok(!meet(one.box, other.box), `${JSON.stringify(one)} covers ${JSON.stringify(other)}`);
       }
     }
   }

@@ -4,33 +4,13 @@ import { within } from "../model/playback.js";
 import { readable } from "../model/scales.js";
 import { indicesIn } from "../model/timeline.js";
 import { opacityOf } from "./line_styles.js";
-import { label, RESET, rimMark, stroke } from "./marks.js";
+import { RESET, rimMark, stroke } from "./marks.js";
 
-/** Width of a letter and height of a line in pixels, about; enough to know whether a word has room. */
-const LETTER = 6;
-const LINE_HEIGHT = 11;
 const [UP, DOWN] = [-Math.PI / 2, Math.PI / 2];
-
-/** Write a word where no other stands: it may move by a line or two, or is left out.  Return true if it is written. */
-function write(pen, place, text, { x, y, align, baseline }, colour, theme) {
-  const width = LETTER * text.length;
-  const left = align === "left" ? x : x - width;
-  const away = baseline === "top" ? LINE_HEIGHT : -LINE_HEIGHT;
-  const isFree = (at) => (word) =>
-    left > word.right || left + width < word.left || Math.abs(at - word.y) >= LINE_HEIGHT;
-  const at = [y, y + away, y + 2 * away].find((height) => place.words.every(isFree(height)));
-  if (at === undefined) return false;
-  place.words.push({ left, right: left + width, y: at });
-  label(pen, text, x, at, colour, theme, align, baseline);
-  return true;
-}
-
-/** Write a word right of a place, some pixels away from it, or left of it where there is no room. */
-function writeBeside(pen, place, text, { x, y, gap = 4, baseline = "bottom" }, colour, theme) {
-  const room = x + gap + LETTER * text.length < place.right;
-  const at = { x: room ? x + gap : x - gap, y, align: room ? "left" : "right", baseline };
-  return write(pen, place, text, at, colour, theme);
-}
+/** How many places of a line may bear its name, from its end on. */
+const NAMED = 24;
+/** Height of a line of letters in pixels, about. */
+const LINE_HEIGHT = 11;
 
 export function horizontal(pen, place, value, colour, dash) {
   const y = Math.round(place.y(value)) + 0.5;
@@ -48,9 +28,10 @@ export function drawLevel(pen, place, level, theme) {
   }
   const above = level > high;
   const y = above ? place.top : place.bottom;
-  rimMark(pen, { at: [place.right - 12, y], angle: above ? UP : DOWN }, "", theme.muted, theme);
-  const words = `tolerance ${readable(level)}`;
-  label(pen, words, place.right - 22, above ? y + 1 : y - 1, theme.muted, theme, "right", above ? "top" : "bottom");
+  rimMark(pen, { at: [place.right - 12, y], angle: above ? UP : DOWN }, theme.muted);
+  const at = [place.right - 12, above ? y + 7 : y - 7];
+  const text = `tolerance ${readable(level)}`;
+  place.picture.tag({ id: "tolerance", text, at, towards: [-1, 0], gap: 7, colour: theme.muted, rank: 3 });
 }
 
 /** A time in which something is missing, never thinner than a pixel; with words where they have room. */
@@ -62,7 +43,9 @@ export function shade(pen, place, { begin, end, text }, theme, named) {
   pen.fillStyle = theme.warning;
   pen.fillRect(left, place.top, Math.max(1, right - left), place.height);
   pen.globalAlpha = 1;
-  if (named) writeBeside(pen, place, text, { x: left, y: place.bottom - 2, gap: 3 }, theme.warning, theme);
+  if (!named) return;
+  const at = [left, place.bottom - 8];
+  place.picture.tag({ id: `shade ${begin}`, text, at, towards: [1, 0], gap: 1, colour: theme.warning, rank: 4 });
 }
 
 /** Return which of increasing times is the first that is not before one. */
@@ -93,23 +76,24 @@ export function drawResets(pen, place, marks, theme, named) {
     pen.globalAlpha = 1;
     if (!named || Number.isNaN(first)) return;
     const y = place.top + RESET + 1 + LINE_HEIGHT * row;
-    writeBeside(pen, place, text, { x: first, y, baseline: "top" }, colour, theme);
+    const at = [first, y + LINE_HEIGHT / 2];
+    place.picture.tag({ id: `resets ${row}`, text, at, towards: [1, 0], gap: 2, colour, rank: 3 });
   });
 }
 
 /** A short line on the level at a time, with words; an arrow at the rim where that is later than what is in sight. */
-export function drawEvent(pen, place, { time, text, colour }, level, theme) {
+export function drawEvent(pen, place, { time, text, colour }, level) {
   const x = Math.round(place.x(time));
   const y = within(place.y(level), place.top + 6, place.bottom - 6);
   if (x > place.right) {
-    rimMark(pen, { at: [place.right, y], angle: 0 }, "", colour, theme);
-    const at = { x: place.right - 14, y: y - 1, align: "right", baseline: "bottom" };
-    write(pen, place, `later, at ${text}`, at, colour, theme);
+    rimMark(pen, { at: [place.right, y], angle: 0 }, colour);
+    const label = { id: `event ${colour}`, text: `later, at ${text}`, towards: [-1, 0], gap: 8, colour, rank: 0 };
+    place.picture.tag({ ...label, at: [place.right - 6, y] });
   }
   if (x < place.left || x > place.right) return;
   pen.fillStyle = colour;
   pen.fillRect(x - 1, y - 6, 2, 12);
-  writeBeside(pen, place, text, { x, y: y - 1 }, colour, theme);
+  place.picture.tag({ id: `event ${colour}`, text, at: [x, y], towards: [1, -1], gap: 3, colour, rank: 0 });
 }
 
 /** An arrow at the rim where a line goes furthest out of the scale, with the value that it reaches there. */
@@ -126,28 +110,28 @@ export function drawOutside(pen, place, { time, values, colour }, theme) {
   for (const [k, y, angle] of [[most, place.top, UP], [least, place.bottom, DOWN]]) {
     if (k < 0) continue;
     const x = within(place.x(time[k]), place.left + 6, place.right - 6);
-    rimMark(pen, { at: [x, y], angle }, "", colour, theme);
-    const at = angle === UP ? { y: y + 1, baseline: "top" } : { y: y - 1, baseline: "bottom" };
-    writeBeside(pen, place, readable(values[k]), { x, gap: 8, ...at }, colour, theme);
+    rimMark(pen, { at: [x, y], angle }, colour);
+    const label = { id: `outside ${colour} ${angle}`, text: readable(values[k]), towards: [1, 0], gap: 6, colour };
+    place.picture.tag({ ...label, at: [x, angle === UP ? y + 7 : y - 7], rank: 1 });
   }
 }
 
 /** The name of a line, where it has one: beside its end in sight, or before that where others stand there. */
-export function nameLine(pen, place, { time, values, colour, text }, theme) {
+export function nameLine(place, { time, values, colour, text }, theme) {
   if (!text || opacityOf(theme, colour) < 1) return;
   const { low, high } = place.scale;
   const [from, to] = indicesIn(time, place.span);
+  const each = place.width / NAMED;
+  const places = /** @type {number[][]} */ ([]);
   let before = Infinity;
   for (let k = to; k >= from; k--) {
     const x = place.x(time[k]);
-    if (x > place.right - 4 || before - x < LETTER || !(values[k] > low && values[k] < high)) continue;
+    if (x > place.right - 4 || before - x < each || !(values[k] > low && values[k] < high)) continue;
     before = x;
-    const align = x - LETTER * text.length > place.left ? "right" : "left";
-    const y = place.y(values[k]);
-    const above = y - LINE_HEIGHT - 4 > place.top;
-    const at = { x, y: above ? y - 4 : y + 4, align, baseline: above ? "bottom" : "top" };
-    if (write(pen, place, text, at, colour, theme)) return;
+    places.push([x, place.y(values[k])]);
   }
+  const [at, ...along] = places;
+  if (at) place.picture.tag({ id: `line ${text}`, text, at, along, towards: [-1, -1], gap: 4, colour, rank: 1 });
 }
 
 /** Return true if a line has a value in sight that the scale can have. */
@@ -160,12 +144,11 @@ export function shows({ time, values }, { span, scale }) {
 }
 
 /** Say why a chart is empty. */
-export function sayNothing(pen, place, lines, theme) {
+export function sayNothing({ picture, scale, left, right, top, bottom }, lines, theme) {
   const unbounded = lines.some(({ values }) => values.some((/** @type {number} */ value) => value === Infinity));
-  const empty = place.scale.log ? "nothing above 0 in this time" : "no value in this time";
+  const empty = scale.log ? "nothing above 0 in this time" : "no value in this time";
   const text = unbounded ? "infinite in all of this time: no distance was found" : empty;
-  const [x, y] = [(place.left + place.right) / 2, (place.top + place.bottom) / 2];
-  label(pen, text, x, y, theme.muted, theme, "center", "middle");
+  picture.write(picture.shortened(text, right - left), (left + right) / 2, (top + bottom) / 2, theme.muted);
 }
 
 /** A row of thin bars for each colour, from the top on. */

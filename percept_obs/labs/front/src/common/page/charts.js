@@ -4,19 +4,19 @@
 import { within } from "../model/playback.js";
 import { tickLabel } from "../model/scales.js";
 import { indicesIn } from "../model/timeline.js";
-import { Picture } from "./canvas.js";
 import { drawBars, drawEvent, drawLevel, drawOutside, drawResets, horizontal } from "./chart_events.js";
 import { nameLine, sayNothing, shade, shows } from "./chart_events.js";
 import { element } from "./dom.js";
 import { clipTo } from "./image_frame.js";
+import { LabelledPicture } from "./labels.js";
 import { opacityOf } from "./line_styles.js";
 
-const LEFT = 46;
+const LEFT = 48;
 const RIGHT = 12;
 const TOP = 20;
 const BOTTOM = 18;
 
-export class TimeChart extends Picture {
+export class TimeChart extends LabelledPicture {
   constructor(label) {
     super("chart", label);
     this.now = element("div", { class: "now", hidden: true });
@@ -31,14 +31,15 @@ export class TimeChart extends Picture {
   /** @param {Record<string, any>} parts as types.js has them, with the scale and the span of time to draw them on */
   draw({ title, lines, scale, span, theme, first, last, ...more }) {
     const { band, level, regions = [], marks = [], bars = [], events = [] } = more;
-    const { width, height } = this.fit(theme.font);
-    const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - (last ? BOTTOM : 6) };
-    const place = (this.place = new Place(span, scale, box));
+    this.begin(theme);
+    const { width, height } = this;
+    const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - (last ? BOTTOM : 7) };
+    const place = (this.place = new Place(this, span, scale, box));
     const clipped = { left: LEFT, top: TOP - 1, width: box.width, height: box.height + 2 };
     const pen = this.context;
     const kept = this.keptOf(lines, theme);
     this.underlay([title, scale, span, last, theme, this.keptCount], (below) => {
-      this.axes(below, place, theme, title, last);
+      this.axes(place, theme, title, last);
       clipTo(below, clipped);
       for (const line of kept) strokeLine(below, place, line, theme);
     });
@@ -50,11 +51,12 @@ export class TimeChart extends Picture {
     for (const line of lines.slice(kept.length)) strokeLine(pen, place, line, theme);
     drawResets(pen, place, marks, theme, first);
     drawBars(pen, place, bars);
-    for (const event of events) drawEvent(pen, place, event, level, theme);
+    for (const event of events) drawEvent(pen, place, event, level);
     for (const line of lines) drawOutside(pen, place, line, theme);
-    for (const line of lines) nameLine(pen, place, line, theme);
-    if (!lines.some((line) => shows(line, place))) sayNothing(pen, place, lines, theme);
+    for (const line of lines) nameLine(place, line, theme);
     pen.restore();
+    if (!lines.some((line) => shows(line, place))) sayNothing(place, lines, theme);
+    this.end();
   }
 
   /** The lines of a kept run, before all others; a count of them tells whether what lies below is still right. */
@@ -75,27 +77,21 @@ export class TimeChart extends Picture {
     if (seen) now.style.transform = `translateX(${Math.round(place.x(time))}px)`;
   }
 
-  axes(pen, place, theme, title, last) {
-    pen.setLineDash([]);
-    pen.textBaseline = "middle";
-    pen.textAlign = "right";
-    pen.fillStyle = theme.muted;
+  axes(place, theme, title, last) {
+    const { pen, width } = this;
+    this.write(this.shortened(title, width - 8), 4, 6, theme.ink, "left");
     for (const tick of place.scale.ticks) {
       const y = Math.round(place.y(tick)) + 0.5;
       horizontal(pen, place, tick, theme.grid, []);
-      pen.fillText(tickLabel(tick, place.scale.log), place.left - 6, y);
+      this.write(tickLabel(tick, place.scale.log), place.left - 6, y, theme.muted, "right");
     }
-    pen.textBaseline = "alphabetic";
-    pen.textAlign = "left";
-    pen.fillStyle = theme.ink;
-    pen.fillText(title, 4, 10);
     if (!last) return;
-    pen.fillStyle = theme.muted;
-    pen.textBaseline = "top";
-    pen.textAlign = "center";
     const { low, high, ticks } = place.span;
-    for (const tick of ticks.filter((each) => each >= low && each <= high)) {
-      pen.fillText(tickLabel(tick, false) + (tick === ticks.at(-1) ? " s" : ""), place.x(tick), place.bottom + 5);
+    // The last one, which has the unit, is wanted most.
+    for (const tick of ticks.filter((each) => each >= low && each <= high).toReversed()) {
+      const text = tickLabel(tick, false) + (tick === ticks.at(-1) ? " s" : "");
+      const most = width - 1 - pen.measureText(text).width / 2;
+      this.write(text, Math.min(place.x(tick), most), place.bottom + 10, theme.muted);
     }
   }
 
@@ -120,9 +116,8 @@ export class TimeChart extends Picture {
 
 /** Where times and values lie on a canvas. */
 class Place {
-  constructor(span, scale, { left, top, width, height }) {
-    /** @type {{left: number, right: number, y: number}[]} where words stand */
-    this.words = [];
+  constructor(picture, span, scale, { left, top, width, height }) {
+    this.picture = picture;
     this.span = span;
     this.scale = scale;
     this.left = left;

@@ -31,6 +31,9 @@ export class Handle {
       ...{ "aria-label": label, "aria-valuenow": 0 },
     });
     this.node.append(text);
+    this.text = text;
+    /** @type {number[] | null} pixels of the picture at which it stands */
+    this.there = null;
     const follow = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       const { x, y, from: [y1, y2] } = this.grip;
@@ -102,6 +105,7 @@ export class Handle {
     const { node } = this;
     if (!late) this.at = at;
     node.hidden = !at;
+    this.there = null;
     if (!at) return;
     const { box, scale, x, y } = frame;
     this.scale = scale;
@@ -109,7 +113,7 @@ export class Handle {
     const sides = [box.width ?? box.side, box.height ?? box.side];
     const [left, top] = [box.left, box.top].map((low, c) => within(wanted[c], low, low + sides[c]));
     node.classList.toggle("outside", Math.abs(left - wanted[0]) + Math.abs(top - wanted[1]) > 1);
-    node.classList.toggle("right", left > box.left + 0.7 * sides[0]);
+    this.there = [left, top];
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 

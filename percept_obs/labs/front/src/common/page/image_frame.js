@@ -4,8 +4,8 @@ import { linearScale, tickLabel } from "../model/scales.js";
 import { LINE } from "./line_styles.js";
 import { endMark, startMark, stroke } from "./marks.js";
 
-/** Room for what is written around the square. */
-const ROOM = { left: 38, right: 12, top: 20, bottom: 34 };
+/** Room around the square, of which what is written at its left takes more. */
+const ROOM = { left: 14, right: 12, top: 12, bottom: 22 };
 
 /** A square around ranges of both coordinates. */
 export function squareAround(bounds) {
@@ -21,12 +21,13 @@ export function showsToo({ centre, half }, wanted) {
   return apart + wanted.half <= 1.2 * half && wanted.half > 0.4 * half;
 }
 
-/** Where a square lies on a picture's canvas, which is made to fit its place, with so much more room at its right. */
-export function placed(target, { centre, half }, font, more = 0) {
-  const { width, height } = target.fit(font);
-  const [across, down] = [width - ROOM.left - ROOM.right - more, height - ROOM.top - ROOM.bottom];
+/** Where a square lies on a picture that has begun, with so much more room at its right. */
+export function placed({ context, width, height }, { centre, half, ticks }, more = 0) {
+  const widest = Math.max(...["y2", ...ticks[1].map(textOf)].map((text) => context.measureText(text).width));
+  const before = ROOM.left + Math.ceil(widest);
+  const [across, down] = [width - before - ROOM.right - more, height - ROOM.top - ROOM.bottom];
   const side = Math.min(across, down);
-  const box = { left: ROOM.left + (across - side) / 2, top: ROOM.top + (down - side) / 2, side };
+  const box = { left: before + (across - side) / 2, top: ROOM.top + (down - side) / 2, side };
   const [scale, left, top] = [side / (2 * half), box.left + side / 2, box.top + side / 2];
   // Nothing is drawn further off than this, for a canvas would cut it into dashes too.
   const far = 4 * Math.max(width, height);
@@ -43,33 +44,43 @@ export function clipTo(pen, { left, top, side = 0, width = side, height = side }
   pen.clip();
 }
 
-/** A box with round numbers at its left and below it, and the names of both axes. */
-export function drawAxes(pen, { box, x, y }, ticks, theme, names = ["y1", "y2"]) {
+/** Return true if a place lies in a box. */
+export function holds({ left, top, side }, /** @type {number[]} */ [x, y]) {
+  return x >= left && x <= left + side && y >= top && y <= top + side;
+}
+
+/** A box with round numbers at its left and below it, and the names of both axes among them. */
+export function drawAxes(picture, frame, ticks, theme) {
+  const { left, top, side } = frame.box;
+  picture.write("y2", left - 6, top + 6, theme.ink, "right");
+  picture.write("y1", left + side, top + side + 11, theme.ink, "right");
+  drawTicks(picture, frame, ticks, theme);
+}
+
+/** A box with round numbers at its left and below it, as far as they have room beside what is written there. */
+export function drawTicks(picture, { box, x, y }, ticks, theme) {
+  const { pen } = picture;
   const { left, top, side, width = side, height = side } = box;
   const [right, bottom] = [left + width, top + height];
-  pen.setLineDash([]);
-  pen.strokeStyle = theme.grid;
-  pen.fillStyle = theme.muted;
-  pen.textAlign = "center";
-  pen.textBaseline = "top";
+  const grid = (from, to) => {
+    pen.setLineDash([]);
+    pen.strokeStyle = theme.grid;
+    stroke(pen, from, to);
+  };
   for (const [tick, at] of within(ticks[0], x, left, right)) {
-    stroke(pen, [at, top], [at, bottom]);
-    pen.fillText(tickLabel(tick, false), at, bottom + 6);
+    grid([at, top], [at, bottom]);
+    picture.write(textOf(tick), at, bottom + 11, theme.muted);
   }
-  pen.textAlign = "right";
-  pen.textBaseline = "middle";
   for (const [tick, at] of within(ticks[1], y, top, bottom)) {
-    stroke(pen, [left, at], [right, at]);
-    pen.fillText(tickLabel(tick, false), left - 6, at);
+    grid([left, at], [right, at]);
+    picture.write(textOf(tick), left - 6, at, theme.muted, "right");
   }
   pen.strokeStyle = theme.line;
   pen.strokeRect(left + 0.5, top + 0.5, width, height);
-  pen.fillStyle = theme.ink;
-  pen.textBaseline = "alphabetic";
-  pen.textAlign = "left";
-  pen.fillText(names[1], left - 2, top - 8);
-  pen.textAlign = "right";
-  pen.fillText(names[0], right, bottom + 30);
+}
+
+function textOf(tick) {
+  return tickLabel(tick, false);
 }
 
 /** Ticks with their places, as far as these lie inside. */

@@ -6,23 +6,31 @@ import { rimOf } from "../model/space.js";
 import { indicesIn } from "../model/timeline.js";
 import { meanSpeed } from "../model/velocities.js";
 import { imagePlaneInWords } from "../model/words.js";
-import { Picture } from "./canvas.js";
 import { hull } from "./chart_parts.js";
 import { button } from "./dom.js";
 import { Handle } from "./handle.js";
-import { clipTo, drawAxes, drawEnds, drawPath, placed, showsToo, squareAround } from "./image_frame.js";
+import { clipTo, drawAxes, drawEnds, drawPath, holds, placed, showsToo, squareAround } from "./image_frame.js";
 import { opacityOf } from "./line_styles.js";
 import { DASHES, KEPT, SOLID } from "./looks.js";
+import { LabelledPicture, meet } from "./labels.js";
 import { foeMark, ghostMark, pointMark, rimMark } from "./marks.js";
 import { drawSwung } from "./swing.js";
 import { drawAlike, drawVelocities } from "./velocities.js";
 
 /** Opacity of the path at times that are not in sight. */
 const OTHER_TIMES = 0.2;
+/** The button on the picture, and its size from the right and upper rim on. */
+const [FIT, FITTING] = ["Fit", [84, 30]];
+/** Points of a path from which labels keep away. */
+const MOST = 40;
+/** Radius of a handle that has a number, and half the size of the number. */
+const [NUMBERED, NUMBER] = [12, [5, 7]];
+/** From the middle of a mark to its name. */
+const BESIDE = 12;
 const NONE = /** @type {(...of: any[]) => any} */ (() => null);
 
 /** A picture of a square of the image, with handles to drag. */
-export class FramedImage extends Picture {
+export class FramedImage extends LabelledPicture {
   constructor(lab, handles) {
     super("image-plane", "Image plane");
     this.lab = lab;
@@ -38,7 +46,7 @@ export class FramedImage extends Picture {
       lab.redraw();
     };
     const attributes = { class: "fitting", hidden: true, "data-control": "fit image", title: "Show all of the path" };
-    this.fitting = button("Fit", fit, attributes);
+    this.fitting = button(FIT, fit, attributes);
     this.figure.append(this.fitting, ...this.handles.map(({ node }) => node));
   }
 
@@ -57,23 +65,60 @@ export class FramedImage extends Picture {
 
   /** Paint inside a square, and put handles in their places. */
   paint(squareOf, theme, { inside, outside = (_pen, _frame) => {}, room = 0 }, placesIn) {
+    this.begin(theme);
     const square = (this.square = this.squareFor(squareOf));
-    const frame = { ...placed(this, square, theme.font, room), lineWidth: theme.width };
+    const frame = { ...placed(this, square, room), picture: this, lineWidth: theme.width };
     const pen = this.context;
-    this.underlay([square, theme, room], (below) => drawAxes(below, frame, square.ticks, theme));
+    this.underlay([square, theme, room], () => drawAxes(this, frame, square.ticks, theme));
+    if (!this.fitting.hidden) this.report(FIT, [this.width - FITTING[0], 0, this.width, FITTING[1]]);
+    const places = placesIn(square);
+    this.handles.forEach((handle, k) => handle.stand(places[k], frame, this.lab.late));
+    this.number();
     pen.save();
     clipTo(pen, frame.box);
     inside(pen, frame);
     pen.restore();
     outside(pen, frame);
-    const places = placesIn(square);
-    this.handles.forEach((handle, k) => handle.stand(places[k], frame, this.lab.late));
+    this.end();
+  }
+
+  /** Keep labels away from handles, of which the lower ones hide their numbers where others lie on them. */
+  number() {
+    for (const { node, text, there } of this.handles.toReversed()) {
+      if (!there) continue;
+      const [[x, y], [across, down]] = [there, NUMBER];
+      const box = [x - across, y - down, x + across, y + down];
+      const covered = Boolean(text) && this.taken.some((other) => meet(box, other));
+      node.classList.toggle("covered", covered);
+      if (text && !covered) this.report(text, box);
+      this.avoid(x, y, NUMBERED);
+    }
+  }
+
+  /** Keep labels away from a path, where they find another place. */
+  busyAlong(rows, width, { x, y }) {
+    const every = width * Math.max(1, Math.floor(rows.length / width / MOST));
+    let before = /** @type {number[] | null} */ (null);
+    for (let k = 0; k + 1 < rows.length; k += every) {
+      const at = [x(rows[k]), y(rows[k + 1])];
+      this.busy.push([at[0] - 3, at[1] - 3, at[0] + 3, at[1] + 3]);
+      if (before) this.avoidLine(before, at, this.busy);
+      before = at;
+    }
   }
 
   /** Draw the images of the copies that swing along what is not seen. */
   swing(pen, { box, x, y }, shown, cursor, theme) {
     const swung = this.scene?.swung(shown, cursor, theme);
-    if (swung) drawSwung(pen, swung, ({ image: [y1, y2] }) => [x(y1), y(y2)], [box.left + 4, box.top + 14], theme);
+    if (!swung) return;
+    drawSwung(pen, swung, ({ image: [y1, y2] }) => [x(y1), y(y2)], theme);
+    this.caption("swung", swung.words, box, theme.ink, 1);
+  }
+
+  /** Write words in a corner of the square, as far as they have room. */
+  caption(id, words, { left, top, side }, colour, rank) {
+    const text = this.shortened(words, side - 12);
+    this.tag({ id, text, at: [left, top], within: [left, top, left + side, top + side], colour, rank });
   }
 }
 
@@ -89,7 +134,7 @@ export class ImagePlane extends FramedImage {
   constructor(lab, { name, label, tag, onMove, ...parts }) {
     const said = { label: `${label}: drag it, or use the arrow keys`, className: "diamond" };
     super(lab, [{ name, ...said, onMove, onRest: () => lab.rest() }]);
-    this.tag = tag;
+    this.said = tag;
     /** @type {any} */
     this.parts = { towardsOf: NONE, alikeOf: NONE, focusAt: NONE, ...parts };
   }
@@ -104,13 +149,15 @@ export class ImagePlane extends FramedImage {
     };
     const towards = parts.towardsOf(shown);
     const atInfinity = ({ centre, half }) => towards && centre.map((value, c) => value + 1.5 * half * towards[c]);
-    const outside = (pen, frame) => map?.drawKey(pen, frame, theme);
+    const outside = (_pen, frame) => {
+      map?.drawKey(this, frame, theme);
+      const { there } = this.handles[0];
+      const text = place || !towards ? this.said : `${this.said} at infinity`;
+      if (there) this.tag({ id: "handle", text, at: there, gap: BESIDE, colour: theme.warning, rank: 0 });
+    };
     const drawing = { inside, outside, room: map?.roomFor(shown) };
     const squareNow = () => squareOf(shown, ghost, place, this.lab.span);
     this.paint(squareNow, theme, drawing, (square) => [place ?? atInfinity(square)]);
-    const tag = place || !towards ? this.tag : `${this.tag} at infinity`;
-    const { dataset } = this.handles[0].node;
-    if (dataset.tag !== tag) dataset.tag = tag;
   }
 
   trace(pen, frame, shown, ghost, cursor, theme) {
@@ -131,19 +178,27 @@ export class ImagePlane extends FramedImage {
     if (truth?.length) trace(truth, theme.ink, SOLID);
     shown.runs.forEach((run) => trace(run.estimate, theme.lines[run.order], DASHES[run.order]));
     if (truth?.length) drawEnds(pen, inSight(truth), width, frame, theme);
+    if (truth?.length) this.busyAlong(inSight(truth), width, frame);
     if (cursor === null) return;
     const at = between(time, cursor);
     if (truth?.length) {
       const speed = meanSpeed(time, truth, width, 0, [from, to]);
       const alike = parts.alikeOf(shown, at, this.square);
-      if (alike) drawAlike(pen, frame, alike, speed, theme);
-      else drawVelocities(pen, frame, parts.arrowsOf(shown, at, theme), speed, theme);
+      if (alike) drawAlike(frame, alike, speed, theme);
+      else drawVelocities(frame, parts.arrowsOf(shown, at, theme), speed, theme);
     }
     const focus = parts.focusAt(shown, at);
     if (focus?.circle) drawCircle(pen, focus.circle, frame, theme);
-    if (focus) foeMark(pen, frame.x(focus.foe[0]), frame.y(focus.foe[1]), "FOE now", theme);
+    if (focus) this.nameFocus(frame, focus.foe, theme);
     drawPoints(pen, shown, at, frame, theme);
     this.swing(pen, frame, shown, cursor, theme);
+  }
+
+  /** The focus of expansion of a motion that varies, where it is in sight. */
+  nameFocus({ x, y, box }, foe, theme) {
+    const at = [x(foe[0]), y(foe[1])];
+    foeMark(this.context, at[0], at[1], theme);
+    if (holds(box, at)) this.tag({ id: "focus", text: "FOE now", at, gap: BESIDE, colour: theme.warning, rank: 0 });
   }
 
   describe(shown) {
@@ -195,7 +250,7 @@ function drawPoints(pen, shown, at, { x, y, box }, theme) {
   for (const { estimate, order } of shown.runs) {
     const there = place(estimate);
     const rim = rimOf(middle, there, corners);
-    if (rim) rimMark(pen, rim, "", theme.lines[order], theme);
+    if (rim) rimMark(pen, rim, theme.lines[order]);
     else ghostMark(pen, ...there, theme.lines[order]);
   }
   if (shown.truth) pointMark(pen, ...place(shown.truth), theme.ink, theme);

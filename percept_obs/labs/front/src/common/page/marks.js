@@ -1,6 +1,7 @@
 // The one language of marks: what the start, the end, the present, an estimate, a reset look like in every picture.
 
-const HALO = 3;
+/** Width of the rim of a dot, by which it stands out of what lies below it. */
+const RIM = 1.5;
 /** Radius of a ghost, which leaves room for the point inside of it. */
 const GHOST = 9;
 
@@ -22,7 +23,7 @@ export function endMark(pen, x, y, theme) {
 /** Where the point is at the time shown: a full dot. */
 export function pointMark(pen, x, y, colour, theme) {
   if (Number.isNaN(x + y)) return;
-  disc(pen, x, y, 4 + HALO / 2, theme.paper);
+  disc(pen, x, y, 4 + RIM, theme.paper);
   disc(pen, x, y, 4, colour);
 }
 
@@ -32,7 +33,7 @@ export function ghostMark(pen, x, y, colour) {
 }
 
 /** Where the translation points: an open diamond, as its handle is where the motion is constant. */
-export function foeMark(pen, x, y, text, theme) {
+export function foeMark(pen, x, y, theme) {
   if (Number.isNaN(x + y)) return;
   pen.setLineDash([]);
   pen.strokeStyle = theme.warning;
@@ -41,11 +42,11 @@ export function foeMark(pen, x, y, text, theme) {
   for (const [across, down] of [[0, -9], [9, 0], [0, 9], [-9, 0]]) pen.lineTo(x + across, y + down);
   pen.closePath();
   pen.stroke();
-  label(pen, text, x + 13, y, theme.warning, theme, "left", "middle");
+  pen.lineWidth = 1;
 }
 
-/** Something outside of the picture: an arrow at the rim, with its value. */
-export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
+/** Something outside of the picture: an arrow at the rim. */
+export function rimMark(pen, { at: [x, y], angle }, colour) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   pen.fillStyle = colour;
   pen.beginPath();
@@ -53,8 +54,6 @@ export function rimMark(pen, { at: [x, y], angle }, text, colour, theme) {
   pen.lineTo(x - 10 * c + 5 * s, y - 10 * s - 5 * c);
   pen.lineTo(x - 10 * c - 5 * s, y - 10 * s + 5 * c);
   pen.fill();
-  const align = c > 0.3 ? "right" : c < -0.3 ? "left" : "center";
-  label(pen, text, x - 14 * c, y - 14 * s, colour, theme, align, "middle");
 }
 
 /** An arrow with a head of a fixed size; nothing where it would be shorter than it could be seen. */
@@ -71,21 +70,6 @@ export function arrowMark(pen, from, to, { colour, dash, width, head }) {
   pen.moveTo(to[0], to[1]);
   for (const side of [0.5, -0.5]) pen.lineTo(to[0] - head * (c - side * s), to[1] - head * (s + side * c));
   pen.fill();
-}
-
-/** Letters that can be read on whatever lies below them. */
-export function label(pen, text, x, y, colour, theme, align = "left", baseline = "alphabetic") {
-  if (!text || Number.isNaN(x + y)) return;
-  pen.textAlign = align;
-  pen.textBaseline = baseline;
-  pen.setLineDash([]);
-  pen.lineWidth = HALO;
-  pen.lineJoin = "round";
-  pen.strokeStyle = theme.paper;
-  pen.strokeText(text, x, y);
-  pen.lineWidth = 1;
-  pen.fillStyle = colour;
-  pen.fillText(text, x, y);
 }
 
 /** A straight line in the pen's present style. */

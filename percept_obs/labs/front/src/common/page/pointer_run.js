@@ -2,6 +2,11 @@
 
 import { tracePath } from "./charts.js";
 import { setAttribute, setText, svg } from "./dom.js";
+import { meet } from "./labels.js";
+
+const NAME = "the run at the pointer";
+/** Pixels below a chart's upper rim at which its name may stand, and the height of its letters. */
+const [ROWS, ROW] = [[0, 14, 28, 42], 14];
 
 /** Shows one run at a time; of all that are wanted while it is computed, only the latest is asked for. */
 export class PointerRun {
@@ -54,15 +59,21 @@ export class PointerRun {
   }
 
   show() {
-    const { chart: { place }, found, name, path, picture } = this;
+    const { chart, chart: { place }, found, name, path, picture } = this;
     const pieces = [];
     if (found && place) tracePath(writing(pieces), place, found.time, found.errors);
     setAttribute(path, "d", pieces.join(""));
-    setText(name, pieces.length ? "the run at the pointer" : "");
-    if (!pieces.length) return;
+    if (!pieces.length) {
+      setText(name, "");
+      return;
+    }
     picture.style.clipPath = `inset(${place.top}px 0 calc(100% - ${place.bottom}px) 0)`;
-    name.setAttribute("x", String(place.left + place.width - 4));
-    name.setAttribute("y", String(place.top + 10));
+    const wide = chart.context.measureText(NAME).width + 2;
+    const [right, tops] = [place.right - 4, ROWS.map((row) => place.top + row)];
+    const top = tops.find((y) => !chart.texts.some(({ box }) => meet([right - wide, y, right, y + ROW], box)));
+    setText(name, top === undefined ? "" : NAME);
+    name.setAttribute("x", String(right));
+    name.setAttribute("y", String((top ?? 0) + ROW - 4));
   }
 }
 

@@ -5,15 +5,17 @@ import { linearScale, readable, tickLabel } from "../model/scales.js";
 import { ballAround, boxAround, claimedDistances, frameOf, keptBall, OPENING_LOOK } from "../model/space.js";
 import { partIn, positionAt, positionsOf, rimOf, turned } from "../model/space.js";
 import { indicesIn } from "../model/timeline.js";
-import { Picture } from "./canvas.js";
 import { element, listen } from "./dom.js";
 import { STEPS } from "./handle.js";
 import { opacityOf } from "./line_styles.js";
+import { LabelledPicture } from "./labels.js";
 import { KEPT, SOLID } from "./looks.js";
-import { disc, ghostMark, label, pointMark, rimMark, stroke } from "./marks.js";
+import { disc, ghostMark, pointMark, rimMark, stroke } from "./marks.js";
 import { drawSwung, Swing } from "./swing.js";
 
 const CAPTION = "Scene in metres; y1, y2 as in the image";
+/** The button of what is not seen, from the right and lower rim on. */
+const BUTTON = [176, 36];
 const EDGE = 14;
 const NEAR = 1;
 const KEY_TURN = 0.1;
@@ -29,7 +31,7 @@ const CAMERA = [0, 0, 0];
  * The scene, of which a lab gives `tracksOf`, `wordsOf`, `unseenOf` and perhaps `copiesOf`; `image` is the image plane
  * beside it.
  */
-export class Scene extends Picture {
+export class Scene extends LabelledPicture {
   constructor(lab, { image, ...parts }) {
     super("scene", "Scene, seen from the side");
     this.lab = lab;
@@ -110,7 +112,7 @@ export class Scene extends Picture {
 
   draw(shown, ghost, cursor, theme) {
     const { image, lab, look, parts, zoom } = this;
-    const size = this.fit(theme.font);
+    this.begin(theme);
     const there = shown.time.length > 0 && !shown.problem;
     this.swing.show(there && cursor !== null && parts.unseenOf(shown, between(shown.time, cursor), theme));
     if (!there) return;
@@ -121,12 +123,17 @@ export class Scene extends Picture {
     const sure = paths.filter(({ track }) => !track.of);
     const wanted = () => ballAround(boxAround((sure.length ? sure : paths).map(({ positions }) => positions)));
     const ball = (this.ball = lab.held && this.ball ? this.ball : keptBall(this.ball, wanted()));
-    const frame = frameOf(look, ball, { ...size, edge: EDGE, zoom });
-    const drawing = { pen: this.context, frame, theme, scene, ball };
+    const frame = frameOf(look, ball, { width: this.width, height: this.height, edge: EDGE, zoom });
+    const drawing = { picture: this, pen: this.context, frame, theme, scene, ball };
     const corners = imageCorners(image.square, scene, ball);
-    this.underlay([look, zoom, ball, corners, theme], (pen) => {
-      this.axes({ ...drawing, pen }, frustum({ ...drawing, pen }, corners));
-      label(pen, CAPTION, 4, 12, theme.ink, theme);
+    const pressed = !this.swing.press.hidden;
+    this.underlay([look, zoom, ball, corners, theme, pressed], (pen) => {
+      const { height, width, swing: { press } } = this;
+      const corner = [width - BUTTON[0], height - BUTTON[1], width, height];
+      if (pressed) this.report(press.textContent ?? "", corner);
+      this.write(this.shortened(CAPTION, width - 10), 5, 9, theme.ink, "left");
+      frustum({ ...drawing, pen }, corners);
+      this.axes({ ...drawing, pen });
     });
     if (scene.foe) foe(drawing);
     for (const { track, positions } of paths) path(drawing, positions, track);
@@ -136,30 +143,32 @@ export class Scene extends Picture {
     for (const track of scene.tracks) if (!track.of && !track.kept) point(drawing, track, at);
     for (const track of scene.tracks) if (track.of && !track.kept) estimate(drawing, track, at);
     const swung = this.swung(shown, cursor, theme);
-    if (swung) drawSwung(this.context, { ...swung, words: "" }, ({ place }) => on(frame, place), [0, 0], theme);
+    if (swung) drawSwung(this.context, swung, ({ place }) => on(frame, place), theme);
+    this.end();
   }
 
   /** X, Y and Z from the camera on, as far as the scene goes, with round numbers of metres where there is room. */
-  axes({ pen, frame, theme, ball }, taken) {
+  axes({ pen, frame, theme, ball }) {
     const step = linearScale(0, ball.radius / this.zoom, 3).ticks[1];
+    const numbers = /** @type {[string, number, number][]} */ ([]);
     ["X", "Y", "Z"].forEach((name, i) => {
       const end = Math.max(ball.centre[i] + 0.75 * ball.radius, 0.3 * ball.radius);
       const place = (value) => [0, 1, 2].map((axis) => (axis === i ? value : 0));
       pen.setLineDash([]);
       pen.strokeStyle = theme.line;
       line(pen, frame, CAMERA, place(end));
-      const [x, y] = beyond(frame, place(end), 10);
-      label(pen, `${name}${i === 2 ? " in m" : ""}`, x, y, theme.ink, theme, "center", "middle");
+      const text = `${name}${i === 2 ? " in m" : ""}`;
+      this.tag({ ...outwards(frame, place(end)), id: name, text, colour: theme.ink, rank: 0 });
       if (distance(on(frame, CAMERA), on(frame, place(step))) < 24) return;
       for (let value = step; value < end - 0.2 * step && value < 40 * step; value += step) {
         const [left, top] = on(frame, place(value));
         pen.fillStyle = theme.line;
         pen.fillRect(left - 1.5, top - 1.5, 3, 3);
-        if (i < 2 || taken.some((other) => distance([left, top + 10], other) <= 24)) continue;
-        const text = tickLabel(Number(value.toPrecision(6)), false);
-        label(pen, text, left, top + 10, theme.muted, theme, "center", "middle");
+        if (i === 2) numbers.push([tickLabel(Number(value.toPrecision(6)), false), left, top + 11]);
       }
     });
+    this.end();
+    for (const [text, left, top] of numbers) this.write(text, left, top, theme.muted);
   }
 }
 
@@ -180,7 +189,7 @@ function imageCorners(square, scene, ball) {
 }
 
 /** The direction of the focus of expansion, along which the point moves straight towards the camera or away. */
-function foe({ pen, frame, theme, scene, ball }) {
+function foe({ picture, pen, frame, theme, scene, ball }) {
   const direction = Array.from(scene.ray(...scene.foe, new Float64Array(3)));
   const length = Math.hypot(...direction);
   if (!(length < Infinity)) return;
@@ -188,12 +197,11 @@ function foe({ pen, frame, theme, scene, ball }) {
   pen.setLineDash([6, 3]);
   pen.strokeStyle = theme.warning;
   line(pen, frame, CAMERA, end);
-  const [x, y] = beyond(frame, end, 12);
-  label(pen, "FOE", x, y, theme.warning, theme, "center", "middle");
+  picture.tag({ ...outwards(frame, end), id: "foe", text: "FOE", colour: theme.warning, rank: 1 });
 }
 
 /** The true point at a time, on the ray on which the camera sees it. */
-function point({ pen, frame, theme, scene, ball }, track, at) {
+function point({ picture, pen, frame, theme, scene, ball }, track, at) {
   const place = positionAt(track, scene.ray, at);
   const length = Math.hypot(...place);
   if (!(length > 0 && length < Infinity)) return;
@@ -209,11 +217,12 @@ function point({ pen, frame, theme, scene, ball }, track, at) {
   line(pen, frame, place, foot);
   line(pen, frame, foot, [0, 0, place[2]]);
   pointMark(pen, ...on(frame, place), track.colour, theme);
+  picture.avoid(...on(frame, place), 6);
 }
 
-/** The frustum with the image before the camera; return where that image's axes are named. */
-function frustum({ pen, frame, theme }, corners) {
-  if (!corners.length) return [];
+/** The frustum with the image before the camera, whose axes are named. */
+function frustum({ picture, pen, frame, theme }, corners) {
+  if (!corners.length) return;
   pen.setLineDash([]);
   pen.strokeStyle = theme.muted;
   pen.fillStyle = theme.muted;
@@ -227,12 +236,10 @@ function frustum({ pen, frame, theme }, corners) {
   pen.stroke();
   const [lowLeft, lowRight, , highLeft] = corners.map((corner) => on(frame, corner));
   const middle = [0, 1].map((c) => (lowRight[c] + highLeft[c]) / 2);
-  return [lowRight, highLeft].map((corner, i) => {
+  [lowRight, highLeft].forEach((corner, i) => {
     const at = [0, 1].map((c) => lowLeft[c] + 0.7 * (corner[c] - lowLeft[c]));
-    const out = distance(middle, at) || 1;
-    const [x, y] = at.map((value, c) => value + (12 * (value - middle[c])) / out);
-    label(pen, ["y1 →", "y2 ↑"][i], x, y, theme.muted, theme, "center", "middle");
-    return [x, y];
+    const towards = [0, 1].map((c) => at[c] - middle[c]);
+    picture.tag({ id: `y${i + 1}`, text: ["y1 →", "y2 ↑"][i], at, towards, gap: 2, colour: theme.muted, rank: 1 });
   });
 }
 
@@ -241,15 +248,11 @@ function on(frame, place) {
   return [frame.x(...place), frame.y(...place)];
 }
 
-/**
- * A place some pixels further away from the camera than another.
- * @returns {[number, number]}
- */
-function beyond(frame, place, pixels) {
+/** Where the end of a line from the camera on is named: first beyond it. */
+function outwards(frame, end) {
   const [x0, y0] = on(frame, CAMERA);
-  const [x, y] = on(frame, place);
-  const length = distance([x0, y0], [x, y]) || 1;
-  return [x + (pixels * (x - x0)) / length, y + (pixels * (y - y0)) / length];
+  const [x, y] = on(frame, end);
+  return { at: [x, y], towards: [x - x0, y - y0], gap: 2 };
 }
 
 /** A line as far as it is on the picture: what is beyond would be cut into dashes too, thousands of them. */
@@ -286,17 +289,18 @@ function path({ pen, frame, theme }, positions, { colour, dash, of, kept }) {
 }
 
 /** Other places where a point would look alike, or else: those whose arrows are in the image, in the same words. */
-function copies({ pen, frame, theme }, found) {
-  for (const { place, text, alike } of found) {
+function copies({ picture, pen, frame, theme }, found) {
+  for (const [k, { place, text, alike }] of found.entries()) {
     const [x, y] = on(frame, place);
     const colour = alike ? theme.warning : theme.muted;
     disc(pen, x, y, 3, colour);
-    label(pen, text, x + 5, y + 3, colour, theme, "left", "top");
+    picture.avoid(x, y, 4);
+    picture.tag({ id: `copy ${k}`, text, at: [x, y], towards: [1, 1], gap: 5, colour, rank: 3 });
   }
 }
 
 /** An estimate as a ghost on its ray, with the distances that it claims, and how far it is from the truth. */
-function estimate({ pen, frame, theme, scene, ball }, track, at) {
+function estimate({ picture, pen, frame, theme, scene, ball }, track, at) {
   const { colour, of } = track;
   if (opacityOf(theme, colour) < 1) return;
   const place = positionAt(track, scene.ray, at);
@@ -329,6 +333,13 @@ function estimate({ pen, frame, theme, scene, ball }, track, at) {
   const [width, height] = frame.corners[1];
   const rim = rimOf(on(frame, CAMERA), on(frame, target), [[8, 8], [width - 8, height - 8]]);
   const text = somewhere ? `${readable(track.distances[at.sample])} m` : inverse < 0 ? "behind the camera" : "∞";
-  if (rim) rimMark(pen, rim, text, colour, theme);
-  else ghostMark(pen, ...on(frame, place), colour);
+  if (!rim) {
+    ghostMark(pen, ...on(frame, place), colour);
+    return;
+  }
+  rimMark(pen, rim, colour);
+  const towards = [-Math.cos(rim.angle), -Math.sin(rim.angle)];
+  const inner = rim.at.map((value, c) => value + 5 * towards[c]);
+  picture.avoid(inner[0], inner[1], 6);
+  picture.tag({ id: `rim ${colour}`, text, at: inner, towards, gap: 7, colour, rank: 2 });
 }

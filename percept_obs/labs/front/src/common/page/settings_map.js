@@ -7,11 +7,11 @@ import { cellInWords, mapInWords, placeInWords, stateInWords } from "../model/ma
 import { changeAt } from "../model/settings.js";
 import { cellAtShares, sharesOf, Sweep } from "../model/sweep.js";
 import { readOf } from "../model/typed.js";
-import { Picture } from "./canvas.js";
 import { select } from "./controls.js";
 import { element, listen, setAttribute, setText } from "./dom.js";
 import { topic } from "./fieldsets.js";
 import { STEPS } from "./handle.js";
+import { LabelledPicture } from "./labels.js";
 import { PointerRun } from "./pointer_run.js";
 import { boxOf, drawAim, drawMap } from "./settings_map_drawing.js";
 import { openWorker } from "./worker.js";
@@ -25,7 +25,7 @@ const SLICE = 8;
 /** Milliseconds in which a first picture has been handed to the screen, so that opening a worker does not delay it. */
 const SHOWN = 50;
 
-export class SettingsMap extends Picture {
+export class SettingsMap extends LabelledPicture {
   /** @type {Filling | null} what fills maps in the page */
   filling = null;
   /** @type {Worker | null} */
@@ -126,7 +126,7 @@ export class SettingsMap extends Picture {
   }
 
   /** Fill maps in slices of the page's own time: until there is a worker, and where there is none. */
-  begin() {
+  fill() {
     if (this.filling) return;
     const { lab, sweep } = this;
     const { model, kernels } = lab;
@@ -145,7 +145,7 @@ export class SettingsMap extends Picture {
    * first picture, which would wait for it.
    */
   openWorker() {
-    this.begin();
+    this.fill();
     const { filling, lab, sweep, pointerRun } = this;
     if (this.worker || typeof Worker === "undefined") return;
     const ready = (ask) => {
@@ -187,15 +187,16 @@ export class SettingsMap extends Picture {
     if (off && !figure.hidden) this.close();
     figure.hidden = off;
     if (off) return undefined;
-    this.begin();
+    this.fill();
     const functions = this.want(shown);
     if (!functions) return undefined;
-    const box = boxOf(this.fit(theme.font));
+    this.begin(theme);
+    const box = boxOf(this);
     this.coverBy(box);
     const { plan, found, version } = sweep;
     const title = this.title(plan, what);
     const axes = found && [plan?.across.place, plan?.up.place];
-    this.underlay([version, title, box, axes, theme], (pen) => drawMap(pen, box, { found, plan, what, title }, theme));
+    this.underlay([version, title, box, axes, theme], () => drawMap(this, box, { found, plan, what, title }, theme));
     const standing = found && sharesOf(found.plan, shown.settings, functions);
     if (standing) drawAim(this.context, box, standing, this.aim && cellAtShares(found, this.aim), theme);
     return this.read();

@@ -4,7 +4,7 @@ import { cellAt, shareOf, ticksOn } from "../model/axes.js";
 import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, NOT_YET } from "../model/cells.js";
 import { linearScale, readable } from "../model/scales.js";
 import { paintDots } from "./canvas.js";
-import { clipTo, drawAxes } from "./image_frame.js";
+import { clipTo, drawTicks } from "./image_frame.js";
 import { stroke } from "./marks.js";
 
 const MARGIN = { left: 46, top: 34, right: 94, bottom: 62 };
@@ -145,18 +145,17 @@ function drawTolerance(pen, box, found, theme) {
 }
 
 /** All that stays while a cursor moves. */
-export function drawMap(pen, box, { found, plan, what, title }, theme) {
-  pen.textAlign = "left";
-  pen.textBaseline = "alphabetic";
-  pen.fillStyle = theme.ink;
-  pen.fillText(`${title}, in ${what === "settling" ? "s" : "%"}`, 4, 11);
+export function drawMap(picture, box, { found, plan, what, title }, theme) {
+  const { pen, width } = picture;
+  const words = (text) => picture.shortened(text, width - 10);
+  picture.write(words(`${title}, in ${what === "settling" ? "s" : "%"}`), 5, 8, theme.ink, "left");
   if (found) {
     pen.save();
     clipTo(pen, box);
     paintCells(pen, box, { found, what }, theme);
     drawTolerance(pen, box, found, theme);
     pen.restore();
-    drawKey(pen, box, what, found, theme);
+    drawKey(picture, box, what, found, theme);
   }
   if (!plan?.across || !plan.up) return;
   const ticks = (axis, length, each) => ticksOn(axis, (low, high) => linearScale(low, high, length / each).ticks);
@@ -166,21 +165,21 @@ export function drawMap(pen, box, { found, plan, what, title }, theme) {
     y: (value) => box.top + box.height - shareOf(plan.up, value) * box.height,
   };
   const each = [ticks(plan.across, box.width, 45), ticks(plan.up, box.height, 30)];
-  drawAxes(pen, frame, each, { ...theme, grid: "transparent" }, [plan.across.label, plan.up.label]);
+  picture.write(words(plan.up.label), 5, box.top - 10, theme.ink, "left");
+  const across = words(plan.across.label);
+  const end = Math.max(box.left + box.width, 5 + pen.measureText(across).width);
+  picture.write(across, end, box.top + box.height + 25, theme.ink, "right");
+  drawTicks(picture, frame, each, { ...theme, grid: "transparent" });
 }
 
 /** The key of shades and hatches, beside the map. */
-function drawKey(pen, { left, top, width, height }, what, { duration, tolerance }, theme) {
+function drawKey(picture, { left, top, width, height }, what, { duration, tolerance }, theme) {
+  const { pen } = picture;
   const x = left + width + 10;
   const edges = edgesOf(what, duration);
   const each = Math.min(14, Math.max(4, (height - 76) / SHADES));
-  pen.textAlign = "left";
-  pen.textBaseline = "middle";
   pen.setLineDash([]);
-  const word = (text, at, y) => {
-    pen.fillStyle = theme.ink;
-    pen.fillText(text, at, y);
-  };
+  const word = (text, at, y) => picture.write(text, at, y, theme.ink, "left");
   for (let shade = 0; shade < SHADES; shade++) {
     pen.globalAlpha = opacityOf(shade);
     pen.fillStyle = theme.lines[0];

@@ -1,7 +1,7 @@
 // Moving what is not seen: a copy of the point swings along the direction that the measurements do not tell.
 
 import { button } from "./dom.js";
-import { label, pointMark } from "./marks.js";
+import { pointMark } from "./marks.js";
 
 /** Swings in a second, and the part of one that a step is where nothing may move by itself. */
 const RATE = 0.4;
@@ -51,13 +51,12 @@ export class Swing {
   }
 }
 
-/** The copies on a picture, at the places that `on` returns, and what stands still meanwhile. */
-export function drawSwung(pen, { copies, words }, on, [x, y], theme) {
+/** The copies on a picture, at the places that `on` returns. */
+export function drawSwung(pen, { copies }, on, theme) {
   for (const copy of copies) {
     const [left, top] = on(copy);
     pen.globalAlpha = 0.75;
     pointMark(pen, left, top, copy.colour, theme);
     pen.globalAlpha = 1;
   }
-  label(pen, words, x, y, theme.ink, theme);
 }

@@ -102,7 +102,7 @@ export class MotionPicture extends View {
   /** Where distance drops out of the motion: the true place, and the typed one. */
   foe({ true: [y1, y2], mine }, { x, y }, blue) {
     const { theme } = this;
-    foeMark(this.context, within(x(y1), 10, this.width - 10), within(y(y2), 10, this.height - 10), "", theme);
+    foeMark(this.context, within(x(y1), 10, this.width - 10), within(y(y2), 10, this.height - 10), theme);
     this.tag({ id: "foe", text: "true place", at: [x(y1), y(y2)], colour: theme.warning, rank: 1 });
     if (mine.includes(null)) return;
     this.ring(x(mine[0]), y(mine[1]), 9, blue);

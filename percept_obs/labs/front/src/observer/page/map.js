@@ -76,8 +76,10 @@ export class MapPicture {
   }
 
   /** The key of the shades, beside the picture, where it covers nothing. */
-  drawKey(pen, { box: { left, top, side } }, theme) {
+  drawKey(picture, { box }, theme) {
     if (!this.found) return;
+    const { pen } = picture;
+    const { left, top, side } = box;
     const x = left + side + 6;
     const y = (shade) => top + side * (1 - shade / SHADES);
     for (let shade = 0; shade < SHADES; shade++) {
@@ -89,15 +91,12 @@ export class MapPicture {
     pen.setLineDash([]);
     pen.strokeStyle = theme.line;
     pen.strokeRect(x + 0.5, top + 0.5, KEY.width, side);
-    pen.fillStyle = theme.ink;
-    pen.textAlign = "left";
-    pen.textBaseline = "middle";
     for (let shade = 0; shade <= SHADES; shade += 2) {
-      pen.fillText(readable(100 * 10 ** (LEAST + shade / 2)), x + KEY.width + 4, y(shade));
+      picture.write(readable(100 * 10 ** (LEAST + shade / 2)), x + KEY.width + 4, y(shade), theme.ink, "left");
     }
-    pen.textBaseline = "alphabetic";
     const { seconds, distance } = this.found;
-    pen.fillText(`least error in % after ${readable(seconds)} s, at ${readable(distance)} m`, left + 20, top - 8);
+    const words = `least error in % after ${readable(seconds)} s, at ${readable(distance)} m`;
+    picture.caption("map", words, box, theme.ink, 1);
   }
 
   /** Paint a dot for each place; where a point comes behind the camera there is none. */

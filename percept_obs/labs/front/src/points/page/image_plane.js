@@ -45,12 +45,13 @@ export class ImagePlane extends FramedImage {
     }
     for (let k = 0; k < shown.points; k++) {
       drawPath(pen, recent(shown, shown.seenImages), pathOf(shown, k), frame, theme.lines[k], SOLID);
+      this.busyAlong(recent(shown, shown.seenImages).subarray(2 * k), 2 * shown.points, frame);
       drawPath(pen, recent(shown, shown.estimated.images), pathOf(shown, k), frame, theme.lines[k], DASHES[k]);
     }
     if (cursor !== null) {
       const { time, images, points } = shown;
       const speed = meanSpeed(time, images, 2 * points, 0, [0, time.length - 1]);
-      drawVelocities(pen, frame, this.parts.arrowsOf(shown, between(time, cursor), theme), speed, theme);
+      drawVelocities(frame, this.parts.arrowsOf(shown, between(time, cursor), theme), speed, theme);
     }
     drawAt(pen, shown, between(shown.time, cursor ?? shown.time[last]), frame, theme);
     this.swing(pen, frame, shown, cursor, theme);

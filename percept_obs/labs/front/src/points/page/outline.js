@@ -1,5 +1,7 @@
 // A body as it is drawn: a dart whose nose and wing tips are its three marks, or a polygon through all marks.
 
+import { meet } from "../../common/page/labels.js";
+
 /** Names of the copies at other distances; the dashes of a copy. */
 export const HERE = ["near, small", "here", "far, large"];
 export const DASH = [5, 5];
@@ -42,12 +44,15 @@ export function drawOutline(view, corners, colour, { width = 1.5, fill = 0, dash
 export function drawMark(view, [x, y], number, hidden, theme) {
   if (Number.isNaN(x + y)) return;
   const pen = view.context;
+  const box = [x - 5, y - 7, x + 5, y + 7];
   view.dot(x, y, 8, hidden ? theme.warning : theme.ink);
   if (hidden) view.dot(x, y, 6, theme.raised, 0);
+  if (view.cut(box, 0) || view.texts.some((other) => meet(box, other.box))) return;
   pen.textAlign = "center";
   pen.textBaseline = "middle";
   pen.fillStyle = hidden ? theme.warning : theme.paper;
   pen.fillText(String(number), x, y + 0.5);
+  view.report(String(number), box);
 }
 
 /** Middle of some places. */
