@@ -16,7 +16,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = {"observer": observer_lab, "points": points_lab, "structure": structure_lab}
 QUESTIONS = "() => [...window.perceptObsLabs][0].first.questions.all.map(({ name }) => name)"
-HOLDS = "() => { const [{ first }] = window.perceptObsLabs; return [first.questions.open.holds(first.scene), first.spoken]; }"
+HOLDS = """() => { const [{ first }] = window.perceptObsLabs;
+    return [first.questions.open.holds(first.scene), first.spoken]; }"""
 EVERY = 200
 RANDOM = sampled(7, EVERY)
 """Random settings in which labels are looked at."""
@@ -165,6 +166,7 @@ def test_every_picture_is_high_and_not_of_one_colour(name, kept, browser, tmp_pa
     if kept:
         page.goto((tmp_path / "lab.html").as_uri())
     page.wait_for_function(READY)
+    at_the_end(page)
     counted = []
     for face in ("first", "workbench"):
         page.evaluate("(face) => [...window.perceptObsLabs][0].turn(face)", face)

@@ -13,7 +13,7 @@ import { opacityOf } from "./line_styles.js";
 
 const LEFT = 48;
 const RIGHT = 12;
-const TOP = 20;
+const TOP = 21;
 const BOTTOM = 18;
 
 export class TimeChart extends LabelledPicture {
@@ -33,7 +33,7 @@ export class TimeChart extends LabelledPicture {
     const { band, level, regions = [], marks = [], bars = [], events = [] } = more;
     this.begin(theme);
     const { width, height } = this;
-    const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - (last ? BOTTOM : 7) };
+    const box = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - (last ? BOTTOM : 8) };
     const place = (this.place = new Place(this, span, scale, box));
     const clipped = { left: LEFT, top: TOP - 1, width: box.width, height: box.height + 2 };
     const pen = this.context;
@@ -79,7 +79,7 @@ export class TimeChart extends LabelledPicture {
 
   axes(place, theme, title, last) {
     const { pen, width } = this;
-    this.write(this.shortened(title, width - 8), 4, 6, theme.ink, "left");
+    this.write(this.shortened(title, width - 8), 4, 7, theme.ink, "left");
     for (const tick of place.scale.ticks) {
       const y = Math.round(place.y(tick)) + 0.5;
       horizontal(pen, place, tick, theme.grid, []);

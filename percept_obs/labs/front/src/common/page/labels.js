@@ -106,7 +106,7 @@ export class LabelledPicture extends Picture {
     const wide = this.pen.measureText(text).width;
     const left = x - { left: 0, center: wide / 2, right: wide }[align];
     const box = [left, y - HALF + 1, left + wide, y + HALF - 1];
-    if (this.cut(box, 0) || this.texts.some((other) => meet(box, other.box))) return false;
+    if (this.cut(box, 1) || this.texts.some((other) => meet(box, other.box))) return false;
     this.letter(text, left + wide / 2, y, colour, box);
     return true;
   }

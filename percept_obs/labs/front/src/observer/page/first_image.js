@@ -22,7 +22,7 @@ export function drawImage(screen, scene, motion, note) {
   const x = (y1) => width / 2 + (y1 - c1) * scale;
   const y = (y2) => height / 2 - (y2 - c2) * scale;
   const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[1])]);
-  view.avoid(width - 44, height - 24, 44, 24);
+  view.avoid(width - 44, height - 27, 44, 27);
   drawDirections(view, seen, theme);
   const { foe, radius, single } = seen;
   if (foe && radius) view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));

@@ -22,7 +22,7 @@ export function drawWorld(screen, scene, motion, note) {
   const y = (value) => height / 2 - 6 - (value - cz) * scale;
   const on = (place) => [x(place[0]), y(place[2])];
   drawGround(view, [cx, cz, scale], { x, y }, theme);
-  if (!screen.resetButton.hidden) view.avoid(width - 60, 24, 60, 24);
+  if (!screen.resetButton.hidden) view.avoid(width - 62, 27, 62, 27);
   const camera = on(seen.camera);
   const reach = (1.2 * Math.hypot(width, height)) / scale;
   const along = (direction) => {

@@ -21,7 +21,7 @@ export function drawImage(screen, scene, motion, note) {
   const x = (y1) => width / 2 + (y1 - c1) * scale;
   const y = (y2) => height / 2 - 8 - (y2 - c2) * scale;
   const on = ([X, Y, Z]) => (Z > NEAREST ? [x(X / Z), y(Y / Z)] : [NaN, NaN]);
-  view.avoid(width - 44, height - 24, 44, 24);
+  view.avoid(width - 44, height - 27, 44, 27);
   const blue = theme.lines[0];
   const draw = (places, colour, look) => drawOutline(view, outlineOf(places, state).map(on), colour, look);
   const at = seen.places.map(on);

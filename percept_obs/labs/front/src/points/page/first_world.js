@@ -20,7 +20,7 @@ export function drawWorld(screen, scene, motion, note) {
   const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[2])]);
   const seenFrom = (place) => on(body.toWorld(place));
   drawGround(view, [cx, cz, scale], { x, y }, theme);
-  if (!screen.resetButton.hidden) view.avoid(width - 60, 24, 60, 24);
+  if (!screen.resetButton.hidden) view.avoid(width - 62, 27, 62, 27);
   const camera = seenFrom([0, 0, 0]);
   const [c1, , zoom] = /** @type {number[]} */ (screen.image.at);
   const edges = [-1, 1].map((side) => seenFrom([(c1 + (side * screen.image.width) / 2 / zoom) * 60, 0, 60]));

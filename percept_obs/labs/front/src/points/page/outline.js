@@ -47,7 +47,7 @@ export function drawMark(view, [x, y], number, hidden, theme) {
   const box = [x - 5, y - 7, x + 5, y + 7];
   view.dot(x, y, 8, hidden ? theme.warning : theme.ink);
   if (hidden) view.dot(x, y, 6, theme.raised, 0);
-  if (view.cut(box, 0) || view.texts.some((other) => meet(box, other.box))) return;
+  if (view.cut(box, 1) || view.texts.some((other) => meet(box, other.box))) return;
   pen.textAlign = "center";
   pen.textBaseline = "middle";
   pen.fillStyle = hidden ? theme.warning : theme.paper;
