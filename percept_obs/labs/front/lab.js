@@ -247,7 +247,7 @@ body:not([data-jp-theme-light]) .percept-lab.dark {
 .percept-lab button.remove { padding: 0 8px; border: 0; color: var(--lab-muted); }
 .percept-lab button:disabled { opacity: 0.4; cursor: default; }
 
-.percept-lab .observers { display: grid; grid-template-columns: 1fr 1fr; gap: 2px 8px; align-items: start; }
+.percept-lab .observers { display: grid; grid-template-columns: 1fr 1fr; gap: 2px 0; align-items: start; }
 .percept-lab .observer { display: grid; grid-template-columns: 1fr auto; align-items: start; }
 .percept-lab .observer:has(> :is(.known, .refusal):not([hidden])) { grid-column: 1 / -1; }
 .percept-lab .observer .swatch { display: none; }
@@ -257,7 +257,7 @@ body:not([data-jp-theme-light]) .percept-lab.dark {
 .percept-lab .known dl { display: grid; grid-template-columns: auto 1fr; gap: 1px 10px; margin: 0; }
 .percept-lab .known dt { grid-column: 1; }
 .percept-lab .known dd { grid-column: 2; margin: 0; }
-.percept-lab button.about { padding: 0 6px; border: 0; background: none; color: var(--lab-muted); }
+.percept-lab button.about { padding: 0; border: 0; background: none; color: var(--lab-muted); }
 .percept-lab .gains-of { margin-bottom: 8px; }
 .percept-lab .gains-of h4 { display: flex; gap: 8px; align-items: center; }
 
