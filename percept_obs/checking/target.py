@@ -154,7 +154,7 @@ class Target:
             ]
             return Text(tuple(named), tuple(d for part in parts.values() for d in part.definitions))
         if isinstance(mine, Sequence) and all(isinstance(part, str) for part in mine):
-            return self.read("\n".join(mine))
+            return self.read(";\n".join(mine))
         if isinstance(mine, Sequence):
             texts = [self.read(part) for part in mine]
             return Text(

@@ -1,0 +1,207 @@
+"""Spelling: characters, what stands around formulas, and names, before anything is parsed."""
+
+import re
+import unicodedata
+from functools import cache, lru_cache
+from pathlib import Path
+
+from lark import Lark, Token
+
+from percept_obs.checking.points import key
+
+GREEK = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
+phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
+ACCENTS = {"\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde"}
+_OVER = {"hat": "hat", "bar": "bar", "dot": "dot", "tilde": "tilde"} | {
+    "widehat": "hat",
+    "widetilde": "tilde",
+    "overline": "bar",
+}
+REPLACED = {
+    **dict(zip("αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΦΨΩ", GREEK.split(), strict=True)),
+    **dict(zip("ϵϑϕϱϖ", ("epsilon", "theta", "phi", "rho", "pi"), strict=True)),
+    **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True)),
+    **dict(zip("−–·⋅×∗′’⟨⟩≠≤≥", ("-", "-", "*", "*", "*", "*", "'", "'", "(", ")", "!=", "<=", ">="), strict=True)),
+    **dict(zip("½¼¾⅓⅔", ("(1/2)", "(1/4)", "(3/4)", "(1/3)", "(2/3)"), strict=True)),
+    **dict(zip("‖√∑≡≔≜ᵀ″", ("||", r"\sqrt", r"\sum", r"\equiv", ":=", r"\triangleq", r"^{\top}", "''"), strict=True)),
+    **dict.fromkeys("\u2009\u202f\u00a0\u2002\u2003\u2061\u2062", " "),
+}
+_RELATION = re.compile(r"[=<>]|\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)(?![A-Za-z])")
+_FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
+_SAID = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
+_WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
+_NAMED_BY_COLON = re.compile(r"[\s{]*[A-Za-z]\w*(dot|')\s*:(?!=)[^=<>]*")
+
+
+def spelled(text: str) -> tuple[str, list[int]]:
+    """Return a text in plain letters and signs, and for each of its characters where it comes from."""
+    pieces = [_plain(c) for c in text]
+    return "".join(pieces), [k for k, piece in enumerate(pieces) for _ in piece]
+
+
+@lru_cache(maxsize=4096)
+def _plain(c: str) -> str:
+    if c in REPLACED or c.isascii():
+        return REPLACED.get(c, c)
+    if unicodedata.name(c, "").startswith("MATHEMATICAL"):
+        c = unicodedata.normalize("NFKC", c)
+    return REPLACED.get(c) or "".join(REPLACED.get(d, d) for d in unicodedata.normalize("NFD", c))
+
+
+@cache
+def parser() -> Lark:
+    """The parser of formulas."""
+    return Lark(_grammar(), parser="lalr", lexer="basic", start=["lines", "words"], propagate_positions=True)
+
+
+@cache
+def _terminal(name: str) -> re.Pattern[str]:
+    """A regular expression of the grammar that looks for what stands around formulas."""
+    layout = Lark(_grammar(), parser="lalr", lexer="basic", start="layout")
+    return re.compile(next(t for t in layout.terminals if t.name == name).pattern.to_regexp())
+
+
+@cache
+def _grammar() -> str:
+    return (Path(__file__).parent / "formula.lark").read_text(encoding="utf-8")
+
+
+@lru_cache(maxsize=256)
+def lexed(text: str) -> tuple[Token, ...]:
+    """Tokens of a text in plain letters, as the grammar has them."""
+    return tuple(parser().lex(text))
+
+
+def laid_out(text: str) -> str:
+    """Return a text of the same length in which only formulas are left: blanks stand where words were."""
+    text = _delimited(text)
+    lines = [_line(line) for line in re.sub(r"(?<!\\)\\\n", "  ", text).split("\n")]
+    return "\n".join(lines)
+
+
+def _blank(text: str) -> str:
+    return "".join(c if c == "\n" else " " for c in text)
+
+
+def _delimited(text: str) -> str:
+    """Blank delimiters, and what stands outside of them where that has no relation."""
+    inside: list[tuple[int, int]] = []
+    opened: tuple[int, str] | None = None
+    marks: list[tuple[int, int]] = []
+    for mark in _terminal("DELIMITER").finditer(text):
+        kind = _PARTNER.get(mark[0], re.sub(r"[a-z]*$", "", mark[0]) if mark[0].startswith("```") else mark[0])
+        if kind == r"\\":
+            continue
+        if not kind.startswith("\\begin") and not kind.startswith("\\end"):
+            marks.append(mark.span())
+        else:
+            kind = re.sub(r"^\\end", r"\\begin", kind)
+        if opened is None:
+            opened = (mark.end(), kind)
+        elif opened[1] == kind:
+            inside.append((opened[0], mark.start()))
+            opened = None
+    outside = _outside(text, inside)
+    whole = [text[start:end] for start, end in inside]
+    for start, end in marks:
+        text = text[:start] + " " * (end - start) + text[end:]
+    if not inside or _RELATION.search(outside):
+        return text
+    related = any(_RELATION.search(part) for part in whole)
+    kept = [span for span, part in zip(inside, whole, strict=True) if _RELATION.search(part) or not related]
+    out = list(_blank(text))
+    for start, end in kept:
+        out[start:end] = text[start:end]
+        if start:
+            out[start - 1] = "\n"
+        if end < len(out):
+            out[end] = "\n"
+    return "".join(out)
+
+
+_PARTNER = {r"\]": r"\[", r"\)": r"\("}
+
+
+def _outside(text: str, inside: list[tuple[int, int]]) -> str:
+    ends = [0, *(end for _, end in inside)]
+    starts = [*(start for start, _ in inside), len(text)]
+    return " ".join(text[end:start] for end, start in zip(ends, starts, strict=True))
+
+
+def _line(line: str) -> str:
+    """Return a line without words, numbers and marks around its formulas."""
+    line = _terminal("COMMENT").sub(lambda found: " " * len(found[0]), line)
+    line = re.sub(r"^\s*>|^\s*\*\*(?=\S)|(?<=\S)\*{1,3}\s*$|^\s*\*(?=[A-Za-z\\])", lambda f: " " * len(f[0]), line)
+    start = len(line) - len(line.lstrip())
+    if numbered := _terminal("NUMBERED").match(line, start):
+        line = " " * numbered.end() + line[numbered.end() :]
+    line = re.sub(
+        r"(?<=\s\s|.,|ad)\s*\((\d{1,2}[a-z]?)\)\s*[.,]?\s*$", lambda f: " " * len(f[0]), line
+    )  # (4) at the end, behind blanks or \quad
+    if _NAMED_BY_COLON.fullmatch(line):
+        line = line.replace(":", "=", 1)
+        if line.lstrip().startswith("{"):
+            line = line.replace("{", " ", 1).rstrip().removesuffix("}")
+    line = _SAID.sub(_said, line)
+    words = re.split(r"(\s+)", line)
+    line = "".join(_without_stop(word) for word in words)
+    if not _terminal("PROSE").search(line) and "\n" not in line:
+        return line
+    parts = _terminal("PROSE").sub(lambda f: "\n" + " " * (len(f[0]) - 1), line).split("\n")
+    return "\n".join(part if _FORMULA.search(part) else _blank(part) for part in parts)
+
+
+def _said(found: re.Match[str]) -> str:
+    """Keep words of cases and of functions as they are; others become words of a sentence."""
+    if _WORDS_OF_CASES.fullmatch(found[2]) and not _terminal("PROSE").search(found[2]):
+        return found[0]
+    head = found[0].index("{") + 1
+    return "\n" + " " * (head - 1) + found[2] + " "
+
+
+def _without_stop(word: str) -> str:
+    """Part sentences: a stop, a colon or another mark at the end of a word, but no decimal point."""
+    bare = word.rstrip(",")
+    if bare.endswith((".", "!", "?")) and not bare[:-1].isdigit():
+        return bare[:-1] + "\n" + word[len(bare) :]
+    if bare.endswith(":") and not bare.endswith("\\:"):
+        return bare[:-1] + "\n" + word[len(bare) :]
+    return word
+
+
+def name_of(token: str) -> str:
+    """Return the key of a name, accents at its end and a prime as "dot"."""
+    marks = "".join(ACCENTS)
+    text = re.sub(r"\s*\^\s*(\{\s*((\\prime\s*)+)\}|\\prime)", lambda f: "'" * f[0].count("prime"), token)
+    text = re.sub(r"\\(mathbf|boldsymbol|bm|mathit|vec|mathcal|mathsf|pmb)(?![A-Za-z])", "", text)
+    text = re.sub(r"\\var(?=[a-zA-Z])", r"\\", text)
+    over = re.findall(rf"\\({'|'.join(_OVER)})(?![A-Za-z])", text)
+    accents = [*(_OVER[each] for each in over), *(ACCENTS[c] for c in text if c in ACCENTS)]
+    plain = re.sub(rf"\\({'|'.join(_OVER)})(?![A-Za-z])|[{marks}',]", "", text)
+    return key(plain + "".join(accents) + "dot" * text.count("'"))
+
+
+_ENVELOPE = re.compile(
+    r"^(\\[dt]?frac\s*\{\s*)?(Derivative\s*\(|diff\s*\(|dot\s*\(|Symbol\s*\(\s*'|d(?=[\s\\A-Za-z])|∂|\\partial"
+    r"|\\mathrm\s*(\{\s*d\s*\}|d)|\\rm\s+d)\s*"
+)
+_END = re.compile(
+    r"(\s*\(\s*t\s*\))?\s*(\}\s*\{[^{}]*(\{[^{}]*\})?[^{}]*\}|/\s*(d|∂|\\partial|\\mathrm.*)\s*t|,\s*t\s*\)|\.diff\(\s*t\s*\)|'?\s*\))$"
+)
+
+
+def rate_of(token: str) -> str:
+    """Return the key of a rate that is written as a quotient or a function."""
+    inner = _END.sub("", token if token.endswith("diff(t)") else _ENVELOPE.sub("", token, count=1), count=1)
+    return key(name_of(inner) + ("" if token.startswith("Symbol") else "dot"))
+
+
+def other_names(name: str) -> list[str]:
+    """Return other spellings: omega for w, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for its estimate."""
+    found = [re.sub("omega", "w", name), re.sub(r"^(lambda\d?)hat", r"\1", name)]
+    found += [
+        re.sub(r"^(omega|w|vc|vp)([xyz])", lambda f: f[1].replace("omega", "w") + str("xyz".index(f[2]) + 1), name)
+    ]
+    if quotient := re.fullmatch(r"d(\w+)dt", name):
+        found.append(key(f"{quotient[1]}dot"))
+    return [each for each in dict.fromkeys(found) if each != name]
