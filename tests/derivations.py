@@ -13,7 +13,7 @@ from percept_obs import PerspectiveSystem, check, instantaneous, observers
 from percept_obs.checking import Target, Verdict, target_of
 from percept_obs.checking.explaining import wrong_terms
 from percept_obs.checking.lines import VALUE
-from percept_obs.checking.search import at, put
+from percept_obs.checking.places import at, put
 from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
 from percept_obs.observers.family import Family
 from percept_obs.papers import LEDGERS

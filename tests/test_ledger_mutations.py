@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from ledger_mutations import say_the_same
 
-from percept_obs.checking.search import at, put
+from percept_obs.checking.places import at, put
 from percept_obs.checking.slips import MISTAKES, siblings_in, slips, slips_in, symbols_in
 from percept_obs.papers import base
 from percept_obs.papers.base import dot, equal

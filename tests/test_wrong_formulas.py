@@ -43,7 +43,7 @@ def _located(entry, review, where, asked):
     if entry.term in ("missing", "all"):
         return entry.term in where if entry.term == "missing" else not marked
     head = "\n".join(entry.text.splitlines()[:-1])
-    terms = [asked.read(f"{head}\n{term}")[-1].formula for term in entry.term.split(";")]
+    terms = [asked.read(f"{head}\n{term}").lines[-1].formula for term in entry.term.split(";")]
     return all(is_found(term, marked) for term in terms)
 
 

@@ -7,25 +7,18 @@ from itertools import chain
 
 import numpy as np
 import sympy as sp
-from sympy.polys.fields import sfield
 
-from percept_obs.checking.deciding import points, rational, small
+from percept_obs.checking.differences import Difference, compared
+from percept_obs.checking.factors import after_a_minus, bracket, several
 from percept_obs.checking.lines import VALUE, ZEROS
-from percept_obs.checking.search import THROUGHOUT, Search, at, close
-from percept_obs.checking.slips import MISTAKES, Slip, factored, siblings_in, slips_in
+from percept_obs.checking.places import at, leaves_apart
+from percept_obs.checking.search import THROUGHOUT, Search, close
+from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, siblings_in, slips_in
 from percept_obs.checking.target import Target
+from percept_obs.checking.throughout import elsewhere, repeated, throughout
 
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""
-
-
-@dataclass(frozen=True)
-class Difference:
-    """A product of letters whose coefficient differs: yours, and the true one."""
-
-    product: sp.Expr
-    mine: sp.Expr
-    true: sp.Expr
 
 
 @dataclass(frozen=True)
@@ -33,7 +26,8 @@ class Explanation:
     """Slips that mend a wrong line, and the steps of the derivation in which they can have happened.
 
     A slip "missing" has nothing before, and "throughout" concerns all terms; `wrong` numbers my terms that hold a
-    product with a wrong coefficient.  `apart` has the steps of each of two slips by itself.
+    product with a wrong coefficient.  `apart` has the steps of each of two slips by itself.  `whole` says what is wrong
+    with the line as a whole, if there is a sentence for it, and `bracket` is one that may be missing.
     """
 
     slips: tuple[Slip, ...] = ()
@@ -41,6 +35,8 @@ class Explanation:
     wrong: tuple[int, ...] = ()
     steps: tuple[str, ...] = ()
     apart: tuple[tuple[str, ...], ...] = ()
+    whole: str = ""
+    bracket: sp.Expr | None = None
 
 
 def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Expr]) -> Explanation:
@@ -52,32 +48,50 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + SECONDS)
     if not search.places:
         return Explanation()
-    one = search.single()
-    everywhere = None if one else search.throughout()
+    if whole := elsewhere(search, row, target):
+        return Explanation(whole=whole)
+    found, whole = _found(search, target)
     steps = tuple(_steps(search, row, target, right)) if line.kind == VALUE else ()
     differences, wrong = ((), ()) if line.kind == ZEROS else compared(mine, line.formula)
-    found = tuple(filter(None, (one, everywhere)))
+    if not found and (missing := _missing(search, differences)):
+        found = (missing,)
     if found or steps:
-        return Explanation(found, differences, wrong, steps)
-    found = _left_out(search, differences, wrong) or search.pair()
-    return Explanation(found, differences, wrong, steps, tuple(_apart(search, found, row, target)))
+        lacks = bool(found) and found[0].kind == "left-out factor" and found[0].before == 1
+        return Explanation(found, differences, wrong, steps, (), whole, bracket(found, search) if lacks else None)
+    found = search.pair()
+    apart = leaves_apart(found[0].before, found[0].after) if found and found[0].kind == "replaced" else []
+    if (len(wrong) > 2 and not found) or len(apart) > 2:
+        whole = "there are more than two slips"
+    if len(apart) == 2 and all(is_symbol(side) for pair in apart for side in pair):
+        found = tuple(replace(found[0], kind="letter", before=a, after=b, term=found[0].before) for a, b in apart)
+    return Explanation(found, differences, wrong, steps, tuple(_apart(search, found, row, target)), whole)
 
 
-def _left_out(search: Search, differences: Sequence[Difference], wrong: Sequence[int]) -> tuple[Slip, ...]:
-    """Return the terms that lack one and the same factor, as a bracket does behind which it was forgotten."""
-    extra = {d.product: d.mine for d in differences if d.true == 0}
-    lacking = {d.product: d.true for d in differences if d.mine == 0}
-    if search.line.kind != VALUE or not extra or len(extra) + len(lacking) < len(differences):
-        return ()
-    for product in lacking:
-        factor = product / next(iter(extra))
-        if {p * factor: c for p, c in extra.items()} != lacking:
-            continue
-        mended = sum(term * (factor if k in wrong else 1) for k, term in enumerate(search.terms))
-        if close(search.values(mended), search.values(search.line.formula)):
-            terms = [((k,) if search.mine.is_Add else (), search.terms[k]) for k in wrong]
-            return tuple(Slip("left-out factor", sp.S.One, factor, at, t, t * factor) for at, t in terms)
-    return ()
+def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
+    """Return the plainest changes that mend a line, and the convention that it follows besides."""
+    one = search.single()
+    # where all signs of a sum are turned, as by two letters swapped, the letters say more
+    if one and not (one.kind == "sign" and not one.path and one.before.is_Add):
+        return (one,), ""
+    if everywhere := throughout(search) or one:
+        return (everywhere,), ""
+    if search.line.kind != VALUE:
+        return (), ""
+    for convention in target.conventions:
+        changes = dict(convention.changes)
+        if len(search.line.formula.free_symbols & set(changes)) > 1:
+            line = replace(search.line, formula=search.line.formula.xreplace(changes))
+            if one := Search(search.mine, line, search.letters, search.until).single():
+                return (one,), convention.words
+    return several(search) or after_a_minus(search) or repeated(search), ""
+
+
+def _missing(search: Search, differences: Sequence[Difference]) -> Slip | None:
+    """Return one product that is missing if all that differs is missing."""
+    if search.line.kind != VALUE or len(differences) < 2 or any(d.mine != 0 for d in differences):
+        return None
+    term = sp.factor_terms(sp.factor(sp.Add(*(d.true * d.product for d in differences))))
+    return None if term.is_Add else Slip("missing", sp.S.Zero, term, (), term, search.line.formula)
 
 
 def _apart(search: Search, slips: Sequence[Slip], row: int, target: Target) -> Iterator[tuple[str, ...]]:
@@ -87,7 +101,7 @@ def _apart(search: Search, slips: Sequence[Slip], row: int, target: Target) -> I
         return
     for other, place in zip(reversed(slips), reversed(at), strict=True):
         alone = search.mine - (0 if place is None else search.terms[place]) + other.formula
-        steps = _steps(replace(search, mine=alone, until=time.thread_time() + SECONDS), row, target, {})
+        steps = _steps(Search(alone, search.line, search.letters, search.until + SECONDS / 3), row, target, {})
         yield tuple(steps)
 
 
@@ -162,7 +176,8 @@ def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...]
         while path and not at(mine, path[:-1]).is_Add:
             path = path[:-1]
         places[path] = at(mine, path)
-    if not found.slips:
+    some = bool(found.wrong) and mine.is_Add and len(found.wrong) < len(mine.args)
+    if not found.slips or (some and any(slip.kind in THROUGHOUT for slip in found.slips)):
         indices = [(k,) for k in found.wrong] if mine.is_Add else [()]
         places |= {path: at(mine, path) for path in indices}
     return [(path, term) for path, term in places.items() if not any(path[:n] in places for n in range(len(path)))]
@@ -175,12 +190,32 @@ def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]
     lacking = [d for d in found.differences if d.mine == 0]
     if any(slip.kind == "missing" for slip in found.slips) or (not found.slips and lacking):
         places.append("something is missing")
-    slips = [_sentence(slip, show) for slip in found.slips]
+    slips = [*([found.whole] if found.whole else []), *_slips_said(found, show)]
     slips += [f"{show(d.product)}: you have {_signed(d.mine)}, it is {_signed(d.true)}" for d in found.differences[:6]]
     steps = [f"{'or' if k else 'it comes out so'} if in step {step}" for k, step in enumerate(found.steps)]
     for which, each in zip(("first", "second"), found.apart, strict=False):
         steps += [f"{'or' if k else f'the {which} slip comes out so'} if in step {step}" for k, step in enumerate(each)]
-    return places or ["look at what all terms share"], slips, steps
+    return places or [f"look at {'the whole line' if found.whole else 'what all terms share'}"], slips, steps
+
+
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven")
+
+
+def _slips_said(found: Explanation, show: Callable[[sp.Basic], str]) -> list[str]:
+    """Return a sentence on each slip, or one on a factor that several terms lack."""
+    slips = found.slips
+    if not slips or slips[0].kind not in ("left-out factor", "bracket"):
+        return [_sentence(slip, show) for slip in slips]
+    first = slips[0]
+    if first.kind == "bracket":
+        return [f"a bracket is missing: {show(first.before)} should be {show(first.after)}"]
+    also = f", or a bracket is missing: {show(found.bracket)}" if found.bracket is not None else ""
+    if len(slips) == 1 or first.before != 1:
+        return [_sentence(slip, show) + also for slip in slips]
+    count = COUNTS[len(slips)] if len(slips) < len(COUNTS) else str(len(slips))
+    terms = [show(slip.term) for slip in slips]
+    where = f"{', '.join(terms[:-1])} and {terms[-1]}"
+    return [f"the factor {show(first.after)} is missing in {count} terms: {where}{also}"]
 
 
 def _signed(number: sp.Expr) -> str:
@@ -195,7 +230,9 @@ def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
         what = "the hat: " if len(hats) == 2 else "the index: " if kind != "other letter" else ""
         return f"{what}{before} stands {'everywhere ' if kind == 'throughout' else ''}where {after} belongs{where}"
     if kind == "left-out factor":
-        return f"{show(slip.term)} should be {show(slip.term * slip.after / slip.before)}"
+        too_many = slip.after in (1, -1)
+        which = f"the factor {before} is one too many" if too_many else f"the factor {after} is missing"
+        return f"{which}: {show(slip.term)} should be {show(slip.term * slip.after / slip.before)}"
     return {
         "sign": f"all signs of {before} are turned" if slip.before.is_Add else f"the sign of {before} is wrong",
         "left out": f"{before} should be {after}: an inverse or a transpose is missing",
@@ -205,57 +242,9 @@ def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
         "replaced": f"{before} should be {after}",
         "superfluous": f"the term {before} is one too many",
         "swapped": f"{before} and {after} are swapped",
+        "twins": f"{before} and {after} are swapped",
+        "twin": f"{before} stands everywhere where {after} belongs",
         "sign throughout": f"{before} has the wrong sign everywhere",
         "signs": f"{before} have the wrong sign everywhere, as in a cross product with the other sign",
         "transpose": f"indices are swapped, as in the transposed matrix: {before} stands where {after} belongs",
     }[kind]
-
-
-def compared(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[Difference, ...], tuple[int, ...]]:
-    """Return products whose coefficients differ, and the numbers of my terms that hold one.
-
-    Denominators are cleared first; nothing is found in formulas that are too large to multiply out.
-    """
-    if not small(mine, true):
-        return (), ()
-    parts = [*sp.Add.make_args(mine), true]
-    letters = _letters_for_functions(parts)
-    field, elements = sfield([part.xreplace(letters) for part in parts])
-    common = field.ring.one
-    for element in elements:
-        common = common.lcm(element.denom)
-    polynomials = [element.numer * (common.quo(element.denom)) for element in elements]
-    *own, target = [dict(p.terms()) for p in polynomials]
-    total = dict(sum(polynomials[:-1], field.ring.zero).terms())
-    back = {letter: function for function, letter in letters.items()}
-    differ = [m for m in {**target, **total} if total.get(m, 0) != target.get(m, 0)]
-    found = [
-        Difference(
-            sp.Mul(*(g**k for g, k in zip(field.symbols, m, strict=True))).xreplace(back),
-            *(sp.sympify(field.domain.to_sympy(side.get(m, field.domain.zero))) for side in (total, target)),
-        )
-        for m in differ
-    ]
-    wrong = tuple(k for k, part in enumerate(own) if any(m in part for m in differ))
-    return tuple(found), wrong
-
-
-def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]:
-    """Return a letter for every root and function, the same one for equal values."""
-    if all(map(rational, parts)):
-        return {}
-    point = next(points(*parts, opaque=True), None)
-    outermost: dict[sp.Expr, sp.Symbol] = {}
-
-    def visit(node: sp.Basic) -> None:
-        if node.is_Symbol or node.is_Rational:
-            return
-        if node.is_Add or node.is_Mul or (node.is_Pow and node.exp.is_Integer):
-            for part in node.args:
-                visit(part)
-        else:
-            outermost[node] = sp.Symbol(f"f{complex(point(node)):.10e}" if point else f"f{node}")
-
-    for part in parts:
-        visit(part)
-    return outermost

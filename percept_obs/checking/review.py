@@ -11,7 +11,7 @@ import sympy as sp
 
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
 from percept_obs.checking.matching import Judged, Verdict, judged
-from percept_obs.checking.search import put
+from percept_obs.checking.places import put
 from percept_obs.checking.target import Target
 from percept_obs.checking.targets import target_of
 

@@ -1,7 +1,7 @@
 """Search for changes that mend a formula: single slips by the difference they make, pairs by the sum of two."""
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -13,6 +13,7 @@ import sympy as sp
 
 from percept_obs.checking.deciding import points, same_zeros, small
 from percept_obs.checking.lines import VALUE, ZEROS, Line
+from percept_obs.checking.places import aligned, at, place_of, put, term_places
 from percept_obs.checking.points import NoValue, Point
 from percept_obs.checking.slips import MENDS, Slip, factored, family, siblings_in, slips_in, symbols_in
 
@@ -21,7 +22,17 @@ ORDER = (
     *("sign", "left out", "letter", "exponent", "missing", "factor", "superfluous", "other letter", "left-out factor"),
     "replaced",
 )
-THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose")
+THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose", "twins", "twin")
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Term or sum in a formula, outside of functions: its place, its value, and how the formula grows with it."""
+
+    path: tuple[int, ...]
+    node: sp.Expr
+    value: Values
+    outer: Values
 
 
 @dataclass(frozen=True)
@@ -97,27 +108,53 @@ class Search:
 
     def single(self) -> Slip | None:
         """Return the plainest single change that mends the formula."""
-        ways = []
-        for added, slip in self.changes:
+        # of a relation, which is the same times a number, as it is written if that will do
+        ways = [_named(slip) for added, slip in self.changes if close(added, self.lacking)]
+        for added, slip in self.changes if not ways and self.line.kind != VALUE else ():
             if self.over and self.line.kind == ZEROS:
                 break
             if self.mends(added, slip):
                 ways.append(_named(slip))
         if not ways and self.line.kind == VALUE:
-            ways = [*self.by_ratio(), *self.in_its_place()]
+            ways = [*self.by_ratio(), *self.missing_inside(), *self.in_its_place()]
         return min(ways, key=lambda slip: (ORDER.index(slip.kind), len(slip.path)), default=None)
+
+    def array(self, parts: Sequence[sp.Expr]) -> Values | None:
+        """Return the values of several expressions, one in a row."""
+        found = [self.values(part) for part in parts]
+        return None if any(one is None for one in found) else np.array(found)
+
+    @cached_property
+    def spots(self) -> list[Spot]:
+        """All terms and sums outside of functions."""
+        u = sp.Symbol("one more", real=True)
+        one, whole = self.values(u), self.values(self.mine)
+        found: list[Spot] = []
+        for path, node in takewhile(lambda _: not self.over, term_places(self.mine)):
+            moved, now = self.values(put(self.mine, path, node + u)), self.values(node)
+            if moved is not None and now is not None and one is not None:
+                found.append(Spot(path, node, now, (moved - whole) / one))
+        return found
+
+    @cached_property
+    def factors(self) -> list[tuple[sp.Expr, Values]]:
+        """Factors that a term may lack, with their values: letters, roots, functions, sums, 2 and a sign."""
+        parts: dict[sp.Expr, None] = dict.fromkeys((sp.Integer(-1), sp.Integer(2), sp.S.Half))
+        parts |= dict.fromkeys(sorted(self.letters, key=str))
+        for node in chain(*map(sp.preorder_traversal, (self.mine, self.line.formula))):
+            if node.is_Function or (node.is_Pow and not node.exp.is_Integer):
+                parts[node] = None
+            elif node.is_Mul and node.args:
+                parts |= dict.fromkeys(f for f in node.args if f.is_Add)
+        found = ((part, self.values(part)) for part in parts)
+        return [(part, value) for part, value in found if value is not None]
 
     def by_ratio(self) -> Iterator[Slip]:
         """Yield terms with a wrong factor, found from the ratio that they lack: a number or a quotient of letters."""
-        u = sp.Symbol("one more", real=True)
-        one = self.values(u)
-        for path, node in takewhile(lambda _: not self.over, _term_places(self.mine)):
-            moved = self.values(put(self.mine, path, node + u))
-            now = self.values(node)
-            if moved is None or now is None or one is None:
-                continue
+        for spot in self.spots:
+            path, node = spot.path, spot.node
             with np.errstate(all="ignore"):
-                ratio = self.lacking * one / (moved - self.values(self.mine)) / now + 1
+                ratio = self.lacking / spot.outer / spot.value + 1
             if not np.all(np.isfinite(ratio)):
                 continue
             number = Fraction(float(ratio[0].real)).limit_denominator(1000)
@@ -130,12 +167,25 @@ class Search:
                 if 1 in (letter, wrong):
                     kind = "left-out factor"
                 else:
-                    kind = "letter" if family(letter) == family(wrong) else "other letter"
+                    letters = letter.is_Symbol and wrong.is_Symbol
+                    kind = "letter" if letters and family(letter) == family(wrong) else "other letter"
                 yield Slip(kind, wrong, right, path, node, put(self.mine, path, node * right / wrong))
+
+    def missing_inside(self) -> Iterator[Slip]:
+        """Yield terms of the true formula that are missing in one of my brackets."""
+        sums = [node for node in sp.preorder_traversal(self.line.formula) if node.is_Add]
+        terms = dict.fromkeys(chain.from_iterable((*e.args, *(sp.expand(e).args if small(e) else ())) for e in sums))
+        known = {_rounded(c * v): c * e for e in terms for c in (-1, 1) if (v := self.values(e)) is not None}
+        for spot in self.spots:
+            with np.errstate(all="ignore"):
+                term = known.get(_rounded(self.lacking / spot.outer)) if spot.node.is_Add and spot.path else None
+            if term is not None:
+                changed = put(self.mine, spot.path, spot.node + term)
+                yield Slip("missing", sp.S.Zero, term, spot.path, spot.node, changed)
 
     def in_its_place(self) -> Iterator[Slip]:
         """Yield the one part that differs where both formulas have the same structure."""
-        path, mine, true = _aligned(self.mine, self.line.formula)
+        path, mine, true = aligned(self.mine, self.line.formula)
         changed = put(self.mine, path, true)
         if not path or not close(self.values(changed), self.values(self.line.formula)):
             return
@@ -148,43 +198,19 @@ class Search:
 
     @cached_property
     def ratios(self) -> dict[tuple[float, ...], tuple[sp.Expr, sp.Expr]]:
-        """Quotients of two letters, or of a letter and 1, by their values."""
-        letters = [sp.S.One, *sorted(self.letters, key=str)]
-        values = [np.array([point(s) for point in self.places]) for s in letters]
-        return {
-            _rounded(c * x / y): (c * a, b)
-            for a, x in zip(letters, values, strict=True)
-            for b, y in zip(letters, values, strict=True)
-            for c in (1, -1)
-            if a != b
-        }
-
-    def throughout(self) -> Slip | None:
-        """Return one change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
-        true, mine = self.values(self.line.formula), self.mine
-        candidates: list[tuple[str, sp.Basic, sp.Basic, sp.Expr]] = []
-        used = sorted(mine.free_symbols, key=str)
-        flips = {a: b for a in used if (b := _transposed(a, self.letters))}
-        if len(flips) > 1:
-            candidates.append(("transpose", *next(iter(flips.items())), mine.xreplace(flips)))
-        by_family: dict[object, list[sp.Symbol]] = {}
-        for a in used:
-            by_family.setdefault(family(a), []).append(a)
-        for group in by_family.values():
-            if len(group) > 1:
-                turned = mine.xreplace({a: -a for a in group})
-                candidates.append(("signs", sp.Tuple(*group), sp.Tuple(*(-a for a in group)), turned))
-        for a in used:
-            candidates.append(("sign throughout", a, -a, mine.xreplace({a: -a})))
-            for b in sorted(self.letters - {a}, key=str):
-                if family(a) == family(b):
-                    candidates.append(("throughout", a, b, mine.xreplace({a: b})))
-                    if b in mine.free_symbols and str(a) < str(b):
-                        candidates.append(("swapped", a, b, mine.xreplace({a: b, b: a})))
-        for kind, before, after, changed in takewhile(lambda _: not self.over, candidates):
-            if close(self.values(changed), true):
-                return Slip(kind, before, after, (), mine, changed)
-        return None
+        """Quotients of two factors, or of a factor and 1, by their values."""
+        one = (sp.S.One, np.ones(len(self.places)))
+        factors = [one, *((f, values) for f, values in self.factors if not f.is_number)]
+        squares = [(f**2, values**2) for f, values in factors if f.is_Symbol]
+        with np.errstate(all="ignore"):
+            # plainer ones last, for they take the place of the others
+            return {_rounded(x): (a, sp.S.One) for a, x in squares} | {
+                _rounded(c * x / y): (c * a, b)
+                for a, x in reversed(factors)
+                for b, y in reversed(factors)
+                for c in (-1, 1)
+                if a != b and not (a.is_Add and b.is_Add)
+            }
 
     def pair(self) -> tuple[Slip, ...]:
         """Return two changes that mend the formula together: in different terms, or in one."""
@@ -222,53 +248,11 @@ class Search:
                     after = self.values(second.formula)
                     if after is not None and close(after - before, self.lacking):
                         # the second one's place is that of a term which the first one has changed, or moved
-                        paths = first.path, _place_of(second.term, term) if second.path else ()
+                        paths = first.path, place_of(second.term, term) if second.path else ()
                         yield tuple(
                             _named(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
                             for slip, path in zip((first, second), paths, strict=True)
                         )
-
-
-def _aligned(mine: sp.Basic, true: sp.Basic) -> tuple[tuple[int, ...], sp.Basic, sp.Basic]:
-    """Return the only part in which two formulas differ: its place, my part, the true part."""
-    if mine.func != true.func or not mine.args:
-        return (), mine, true
-    left = [k for k, part in enumerate(mine.args) if part not in true.args]
-    right = [part for part in true.args if part not in mine.args]
-    if not (mine.is_Add or mine.is_Mul) and len(mine.args) == len(true.args):
-        left = [k for k, (a, b) in enumerate(zip(mine.args, true.args, strict=True)) if a != b]
-        right = [true.args[k] for k in left]
-    if len(left) != 1 or len(right) != 1:
-        return (), mine, true
-    path, a, b = _aligned(mine.args[left[0]], right[0])
-    return (left[0], *path), a, b
-
-
-def at(e: Any, path: Sequence[int]) -> Any:
-    """Return the part at a place of a formula."""
-    for index in path:
-        e = e.args[index]
-    return e
-
-
-def _place_of(part: sp.Basic, whole: sp.Basic) -> tuple[int, ...]:
-    """Return the first place of a part; that of the whole if there is none."""
-    paths: list[tuple[int, ...]] = [()]
-    for path in paths:
-        node = at(whole, path)
-        if node == part:
-            return path
-        paths += [(*path, k) for k in range(len(node.args))]
-    return ()
-
-
-def put(formula: sp.Basic, path: Sequence[int], new: sp.Basic) -> sp.Basic:
-    """Return a formula with another part at a place."""
-    if not path:
-        return new
-    args = list(formula.args)
-    args[path[0]] = put(args[path[0]], path[1:], new)
-    return formula.func(*args)
 
 
 def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:
@@ -296,22 +280,3 @@ def _rounded(values: Values) -> tuple[float, ...]:
 def _named(slip: Slip) -> Slip:
     """Rename a mend: a term to be dropped was superfluous."""
     return replace(slip, kind="superfluous") if slip.kind == "dropped" else slip
-
-
-def _term_places(
-    e: sp.Basic, path: tuple[int, ...] = (), is_term: bool = True
-) -> Iterator[tuple[tuple[int, ...], sp.Expr]]:
-    """Yield the places of all terms and sums outside of functions."""
-    if is_term or e.is_Add:
-        yield path, e
-    if e.is_Add or e.is_Mul:
-        for k, part in enumerate(e.args):
-            yield from _term_places(part, (*path, k), bool(e.is_Add))
-
-
-def _transposed(letter: sp.Symbol, letters: Iterable[sp.Symbol]) -> sp.Symbol | None:
-    """Return the letter with its two indices swapped: a21 for a12."""
-    name = letter.name
-    if len(name) < 3 or not name[-2:].isdigit() or name[-1] == name[-2]:
-        return None
-    return next((s for s in letters if s.name == name[:-2] + name[-1] + name[-2]), None)

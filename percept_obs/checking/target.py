@@ -60,6 +60,8 @@ class Target:
         Entries of the letters of matrices that may be typed, and numbers of the letters that are sizes of them.
     relations : mapping of letters to expressions
         Letters that are known by definition, such as X = y1 / y3 or e1 = y1 - yhat1: they can be read.
+    elsewhere : function, optional
+        Returns names of other surfaces, and the lines on them.
     idle : tuple of Line
         All lines with the terms whose gains are 0 by default, if there are such terms; see `asked`.
     others : mapping of names to functions of a text
@@ -90,6 +92,7 @@ class Target:
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     matrices: Matrices = field(default_factory=dict)
     relations: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    elsewhere: Callable[[], Mapping[str, tuple[Line, ...]]] | None = None
     idle: tuple[Line, ...] = ()
     others: Mapping[str, Callable[[Text], Target]] = field(default_factory=dict)
     functions: Functions = field(default_factory=dict)

@@ -26,7 +26,7 @@ from percept_obs.system.derivation import Derivation, Step
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT
+from percept_obs.system.surfaces import POINT, SURFACES
 
 
 @singledispatch
@@ -99,7 +99,17 @@ def _(thing: PerspectiveSystem) -> Target:
     lines = _rates(thing.coordinates, thing.rate)
     moves = dict.fromkeys((f"{s.name}dot" for s in POINT), lambda text: _moves(thing.motion))
     slope = dict.fromkeys("FJ", lambda text: _jacobian(thing.jacobian(), pool))
-    return Target(lines, pool, thing.derivation, relations=relations.of_system(thing), others=moves | slope)
+    known = relations.of_system(thing)
+    return Target(
+        lines, pool, thing.derivation, relations=known, elsewhere=lambda: _on_others(thing), others=moves | slope
+    )
+
+
+def _on_others(system: PerspectiveSystem) -> dict[str, tuple[Line, ...]]:
+    """Return the rates on other surfaces that have no letters of their own."""
+    others = {s.name: s for make in SURFACES if not (s := make()).parameters and not s.fits(system.surface)}
+    systems = {name: replace(system, surface=surface) for name, surface in others.items()}
+    return {name: _rates(other.coordinates, other.rate) for name, other in systems.items()}
 
 
 @target_of.register

@@ -11,7 +11,8 @@ from typing import Any
 import sympy as sp
 
 from percept_obs.checking import CannotRead, Review, Verdict
-from percept_obs.checking.explaining import compared, sentences
+from percept_obs.checking.differences import compared
+from percept_obs.checking.explaining import sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.review import CANNOT_BE_TOLD
