@@ -8,11 +8,11 @@ from functools import cache
 import sympy as sp
 
 from percept_obs.papers.base import column, dot, identities, reader, vanishes
-from percept_obs.papers.entries import Finding, Printed, Values, Verdict, at, judged
+from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import chained, pinhole, plane
-from percept_obs.system.surfaces.base import POINT, Y, Z
+from percept_obs.system.surfaces.base import POINT, X, Y, Z
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 CHAINED = PerspectiveSystem(affine(), chained())
@@ -63,9 +63,25 @@ def on_the_usual_plane() -> Values:
     return {letter: sp.cancel(value.xreplace(normal)) for letter, value in on_the_plane().items()}
 
 
-def in_a_plane() -> Values:
-    """Second output of a point in the plane Y = c Z, which holds the camera's centre."""
-    return {y2: SYSTEM.surface.image[1].xreplace({Y: constant * Z})}
+def stays_in_a_plane() -> Values:
+    """Rate of y2 for a motion that keeps the plane Y = c Z, and the point in it."""
+    (a21, _, a23), b2 = SYSTEM.motion.A[1, :], SYSTEM.motion.b[1]
+    return {dot(y2): SYSTEM.rate[1].xreplace(KEPT | {y2: constant}), **{s: s for s in (a21, a23, b2)}}
+
+
+def identified_together(printed: Printed) -> Finding:
+    """The rate of y2 in a plane that the motion keeps, and the rank of y1 with two derivatives at some point of it."""
+    found = identities(stays_in_a_plane)(printed)
+    listed = dict(zip(SYSTEM.motion.parameters, map(sp.Integer, (-2, 4, -6, 1, -2, 3, 3, -4, 4, 5, 2, 3)), strict=True))
+    here = {symbol: KEPT.get(symbol, symbol).subs(constant, 2).subs(listed) for symbol in SYSTEM.motion.parameters}
+    rate = SYSTEM.rate.xreplace(here)
+    derivative = known = column(y1)
+    for _ in range(2):
+        derivative = derivative.jacobian(SYSTEM.coordinates) * rate
+        known = known.col_join(derivative)
+    rank = known.jacobian(SYSTEM.coordinates).subs({y1: sp.Rational(1, 3), y2: 2, y3: sp.Rational(2, 5)}).rank()
+    told = found.verdict == Verdict.HOLDS and rank == len(SYSTEM.coordinates)
+    return judged(told, numbers={"rank of y1 with two derivatives": int(rank)})
 
 
 def turned_axes(printed: Printed) -> Finding:
@@ -78,17 +94,16 @@ def turned_axes(printed: Printed) -> Finding:
     return judged(all(map(vanishes, SYSTEM.rate.xreplace(renamed) - CHAINED.rate)))
 
 
-def third_output(printed: Printed) -> Finding:
-    """Remark 2: three outputs of a plane depend on each other, so that two of them tell all."""
-    surface = plane(outputs=3)
-    seen = dict(zip(POINT, surface.image, strict=True))
-    dependent = vanishes(surface.distance.subs(seen, simultaneous=True) - 1)
-    point = dict(zip((*POINT, n1, n2, n3), map(sp.Integer, (1, 2, 7, 3, 4, 5)), strict=True))
-    ranks = [int(column(*s.image).jacobian(POINT).subs(point).rank()) for s in (surface, pinhole())]
-    numbers = {"independent outputs, plane": ranks[0], "pinhole": ranks[1]}
-    return judged(not dependent or ranks[0] > ranks[1], Verdict.FALSE, numbers)
+def _kept() -> dict[sp.Symbol, sp.Expr]:
+    """Coefficients of a motion that keeps the plane Y = c Z: Y' - c Z' vanishes in it."""
+    velocity_ = SYSTEM.motion.A * column(*POINT) + SYSTEM.motion.b
+    leaves = (velocity_[1] - constant * velocity_[2]).subs(Y, constant * Z)
+    unknown = (SYSTEM.motion.A[1, 0], SYSTEM.motion.A[1, 2], SYSTEM.motion.b[1])
+    (solution,) = sp.linsolve(sp.Poly(leaves, X, Z).coeffs(), unknown)
+    return dict(zip(unknown, solution, strict=True))
 
 
+KEPT = _kept()
 reads = reader(a_new, b_new)
 
 ENTRIES = (
@@ -97,7 +112,9 @@ ENTRIES = (
         identities(velocity),
     ),
     at("(2)", "63", "1", "homogeneous outputs")(reads("y1 = X / Z; y2 = Y / Z"), identities(seen_by(SYSTEM))),
-    at("(3)", "64", "1", "coordinates y")(reads("[y1, y2, y3] = [X / Z, Y / Z, 1 / Z]"), identities(seen_by(SYSTEM))),
+    at("(3)", "64", "1", "coordinates y")(
+        reads("[y1, y2, y3] = [X / Z, Y / Z, 1 / Z]"), identities(seen_by(SYSTEM)), known=Known.DEFINITION
+    ),
     at("(4)", "64", "1", "perspective dynamics, pinhole")(
         reads(
             """y1' = a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 - b3 y1) y3;
@@ -121,12 +138,13 @@ ENTRIES = (
         reads("y_g1 = X / l_p; y_g2 = Y / l_p; y_g3 = Z / l_p; y_g4 = 1 / l_p"),
         identities(on_the_plane),
         "letter of the denominator lost by the scan",
+        known=Known.DEFINITION,
     ),
     at("(9)", "64", "2", "the same with n = (0, 0, 1)")(
         reads("y_g1 = X / Z; y_g2 = Y / Z; y_g3 = 1; y_g4 = 1 / Z"), identities(on_the_usual_plane)
     ),
     at("(32)", "69", "3.4", "coordinates of the chained projection")(
-        reads("[y1, y2, y3] = [X / Y, Z / Y, 1 / Y]"), identities(seen_by(CHAINED))
+        reads("[y1, y2, y3] = [X / Y, Z / Y, 1 / Y]"), identities(seen_by(CHAINED)), known=Known.DEFINITION
     ),
     at("(33)", "69", "3.4", "perspective dynamics, chained")(
         reads(
@@ -140,12 +158,9 @@ ENTRIES = (
         reads("a = [[a11, a13, a12], [a31, a33, a32], [a21, a23, a22]]; b = [b1, b3, b2]"),
         turned_axes,
     ),
-    at("constant y2", "64", "2", "a plane through the centre is seen as a line")(
-        reads("y2 = c"),
-        identities(in_a_plane),
-        "of the plane Y = c Z; y2' = 0 in (4) then gives y3 at once, but where b2 = b3 y2",
-    ),
-    at("Remark 2", "71", "4", "a tilted plane's third output helps")(
-        (), third_output, "n1 yg1 + n2 yg2 + n3 yg3 = 1: the third output follows from the other two", Verdict.FALSE
+    at("constant y2", "64", "2", "in a plane that is seen as a line y2 and y3 are identified from y1")(
+        reads("y2' = 0"),
+        identified_together,
+        "for a motion that keeps the plane Y = c Z; y2 is then a constant that y1 and its derivatives tell with y3",
     ),
 )
