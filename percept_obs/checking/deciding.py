@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from math import prod
@@ -13,7 +14,9 @@ from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.relational import Relational
 from sympy.polys.fields import sfield
 
-from percept_obs.checking.points import KINKED, NoValue, Point, key
+from percept_obs.checking.points import NoValue, Point, key
+from percept_obs.checking.proving import dimension, identical, ratio
+from percept_obs.checking.sampling import Place, places, region, sample
 
 POINTS, TRIALS, LARGEST = 12, 60, 2000
 MATRICES = (sp.MatrixBase, sp.MatrixExpr)
@@ -83,58 +86,92 @@ def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> It
             yield point
 
 
+@dataclass(frozen=True)
+class Decision:
+    """Whether a claim is true, None if it cannot be told; whether that is proved; and for which values it holds.
+
+    A "no" is always certain.  A "yes" that is not proved is one of values at random places of all sizes.
+    """
+
+    truth: bool | None
+    proved: bool = True
+    where: str = ""
+
+    @property
+    def words(self) -> str:
+        """Words about a "yes", such as "right for |y1| < 1"; empty if it holds everywhere and is proved."""
+        if self.truth and not self.proved:
+            found = "compared at random values of all sizes, not proved"
+            return f"right for {self.where}: {found}" if self.where else found
+        return f"right for {self.where} only" if self.where else ""
+
+
+def decided(one: sp.Expr, other: sp.Expr) -> Decision:
+    """Decide whether two expressions are the same function of their letters, which are matched by name.
+
+    Rational functions of moderate size are compared as quotients of polynomials, larger ones and those with roots,
+    exponentials, angles and signs exactly at a secret point.  What is not proved so is compared at random places all
+    over the real domain, with sixty digits and more; nobody can know these places.  So are the borders at which signs
+    change, where formulas may jump.
+    """
+    if one == other:
+        return Decision(True)
+    found = identical(one, other)
+    if rational(one) and rational(other):
+        if found and small(one, other):
+            own = {s: sp.Symbol(key(s.name)) for s in one.free_symbols | other.free_symbols}
+            _, (left, right) = sfield([one.xreplace(own), other.xreplace(own)])
+            found = bool(left == right)
+        return Decision(found)
+    if found is False and not one.has(*_NUMBERS) and not other.has(*_NUMBERS):
+        return Decision(False)
+    if found and not one.has(*_JUMPS) and not other.has(*_JUMPS):
+        return Decision(True)
+    compared = sample(one, other, thorough=found is None)
+    if compared.different:
+        return Decision(False, where=region(compared.same, compared.different, one, other))
+    if found is False or len(compared.same) < POINTS:
+        return Decision(found or None)
+    where = "" if found else region(compared.same, compared.nowhere, one, other)
+    return Decision(True, bool(found), where)
+
+
+_JUMPS = (sp.sign, sp.Heaviside, sp.Piecewise, sp.floor, sp.ceiling)
+_NUMBERS = (sp.NumberSymbol, sp.I, sp.Abs, sp.Max, sp.Min, *_JUMPS)
+"""What may be related to others in ways that are not known."""
+
+
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
     """Return True if two expressions are the same function of their letters by name; None if it cannot be told.
-
-    Rational functions of moderate size are compared exactly, as quotients of polynomials.  Others are compared at
-    random points with sixty digits: a "no" is certain, and a "yes" means that all of `POINTS` values agree to forty.
-    Functions with kinks are only the same if their arguments are.
 
     >>> x = sp.Symbol("x", real=True)
     >>> same((x + 1) ** 2, x**2 + 2 * x + 1), same(sp.sin(2 * x), 2 * sp.sin(x)), same(x * sp.sign(x), abs(x))
     (True, False, True)
     """
-    if one == other:
-        return True
-    if rational(one) and rational(other) and small(one, other):
-        first = next(points(one, other, exact=True), None)
-        if first and abs(first(one) - first(other)) > 1e-25 * max(1, abs(first(one))):
-            return False  # in most cases, and sooner than by polynomials
-        own = {s: sp.Symbol(key(s.name)) for s in one.free_symbols | other.free_symbols}
-        _, (left, right) = sfield([one.xreplace(own), other.xreplace(own)])
-        return bool(left == right)
-    kinked = any(e.has(*KINKED) for e in (one, other))
-    if _agree(one, other, opaque=True) and not (kinked and _agree(one, other) is False):
-        return True
-    agree = _agree(one, other)
-    return None if agree and kinked else agree
-
-
-def _agree(one: sp.Expr, other: sp.Expr, opaque: bool = False) -> bool | None:
-    """Return True if values of sixty digits agree to forty; None if there are too few."""
-    found = 0
-    for point in points(one, other, exact=True, opaque=opaque):
-        a, b = point(one), point(other)
-        scale, difference = max(abs(a), abs(b), 1), abs(a - b)
-        if difference > 1e-25 * scale:
-            return False
-        found += difference < 1e-40 * scale
-        if found == POINTS:
-            return True
-    return None
+    return decided(one, other).truth
 
 
 def proportional(one: sp.Expr, other: sp.Expr, positive: bool = False) -> bool | None:
     """Return True if one expression is a number, not zero, times the other."""
+    number = ratio(one, other)
+    if number:
+        found = decided(one, number * other)
+        if found.truth is not None:
+            return found.truth and (number > 0 or not positive)
+    if rational(one) and rational(other):
+        return False if one != 0 and other != 0 else one == other
     first = None
-    for point in islice(points(one, other, exact=True), POINTS):
-        a, b = point(one), point(other)
-        if min(abs(a), abs(b)) < 1e-40:
-            return bool(max(abs(a), abs(b)) < 1e-40)
-        ratio = a / b
-        if first is not None and abs(ratio - first) > 1e-25 * abs(first):
-            return False
-        first = ratio
+    for letters in islice(places(one, other), 2 * POINTS):
+        place = Place(letters)
+        with suppress(NoValue):
+            a, b = place(one), place(other)
+            if min(abs(a), abs(b)) < 1e-40:
+                if max(abs(a), abs(b)) > 1e-30:
+                    return False
+                continue
+            if first is not None and abs(a / b - first) > 1e-25 * abs(first):
+                return False
+            first = a / b
     return None if first is None else not positive or first > 0
 
 
@@ -154,11 +191,11 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
     first, second = (_vanishing(e, set(nonzero)) for e in (one, other))
     if first is None or second is None:
         return None
-    alone = [f for f in first if not any(proportional(f, g) for g in second)]
-    alone += [g for g in second if not any(proportional(f, g) for f in first)]
+    alone = [f for f in first if not any(_vanish_together(f, g) for g in second)]
+    alone += [g for g in second if not any(_vanish_together(f, g) for f in first)]
     if not alone:
         return True
-    values = ([point(polynomial) for point in points(polynomial)] for polynomial in alone)
+    values = ([Place(at)(polynomial) for at in places(polynomial)] for polynomial in alone)
     return False if any(min(found) < 0 < max(found) for found in values) else None
 
 
@@ -168,6 +205,25 @@ def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | 
         return None
     _, factors = sp.factor_list(sp.numer(sp.together(expression)))
     return [f for f, _ in factors if f not in nonzero and not _positive(f)]
+
+
+def _vanish_together(one: sp.Expr, other: sp.Expr) -> bool | None:
+    """Return True for multiples of each other, and for sums of squares whose bases are sums of each other."""
+    if proportional(one, other):
+        return True
+    bases = _squares(one), _squares(other)
+    return all(bases) and len({dimension(*part) for part in (*bases, bases[0] + bases[1])}) == 1
+
+
+def _squares(polynomial: sp.Expr) -> list[sp.Expr]:
+    """Return polynomials whose squares, times positive numbers, add up to this one; nothing if none are found."""
+    bases, rest = [], sp.expand(polynomial)
+    for letter in sorted(rest.free_symbols, key=str):
+        parts = sp.Poly(rest, letter).all_coeffs()
+        if len(parts) == 3 and parts[0].is_positive and parts[0].is_number:
+            bases.append(letter + parts[1] / (2 * parts[0]))
+            rest = sp.expand(parts[2] - parts[1] ** 2 / (4 * parts[0]))
+    return bases if rest == 0 else []
 
 
 def _positive(polynomial: sp.Expr) -> bool:
