@@ -190,6 +190,7 @@ def test_every_page_says_what_it_is_and_where(pages):
         descriptions.add(description)
         assert f'<meta property="og:url" content="{address}"' in text
         assert f'<link rel="canonical" href="{address}"' in text
+        assert f"percept_obs {percept_obs.__version__}</p>" in text
     assert len(descriptions) > 0.5 * len(found)
     assert (pages / "_static" / "card.png").read_bytes().startswith(b"\x89PNG")
 

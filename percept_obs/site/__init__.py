@@ -13,10 +13,11 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from percept_obs import __version__
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.site import front_ends
-from percept_obs.site.addresses import CARD, card, write_sitemap
+from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import (
@@ -39,12 +40,14 @@ SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in
 
 SETTINGS = {
     "project": "percept_obs",
+    "release": __version__,
     "language": "en",
     "extensions": ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "percept_obs.site.extension"],
     "html_title": "percept_obs",
     "html_theme": "furo",
     "html_math_renderer": "mathml",
     "html_static_path": ["_static"],
+    "templates_path": ["_templates"],
     "html_css_files": ["look.css"],
     "html_copy_source": False,
     "html_show_sphinx": False,
@@ -88,7 +91,8 @@ def build(
         Whether the exam's questions, with their solutions, have a page: for teachers.
     address : str, optional
         Where the site will stand, ``"https://example.org/course/"``; with it pages say their own address, and there is
-        a list of them all for search engines.
+        a list of them all for search engines.  If it ends with a version, as ``".../course/1.2/"``, pages lead to the
+        folder above, where the others stand.
 
     Raises
     ------
@@ -110,7 +114,8 @@ def build(
             _write(source / path, text)
         tell("writing the pages")
         (source / "_static" / CARD).write_bytes(card())
-        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), "html_baseurl": address})
+        settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
+        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
     if address:
         write_sitemap(target, address)
     tell(f"wrote {target / 'index.html'}")
@@ -144,7 +149,7 @@ def _texts(exam: bool) -> Pages:
     """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
     for text in (each for each in TEXTS.iterdir() if exam or each.name != "exam.md"):
-        folder = "_static/" if text.name.endswith(".css") else ""
+        folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")
 
 

@@ -45,6 +45,16 @@ def short(text: str) -> str:
     return whole if len(whole) <= LONGEST else whole[:LONGEST].rpartition(" ")[0]
 
 
+def above_versions(address: str) -> str:
+    """Address of the folder above that of a version; empty where an address does not end with a version.
+
+    >>> above_versions("https://example.org/course/1.2/"), above_versions("https://example.org/course/")
+    ('https://example.org/course/', '')
+    """
+    above, _, last = address.rstrip("/").rpartition("/")
+    return f"{above}/" if re.fullmatch(r"v?\d+(\.\w+)*|latest|stable", last) else ""
+
+
 def write_sitemap(target: Path, address: str) -> None:
     """List all pages of a site for search engines."""
     pages = sorted(

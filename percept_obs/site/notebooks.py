@@ -108,13 +108,14 @@ def _unrun(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
 
 def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
     import nbformat
-    from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError
+
+    from percept_obs.site.kernels import client_of
 
     whole = nbformat.reads(json.dumps(notebook), as_version=4)
     whole.cells.insert(0, nbformat.v4.new_code_cell(PREPARE))
     try:
-        NotebookClient(whole, timeout=600, kernel_name="python3").execute()
+        client_of(whole, timeout=600, kernel_name="python3").execute()
     except CellExecutionError as error:
         raise SiteFault(f"{name} does not run: {error.ename}: {error.evalue}") from None
     del whole.cells[0]

@@ -70,8 +70,8 @@ OPENING = """() => {
 HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
 """Handle that is dragged in each lab's workbench."""
 
-FIRST_HANDLES = {"observer_lab": "first foe"}
-"""Handle that is dragged on each lab's first screen."""
+FIRST_HANDLES = {"observer_lab": "first foe", "structure_lab": "first camera", "points_lab": "first mark 1"}
+"""Handle that is dragged on each lab's first screen, the dearest: each of its moves makes a new run."""
 
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
