@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache, partial
 from itertools import permutations
 
 import sympy as sp
 
+from percept_obs.checking import Target
+from percept_obs.checking.lines import EQUATION, Line
 from percept_obs.papers.base import column, equal, identities, is_identity, reader, vanishes, vectors
 from percept_obs.papers.entries import Check, Entry, Finding, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, Corollary, scaled_dynamics
@@ -155,11 +158,16 @@ def one_more_dimension(printed: Printed) -> Finding:
     return judged(all(gains), Verdict.FALSE, numbers)
 
 
+def determinants(named: Mapping[str, sp.Expr]) -> Target:
+    """Target of determinants, each up to a number."""
+    return Target(tuple(Line(name, value, EQUATION) for name, value in named.items()))
+
+
 def solvable(number: int, page: str, note: str, *needed: str) -> Entry:
     """Statement of a corollary about its determinant: it vanishes where the named velocity does, or nowhere."""
     says = f"solvable if {needed[0]} is not 0" if needed else "always solvable"
     section, check = COROLLARIES[number - 1].section, nonsingular(number, *needed)
-    return at(f"corollary {number}", page, section, says)((), check, note)
+    return at(f"corollary {number}", page, section, says)((), check, note, asks=lambda: COROLLARIES[number - 1])
 
 
 INVERSE_G = Omega_g.inv() * ghat
@@ -172,7 +180,10 @@ reads = reader(
 
 ENTRIES = (
     at("Table 1", "5", "III", "which section is for which motions")(
-        (), cells, "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A"
+        (),
+        cells,
+        "dynamic: the determinant vanishes where the camera stands still; IV.B has d_s from IV.A",
+        asks=lambda: determinants({f"det{c.number}": c.choice().determinant for c in COROLLARIES}),
     ),
     at("(22)", "6", "IV.A", "static object")(reads("Omega = Omega2; g = Omega1 v_c d_s"), holds_in(1)),
     at("(23)", "6", "IV.A", "d_s from one known component of v_c")(

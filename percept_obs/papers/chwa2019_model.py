@@ -7,6 +7,8 @@ from functools import cache
 
 import sympy as sp
 
+from percept_obs.checking import Target
+from percept_obs.checking.lines import EQUATION, Line
 from percept_obs.papers.base import column, dot, identities, reader, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, scaled_dynamics
@@ -153,6 +155,12 @@ def all_have_full_rank(printed: Printed) -> Finding:
     return judged(min(ranks) == 3 or not lost, Verdict.FALSE, numbers)
 
 
+def nonsingular_ones() -> Target:
+    """Target of the determinants of Omega1 and Omega3, each up to a number."""
+    dynamics = scaled_dynamics()
+    return Target(tuple(Line(f"det{k}", m.det(), EQUATION) for k, m in ((1, dynamics.camera), (3, dynamics.object))))
+
+
 def bounded_by_velocities(printed: Printed) -> Finding:
     """A static point 5 m ahead, towards which the camera moves at 1 m/s: |g| of corollary 1 with d_s = 4."""
     (line,) = printed
@@ -250,6 +258,7 @@ ENTRIES = (
         all_have_full_rank,
         "Omega2 is a vector, and its matrix sends the line of sight (y1, y2, 1) to 0",
         Verdict.FALSE,
+        asks=nonsingular_ones,
     ),
     at("bound on g", "4", "III", "g is bounded, since the velocities are")(
         reads("g_norm < gamma"),

@@ -220,7 +220,7 @@ ENTRIES = (
     at("(10)", "4", "III", "its integral")(reads("e_sI' = PUSH"), follow(equations), known=Known.IMPLEMENTED),
     at("e_sI(0)", "4", "III", "start of the integral")(reads("e_sI0 = -e_s0"), starts_at_zero, "so that s_e(0) = 0"),
     at("s_e = 0 for ever", "4", "III", "s_e starts at zero and stays there")(
-        (), rate_at_zero, "s = 0 can be kept, s_e not: it leaves zero at the rate g", Verdict.FALSE
+        reads("s_e = 0"), rate_at_zero, "s = 0 can be kept, s_e not: it leaves zero at the rate g", Verdict.FALSE
     ),
     at("(11)", "4", "III", "estimate of g")(
         reads("ghat = k1 s_e - v + PUSH"), follow(equations), known=Known.IMPLEMENTED
@@ -235,7 +235,9 @@ ENTRIES = (
     at("v(0)", "4", "III", "start of the pseudo-input")(
         reads("v0 = -gamma tanh(a s_e0)"), slides_at_once, "so that s(0) = 0"
     ),
-    at("s = 0 for ever", "5", "III", "s remains at zero")((), attracts, "with the listed gains, where |g| <= gamma"),
+    at("s = 0 for ever", "5", "III", "s remains at zero")(
+        (), attracts, "with the listed gains, where |g| <= gamma", asks=lambda: reads("s = 0")
+    ),
     at("(15)", "6", "III", "rate of s_e")(
         reads("s_e' = g - ghat + PUSH; s_e' = g - k1 s_e + s - PULL"), follow(error_dynamics)
     ),

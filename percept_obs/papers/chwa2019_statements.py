@@ -12,7 +12,7 @@ from scipy.integrate import simpson
 from percept_obs.compile import vectorised
 from percept_obs.observers.integral_sliding_mode import a, b, gamma, integral_sliding_mode, k1, k2
 from percept_obs.papers.base import column, identities, reader
-from percept_obs.papers.chwa2019_cases import MOTION, ORDERS, nonsingular
+from percept_obs.papers.chwa2019_cases import MOTION, ORDERS, determinants, nonsingular
 from percept_obs.papers.chwa2019_observer import CASE_G, GAINS, attracts, error_dynamics, rest
 from percept_obs.papers.chwa2019_observer import ENTRIES as OBSERVER
 from percept_obs.papers.chwa2019_results import followed
@@ -30,17 +30,19 @@ STEP = 1e-3
 """Step of explicit Euler, in seconds."""
 
 
+def of_columns(*names: str, axes: str = "123") -> sp.Expr:
+    """Determinant of some columns of Omega1 ("1i") and Omega3 ("3k")."""
+    matrices = {"1": scaled_dynamics().camera, "3": scaled_dynamics().object}
+    place = {letter: int(axis) - 1 for letter, axis in zip("ijk", axes, strict=True)}
+    return sp.Matrix.hstack(*(matrices[name[0]][:, place[name[1]]] for name in names)).det()
+
+
 def columns_independent(*names: str) -> Check:
-    """Check the determinant of some columns of Omega1 ("1i") and Omega3 ("3k"), for any order of the axes."""
+    """Check the determinant of some columns of Omega1 and Omega3, for any order of the axes."""
 
     def check(printed: Printed) -> Finding:
         """Determinant of the named columns of Omega1 and Omega3, up to a sign a power of ybar3, for any order."""
-        matrices = {"1": scaled_dynamics().camera, "3": scaled_dynamics().object}
-        outcomes = []
-        for axes in ORDERS:
-            place = {letter: int(axis) - 1 for letter, axis in zip("ijk", axes, strict=True)}
-            chosen = sp.Matrix.hstack(*(matrices[name[0]][:, place[name[1]]] for name in names))
-            outcomes.append(sp.cancel(chosen.det() / ybar3**4) in (1, -1))
+        outcomes = [sp.cancel(of_columns(*names, axes=axes) / ybar3**4) in (1, -1) for axes in ORDERS]
         return judged(all(outcomes), Verdict.FALSE, {"orders of the axes": len(outcomes)})
 
     return check
@@ -169,11 +171,22 @@ def beyond_in_each_entry(printed: Printed) -> Finding:
     return judged(first <= 1e-9 and second > 0, Verdict.FALSE, numbers)
 
 
-def assumption(number: int, page: str, section: str, says: str, note: str, check: Check = not_checkable) -> Entry:
-    """Entry of an assumption; one without a check is a definition."""
-    free = check is not_checkable
+def assumption(
+    number: int,
+    page: str,
+    section: str,
+    says: str,
+    note: str,
+    check: Check = not_checkable,
+    printed: Printed = (),
+    columns: tuple[str, ...] = (),
+) -> Entry:
+    """Entry of an assumption; one without a check is a definition, one with columns says that they are independent."""
+    free = check is not_checkable and not columns
     verdict, known = (Verdict.NOT_CHECKABLE, Known.DEFINITION) if free else (Verdict.HOLDS, Known.DERIVED)
-    return at(f"Assumption {number}", page, section, says)((), check, note, verdict, known=known)
+    asks = (lambda: determinants({"det": of_columns(*columns)})) if columns else None
+    check = columns_independent(*columns) if columns else check
+    return at(f"Assumption {number}", page, section, says)(printed, check, note, verdict, known=known, asks=asks)
 
 
 reads = reader(Omega2)
@@ -189,23 +202,37 @@ ENTRIES = (
         "just this is needed: v_c may vary",
         nonsingular(1, "v_ci"),
     ),
-    assumption(4, "7", "V.A", "the object moves in a plane", "one that holds two of the camera's axes"),
+    assumption(
+        4,
+        "7",
+        "V.A",
+        "the object moves in a plane",
+        "one that holds two of the camera's axes",
+        printed=reads("v_pk = 0"),
+    ),
     assumption(
         5,
         "7",
         "V.A",
         "v_c is known, and v_ck not 0",
         "[Omega3i, Omega3j, Omega1k] has the determinant +-ybar3^4",
-        columns_independent("3i", "3j", "1k"),
+        columns=("3i", "3j", "1k"),
     ),
-    assumption(6, "8", "V.B", "the object moves on a line", "along one of the camera's axes"),
+    assumption(
+        6,
+        "8",
+        "V.B",
+        "the object moves on a line",
+        "along one of the camera's axes",
+        printed=reads("v_pj = 0; v_pk = 0"),
+    ),
     assumption(
         7,
         "8",
         "V.B",
         "v_ci and v_cj are known, v_cj not 0",
         "[Omega1j, Omega1k, Omega3i] has the determinant +-ybar3^4",
-        columns_independent("1j", "1k", "3i"),
+        columns=("1j", "1k", "3i"),
     ),
     at("Assumption 8", "8", "VI", "the range y3, that is d_s, is known")(
         reads("y3 = d_s ybar3"), identities(known_scale), "either gives the other"
@@ -217,7 +244,7 @@ ENTRIES = (
         "VI.B",
         "v_ck is unknown, v_ci and v_cj are known",
         "[Omega3i, Omega3j, Omega3k] is nonsingular; that v_c is not 0 is not needed, see corollary 6",
-        columns_independent("3i", "3j", "3k"),
+        columns=("3i", "3j", "3k"),
     ),
     at("three variables", "4", "II", "three among y3, v_p and v_c can be estimated")(
         (),

@@ -135,7 +135,8 @@ class Entry:
     known : Known
         How the verdict is known.
     asks : function, optional
-        Returns what a formula of your own is compared with, where the statement is printed in words.
+        Returns what a formula of your own is compared with, where the statement is printed in words: relations, or
+        what `percept_obs.check` takes.
 
     See Also
     --------

@@ -18,7 +18,7 @@ from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 from percept_obs.recording import record
 from percept_obs.system.motion import linear
-from percept_obs.system.surfaces import pinhole
+from percept_obs.system.surfaces import POINT, pinhole
 
 BLOCK = point_block(pinhole())
 
@@ -27,6 +27,7 @@ t, s, tau, T, b = sp.symbols("t s tau T b", real=True)
 epsilon, epsilontilde, ysup = sp.symbols("epsilon epsilontilde y_sup", positive=True)
 lam, lambda1, lambda2, lambda3, lambdamax = sp.symbols("lambda lambda1 lambda2 lambda3 lambda_max", real=True)
 y_11, y_21, y_12, y_22 = sp.symbols("y_11 y_21 y_12 y_22", real=True)
+xi_1, xi_2, xi_3 = sp.symbols("xi_1 xi_2 xi_3", real=True)
 Phi_ = sp.Function("Phi", real=True)
 
 # Vectors and matrices
@@ -171,6 +172,13 @@ def nothing_of_another(printed: Printed) -> Finding:
     return judged(vanishes(*seen) and least > 0.1, Verdict.FALSE, {"least of (14) over 8 s, one point": least})
 
 
+def in_a_cone(printed: Printed) -> Finding:
+    """|y|^2 <= y_sup^2, multiplied by xi_3^2: the points of a cone, on both sides of the camera."""
+    image = [entry.xreplace(dict(zip(POINT, (xi_1, xi_2, xi_3), strict=True))) for entry in pinhole().image]
+    cone = (ysup**2 - sum(entry**2 for entry in image)) * xi_3**2
+    return judged(vanishes(cone - (ysup**2 * xi_3**2 - xi_1**2 - xi_2**2)))
+
+
 def without_input(printed: Printed) -> Finding:
     """With v = 0 the state is Phi x(t0), of which B C makes 0: (14) fails for any number of points."""
     seen = explicit(B * C * x, what_is_seen_of_the_state())
@@ -280,6 +288,12 @@ ENTRIES = (
     ),
     at("Remark 3.2 (i), v = 0", "4", "3", "without input the body stays in a bounded space")(
         (), without_input, "of rigid bodies; but v = 0 violates (14), whatever p is: the state's length is never seen"
+    ),
+    at("Remark 3.2 (ii)", "4", "3", "bounded images keep the body in a cone around the camera's axis")(
+        (),
+        in_a_cone,
+        "and a cone bounds the images; that the motion is smooth too is more than continuous images say",
+        asks=lambda: sp.LessThan(xi_1**2 + xi_2**2, ysup**2 * xi_3**2, evaluate=False),
     ),
     at("(14) along x(t)", "4", "3", "(14) makes the state observable along x(t)")(
         (),

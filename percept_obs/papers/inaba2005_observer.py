@@ -151,7 +151,17 @@ def at_the_truth() -> Values:
 
 def no_correction(printed: Printed) -> Finding:
     """The package's correction where the estimate is the truth."""
-    return judged(vanishes(*at_the_truth()[r]))
+    (line,) = printed
+    found = filled_in(line.lhs, at_the_truth())
+    nothing = line.rhs == sp.ZeroMatrix(n, 1) and line.lhs in (r, -r)
+    return judged(isinstance(line, sp.Eq) and nothing and found is not None and vanishes(*found))
+
+
+def needs_no_integral(printed: Printed) -> Finding:
+    """The package's observer: as many states as x has, and the slope of their rate in v(t), which is the identity."""
+    made = observer(1, 2)
+    slope = made.flow.jacobian(made.form.motion.b)
+    return judged(len(made.estimate) == len(made.form.state) and slope == sp.eye(len(made.estimate)))
 
 
 def one_point() -> Values:
@@ -253,7 +263,12 @@ ENTRIES = (
         correction={h(C * xhat): H(C * xhat)},
         known=Known.IMPLEMENTED,
     ),
-    at("r at the truth", "2", "3", "the correction vanishes for images of the estimate")((), no_correction),
+    at("r at the truth", "2", "3", "the correction vanishes for images of the estimate")(
+        (equal(r, sp.ZeroMatrix(n, 1)),), no_correction
+    ),
+    at("no integration of v", "2", "2", "the observer needs no integral of the input")(
+        (), needs_no_integral, "its rate has v(t) as it is, with the factor 1, and its state is an estimate of x alone"
+    ),
     at("stacked C", "2", "2", "C holds the points' matrices one below the other")(
         (equal(C, sp.BlockMatrix([[C1], [C2]])),), identities(two_points_seen), "for p = 2"
     ),

@@ -186,7 +186,8 @@ def range_at_the_foe(printed: Printed) -> Finding:
         "staying there": never,
         "IBO settles at s": settling,
     }
-    return judged((first, second, never) != (2, 3, 2) or math.isinf(settling), Verdict.FALSE, numbers)
+    depends = (first, second, never) == (2, 3, 2) and math.isfinite(settling)
+    return Finding(Verdict.DEPENDS if depends else Verdict.FALSE, numbers)
 
 
 def an_instant_suffices(form: CanonicalForm) -> Check:
@@ -276,8 +277,8 @@ ENTRIES = (
     at("range at the FOE", "66", "3.1", "range at the FOE is lost")(
         (),
         range_at_the_foe,
-        "only for a point that stays there; second derivatives tell the range of one that passes",
-        Verdict.FALSE,
+        "it is for a point that stays there; second derivatives tell the range of one that passes",
+        Verdict.DEPENDS,
     ),
     at("(17)", "66", "3.1", "observability, y1 and y2")(
         reads("lambda_min(w w^T) > epsilon; epsilon > 0"), an_instant_suffices(BOTH)

@@ -360,6 +360,7 @@ ENTRIES = (
         stable_nearby,
         "near 0, where e1 = 0 is kept; from far away e2 cannot fall faster than alpha lambda |w|; (28), (29) are false",
         Verdict.DEPENDS,
+        asks=lambda: (equal(dot(e2), -alpha * w * w.T * e2),),
     ),
     at("c3 > c4 alpha0", "68", "3.3", "c3 can be chosen so that (24) is stable")(
         reads("c3 > c4 alpha0"),

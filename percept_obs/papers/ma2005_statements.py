@@ -14,7 +14,7 @@ from percept_obs.compile import vectorised
 from percept_obs.observability import instantaneous
 from percept_obs.observers import identifier_based, sliding_mode
 from percept_obs.observers.sliding_mode import alpha, delta
-from percept_obs.papers.base import dot, vanishes
+from percept_obs.papers.base import dot, reader, vanishes
 from percept_obs.papers.entries import Finding, Known, Printed, Verdict, at, judged
 from percept_obs.papers.ma2005_examples import EXAMPLES, FORMS, NOISE, SYSTEM
 from percept_obs.papers.ma2005_observability import FIRST, SUM_BOTH
@@ -182,6 +182,7 @@ ENTRIES = (
         "on n; the third output follows from the other two, n1 yg1 + n2 yg2 + n3 yg3 = 1, but brings noise of its own,"
         " and so it adds",
         Verdict.DEPENDS,
+        asks=lambda: reader()("n1 y_g1 + n2 y_g2 + n3 y_g3 = 1"),
     ),
     at("small denominators", "65", "3", "small denominators make the RIO's estimate err")(
         (), small_denominators, "an error of f1 is multiplied by 1/|w|; with y1 alone b1 = b3 y1 is enough for that"
