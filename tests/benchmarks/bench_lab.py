@@ -48,6 +48,9 @@ RESET = "() => [...window.perceptObsLabs][0].reset()"
 ALL_OF_ITS_TIME = """() => {
     const [lab] = window.perceptObsLabs;
     lab.zoom?.((timeline) => timeline.select(timeline.whole));
+    if (lab.face !== "first") return;
+    lab.first.clock.begun = true;
+    lab.first.clock.finish();  // where the camera has come far enough to be a handle
 }"""
 
 OPENING = """() => {
@@ -70,8 +73,8 @@ OPENING = """() => {
 HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
 """Handle that is dragged in each lab's workbench."""
 
-FIRST_HANDLES = {"observer_lab": "first foe", "structure_lab": "first camera", "points_lab": "first mark 1"}
-"""Handle that is dragged on each lab's first screen, the dearest: each of its moves makes a new run."""
+FIRST_HANDLES = {"observer_lab": "first foe", "structure_lab": "first camera"}
+"""Handle that is dragged on each lab's first screen; each of its moves makes a new run."""
 
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
