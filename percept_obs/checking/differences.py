@@ -1,7 +1,8 @@
 """Differences of two formulas once they are multiplied out: products of letters whose coefficients differ."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 from sympy.polys.fields import sfield
@@ -32,6 +33,8 @@ def compared(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[Difference, ...], tupl
     for element in elements:
         common = common.lcm(element.denom)
     polynomials = [element.numer * (common.quo(element.denom)) for element in elements]
+    for number, square in _squares(field, letters):
+        polynomials = [_reduced(p, number, square) for p in polynomials]
     *own, target = [dict(p.terms()) for p in polynomials]
     total = dict(sum(polynomials[:-1], field.ring.zero).terms())
     back = {letter: function for function, letter in letters.items()}
@@ -66,3 +69,26 @@ def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]
     for part in parts:
         visit(part)
     return outermost
+
+
+def _squares(field: Any, letters: Mapping[sp.Expr, sp.Symbol]) -> Iterator[tuple[int, Any]]:
+    """Yield the number of each letter that stands for a root or a sine, and its square as a polynomial."""
+    for function, letter in letters.items():
+        if isinstance(function, sp.sin):
+            square = 1 - sp.cos(*function.args) ** 2
+        elif function.is_Pow and function.exp == sp.S.Half:
+            square = function.base
+        else:
+            continue
+        square = square.xreplace(letters)
+        if square.free_symbols <= set(field.symbols) and square.is_polynomial() and letter in field.symbols:
+            yield field.symbols.index(letter), field.ring.from_expr(square)
+
+
+def _reduced(polynomial: Any, number: int, square: Any) -> Any:
+    """Return a polynomial in which a letter's square is put in."""
+    found = polynomial.ring.zero
+    for powers, coefficient in polynomial.terms():
+        rest = (*powers[:number], powers[number] % 2, *powers[number + 1 :])
+        found += polynomial.ring({rest: coefficient}) * square ** (powers[number] // 2)
+    return found

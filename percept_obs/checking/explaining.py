@@ -15,7 +15,7 @@ from percept_obs.checking.places import at, leaves_apart
 from percept_obs.checking.search import THROUGHOUT, Search, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, siblings_in, slips_in
 from percept_obs.checking.target import Target
-from percept_obs.checking.throughout import elsewhere, repeated, throughout
+from percept_obs.checking.throughout import elsewhere, repeated, swapped, throughout
 
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""
@@ -60,8 +60,8 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
         return Explanation(found, differences, wrong, steps, (), whole, bracket(found, search) if lacks else None)
     found = search.pair()
     apart = leaves_apart(found[0].before, found[0].after) if found and found[0].kind == "replaced" else []
-    if (len(wrong) > 2 and not found) or len(apart) > 2:
-        whole = "there are more than two slips"
+    if not found or len(apart) > 2:
+        whole = "there are more than two slips, or a larger one"
     if len(apart) == 2 and all(is_symbol(side) for pair in apart for side in pair):
         found = tuple(replace(found[0], kind="letter", before=a, after=b, term=found[0].before) for a, b in apart)
     return Explanation(found, differences, wrong, steps, tuple(_apart(search, found, row, target)), whole)
@@ -71,24 +71,25 @@ def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
     """Return the plainest changes that mend a line, and the convention that it follows besides."""
     one = search.single()
     # where all signs of a sum are turned, as by two letters swapped, the letters say more
-    if one and not (one.kind == "sign" and not one.path and one.before.is_Add):
+    weak = one and (one.kind == "replaced" or (one.kind == "sign" and not one.path and one.before.is_Add))
+    if one and not weak:
         return (one,), ""
-    if everywhere := throughout(search) or one:
+    if everywhere := throughout(search) or swapped(search):
         return (everywhere,), ""
-    if search.line.kind != VALUE:
-        return (), ""
+    if search.line.kind != VALUE or (one and one.kind == "sign"):
+        return (one,) if one else (), ""
     for convention in target.conventions:
         changes = dict(convention.changes)
         if len(search.line.formula.free_symbols & set(changes)) > 1:
             line = replace(search.line, formula=search.line.formula.xreplace(changes))
             if one := Search(search.mine, line, search.letters, search.until).single():
                 return (one,), convention.words
-    return several(search) or after_a_minus(search) or repeated(search), ""
+    return several(search) or after_a_minus(search) or repeated(search) or ((one,) if one else ()), ""
 
 
 def _missing(search: Search, differences: Sequence[Difference]) -> Slip | None:
     """Return one product that is missing if all that differs is missing."""
-    if search.line.kind != VALUE or len(differences) < 2 or any(d.mine != 0 for d in differences):
+    if search.line.kind != VALUE or not differences or any(d.mine != 0 for d in differences):
         return None
     term = sp.factor_terms(sp.factor(sp.Add(*(d.true * d.product for d in differences))))
     return None if term.is_Add else Slip("missing", sp.S.Zero, term, (), term, search.line.formula)

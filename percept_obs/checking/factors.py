@@ -66,9 +66,9 @@ def after_a_minus(search: Search) -> tuple[Slip, ...]:
 
 def bracket(slips: Sequence[Slip], search: Search) -> sp.Expr | None:
     """Return the bracket that may be missing where terms of a sum lack a factor which a similar one beside them has."""
-    factor, above = slips[0].after, slips[0].path[:-1]
-    parent = at(search.mine, above)
-    if not parent.is_Add or factor.is_number:
+    factor, path = slips[0].after, slips[0].path
+    parent = at(search.mine, path[:-1])
+    if not path or not parent.is_Add or factor.is_number:
         return None
     lacking = [parent.args[slip.path[-1]] for slip in slips]
     similar = [

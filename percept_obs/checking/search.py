@@ -81,7 +81,7 @@ class Search:
         for k, term in enumerate(self.terms):
             start = (k,) if self.mine.is_Add else ()
             before = self.values(term)
-            for slip in chain(factored(term, MENDS), slips_in(term, siblings, MENDS)):
+            for slip in chain(factored(term, MENDS), slips_in(term, siblings, MENDS), _other_functions(term)):
                 if self.over:
                     return found
                 after = self.values(slip.formula)
@@ -115,9 +115,12 @@ class Search:
                 break
             if self.mends(added, slip):
                 ways.append(_named(slip))
-        if not ways and self.line.kind == VALUE:
-            ways = [*self.by_ratio(), *self.missing_inside(), *self.in_its_place()]
-        return min(ways, key=lambda slip: (ORDER.index(slip.kind), len(slip.path)), default=None)
+        # a term that is there only once all is multiplied out is named last
+        written = [Slip("missing", sp.S.Zero, t, (), t, t) for t in sp.Add.make_args(self.line.formula)]
+        late = [slip for slip in ways if slip.kind == "missing" and slip not in written]
+        if self.line.kind == VALUE and len(late) == len(ways):
+            ways = [*self.by_ratio(), *(ways or self.missing_inside()), *self.in_its_place()]
+        return min(ways, key=lambda s: (s in late, ORDER.index(s.kind), len(s.path)), default=None)
 
     def array(self, parts: Sequence[sp.Expr]) -> Values | None:
         """Return the values of several expressions, one in a row."""
@@ -189,7 +192,14 @@ class Search:
         changed = put(self.mine, path, true)
         if not path or not close(self.values(changed), self.values(self.line.formula)):
             return
-        kind = "replaced"
+        kind, lost = "replaced", sp.Add.make_args(true - mine)
+        if len(lost) == 2:
+            known = {t.as_coeff_Mul()[1] for t in sp.Add.make_args(mine)}
+            lacking, extra = sorted(lost, key=lambda t: t.as_coeff_Mul()[1] in known)
+            one = Slip("missing", sp.S.Zero, lacking, path, lacking, changed)
+            yield from (
+                way[0] for way in _as_a_letter(one, Slip("superfluous", -extra, sp.S.Zero, path, -extra, changed))
+            )
         if (true.is_Add and mine in true.args) or (true.is_Add and mine.is_Add and set(mine.args) < set(true.args)):
             kind, mine, true = "missing", sp.S.Zero, true - mine
         elif mine.is_Add and (true in mine.args or (true.is_Add and set(true.args) < set(mine.args))):
@@ -253,6 +263,16 @@ class Search:
                             _named(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
                             for slip, path in zip((first, second), paths, strict=True)
                         )
+
+
+FUNCTIONS = {sp.sin: sp.cos, sp.cos: sp.sin, sp.sinh: sp.cosh, sp.cosh: sp.sinh}
+
+
+def _other_functions(term: sp.Expr) -> Iterator[Slip]:
+    """Yield a term with a sine for a cosine, and the like."""
+    for node in dict.fromkeys(e for e in sp.preorder_traversal(term) if e.func in FUNCTIONS):
+        path, other = place_of(node, term), FUNCTIONS[node.func](*node.args)
+        yield Slip("other letter", node, other, path, term, put(term, path, other))
 
 
 def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:

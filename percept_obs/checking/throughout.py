@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from itertools import chain, takewhile
+from itertools import chain, combinations, takewhile
 
 import sympy as sp
 
@@ -80,6 +80,22 @@ def _everywhere(search: Search) -> Iterator[Candidate]:
                 yield "throughout", a, b, mine.xreplace({a: b})
                 if b in mine.free_symbols and str(a) < str(b):
                     yield "swapped", a, b, mine.xreplace({a: b, b: a})
+
+
+def swapped(search: Search) -> Slip | None:
+    """Return the bracket in which two letters, or a sine and a cosine, are swapped."""
+    for spot in takewhile(lambda _: not search.over, search.spots):
+        if not spot.node.is_Add:
+            continue
+        letters = sorted(spot.node.free_symbols, key=str)
+        pairs: list[tuple[sp.Basic, sp.Basic]] = [(a, b) for a, b in combinations(letters, 2) if family(a) == family(b)]
+        pairs += [(e, sp.cos(*e.args)) for e in spot.node.atoms(sp.sin) if spot.node.has(sp.cos(*e.args))]
+        for a, b in pairs:
+            node = spot.node.xreplace({a: b, b: a})
+            values = search.values(node)
+            if values is not None and close((values - spot.value) * spot.outer, search.lacking):
+                return Slip("swapped", a, b, spot.path, spot.node, put(search.mine, spot.path, node))
+    return None
 
 
 def repeated(search: Search) -> tuple[Slip, ...]:
