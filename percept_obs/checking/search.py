@@ -119,7 +119,7 @@ class Search:
         written = [Slip("missing", sp.S.Zero, t, (), t, t) for t in sp.Add.make_args(self.line.formula)]
         late = [slip for slip in ways if slip.kind == "missing" and slip not in written]
         if self.line.kind == VALUE and len(late) == len(ways):
-            ways = [*self.by_ratio(), *(ways or self.missing_inside()), *self.in_its_place()]
+            ways = [*self.by_ratio(), *(ways or [*self.missing_inside(), *self.in_its_place()])]
         return min(ways, key=lambda s: (s in late, ORDER.index(s.kind), len(s.path)), default=None)
 
     def array(self, parts: Sequence[sp.Expr]) -> Values | None:
