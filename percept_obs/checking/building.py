@@ -2,8 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from math import prod
 from typing import Any
@@ -11,11 +10,12 @@ from typing import Any
 import sympy as sp
 from lark import Token, Tree
 
-from percept_obs.checking.deciding import MATRICES, degree, letters_in_a_row
+from percept_obs.checking.deciding import MATRICES, letters_in_a_row
+from percept_obs.checking.limits import extent, refused, too_tall
 from percept_obs.checking.refusing import two_meanings
 from percept_obs.checking.words import FUNCTIONS, Words
 
-LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT, LARGEST_SIZE = 20, 60, 40, 8, 4000
+LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 20, 60, 40, 8
 
 _RELATIONS = {
     sp.StrictLessThan: ("<", r"\lt"),
@@ -24,12 +24,6 @@ _RELATIONS = {
     sp.GreaterThan: (">=", r"\ge", r"\geq", r"\geqslant"),
     sp.Ne: ("!=", r"\ne", r"\neq"),
 }
-
-
-@lru_cache(maxsize=1 << 14)
-def written_size(e: sp.Basic) -> int:
-    """Return how many letters, numbers and signs a formula has, each as often as it stands there."""
-    return 1 + sum(map(written_size, e.args))
 
 
 class Builder:
@@ -59,9 +53,9 @@ class Builder:
         return self.values[name]
 
     def written(self, value: Any, node: Any) -> Any:
-        """Return a value that is not too long once all letters are put in."""
-        if isinstance(value, sp.Basic) and written_size(value) > LARGEST_SIZE:
-            self.refuse("with all letters put in this is too long to be compared; write a shorter line", node)
+        """Return a value that is not too large once all letters are put in."""
+        if isinstance(value, sp.Basic) and (why := refused(value)):
+            self.refuse(why, node)
         return value
 
     def _letter(self, node: Token) -> Any:
@@ -192,16 +186,22 @@ class Builder:
         if base == 0 and exponent <= 0:
             self.refuse("zero has no such power", tree)
         digits = max(map(len, map(str, base.as_numer_denom()))) if base.is_Rational else 0
-        if degree(base) * abs(exponent) > LARGEST_DEGREE or digits * abs(exponent) > LONGEST_INTEGER:
+        if extent(base).degree * abs(exponent) > LARGEST_DEGREE or digits * abs(exponent) > LONGEST_INTEGER:
             self.refuse("this power is too large to be compared; there must be a smaller way to write it", tree)
         return base**exponent
 
     def _exponential(self, tree: Tree, base: Token, exponent: Any) -> sp.Expr:
-        return sp.exp(self._scalar(exponent))
+        return self._applied(sp.exp, exponent)
+
+    def _applied(self, function: Callable[[sp.Expr], sp.Expr], argument: Any) -> sp.Expr:
+        value = self._scalar(argument)
+        if too_tall(value):
+            self.refuse("no function of such a large number can be compared", argument)
+        return function(value)
 
     def _absolute(self, tree: Tree, inner: Any) -> sp.Expr:
         value = self.value(inner)
-        return self._norm(tree, inner) if isinstance(value, MATRICES) else sp.Abs(value)
+        return self._norm(tree, inner) if isinstance(value, MATRICES) else self._applied(sp.Abs, inner)
 
     def _norm(self, tree: Tree, inner: Any) -> sp.Expr:
         """Return the Euclidean norm, by the function `norm` where vectors are letters."""
@@ -218,12 +218,12 @@ class Builder:
         return self.value(above) / self._divisor(below)
 
     def _root(self, tree: Tree, inner: Any) -> sp.Expr:
-        return sp.sqrt(self._scalar(inner))
+        return self._applied(sp.sqrt, inner)
 
     def _function(self, tree: Tree, name: Token, *parts: Any) -> sp.Expr:
         if name == "norm":
             return self._norm(tree, parts[-1])
-        value = FUNCTIONS[name](self._scalar(parts[-1]))
+        value = self._applied(FUNCTIONS[name], parts[-1])
         if value.has(sp.zoo, sp.nan, sp.oo):
             self.refuse(f"{name} has no value there", tree)
         return self._power(tree, value, self._exponent_of(parts[0])) if len(parts) > 1 else value

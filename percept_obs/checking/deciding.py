@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import islice
 from math import prod
 from typing import Any
@@ -14,11 +13,12 @@ from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.relational import Relational
 from sympy.polys.fields import sfield
 
+from percept_obs.checking.limits import extent
 from percept_obs.checking.points import NoValue, Point, key
 from percept_obs.checking.proving import dimension, identical, ratio
 from percept_obs.checking.sampling import Place, places, region, sample
 
-POINTS, TRIALS, LARGEST = 12, 60, 2000
+POINTS, TRIALS, LARGEST, FEW = 12, 60, 2000, 150
 MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 
 
@@ -127,7 +127,7 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
         return Decision(False)
     if found and not one.has(*_JUMPS) and not other.has(*_JUMPS):
         return Decision(True)
-    compared = sample(one, other, thorough=found is None)
+    compared = sample(one, other, thorough=found is None and extent(one).parts + extent(other).parts < FEW)
     if compared.different:
         return Decision(False, where=region(compared.same, compared.different, one, other))
     if found is False or len(compared.same) < POINTS:
@@ -232,15 +232,6 @@ def _positive(polynomial: sp.Expr) -> bool:
     signs = {c > 0 for _, c in terms}
     even = all(power % 2 == 0 for powers, _ in terms for power in powers)
     return even and len(signs) == 1 and any(not any(powers) for powers, _ in terms)
-
-
-@lru_cache(maxsize=1 << 14)
-def degree(e: sp.Basic) -> int:
-    """Return an upper bound of the degree."""
-    inner = [degree(part) for part in e.args] or [1]
-    if e.is_Pow and e.exp.is_Rational:
-        return inner[0] * max(1, abs(int(e.exp.p)))
-    return sum(inner) if e.is_Mul else max(inner)
 
 
 def size(e: sp.Basic) -> int:

@@ -10,6 +10,7 @@ import sympy as sp
 
 from percept_obs.checking.differences import Difference, compared
 from percept_obs.checking.factors import after_a_minus, bracket, several
+from percept_obs.checking.limits import left
 from percept_obs.checking.lines import VALUE, ZEROS
 from percept_obs.checking.places import at, leaves_apart
 from percept_obs.checking.search import THROUGHOUT, Search, close
@@ -45,7 +46,7 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     No step is blamed that would have spoiled the lines that are right as well.
     """
     line = target.lines[row]
-    search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + SECONDS)
+    search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + min(SECONDS, 0.6 * left()))
     if not search.places:
         return Explanation()
     if whole := elsewhere(search, row, target):

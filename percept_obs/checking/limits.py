@@ -15,7 +15,7 @@ import sympy as sp
 
 SECONDS = 2.0
 TOO_LONG = f"too long to decide in {SECONDS:.0f} s; write it shorter"
-LARGEST, DEEPEST, HIGHEST, LONGEST, TALLEST = 6000, 100, 200, 40, 1e4
+LARGEST, DEEPEST, HIGHEST, LONGEST, TALLEST = 4000, 100, 200, 40, 1e4
 _AGAIN = 0.05
 """Seconds after which the exception is raised once more, should it have been lost."""
 
@@ -61,6 +61,12 @@ def limited(work: Callable[[], T], seconds: float = SECONDS) -> T:
     except (_Over, RecursionError):
         watch.stop()  # the exception may have come while it stopped
         raise TooLong(TOO_LONG) from None
+
+
+def left() -> float:
+    """Return how many seconds are left to what is limited."""
+    watch: _Watch | None = getattr(_here, "watch", None)
+    return max(watch.end - watch.now(), 0) if watch else SECONDS
 
 
 def heed() -> None:

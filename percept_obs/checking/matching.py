@@ -7,7 +7,8 @@ from enum import StrEnum
 import sympy as sp
 from sympy.core.relational import Relational
 
-from percept_obs.checking.deciding import proportional, same, same_zeros
+from percept_obs.checking.deciding import Decision, decided, proportional, same, same_zeros
+from percept_obs.checking.limits import TooLong, limited
 from percept_obs.checking.lines import EQUATION, INEQUALITY, VALUE, ZEROS, condition, relation_lines
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.target import Target
@@ -28,6 +29,8 @@ class Verdict(StrEnum):
     CANNOT_TELL = "cannot tell"
 
 
+STRICT = "the two sides are never equal: write < or >"
+WEAK = "the two sides may be equal: write <= or >="
 TRANSPOSED = "your matrix is the transpose of the one asked for"
 
 
@@ -47,25 +50,46 @@ class Judged:
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
     """Return each line with its verdict."""
     assigned = _assigned(readings, target)
-    lines = [Judged(row, formula, _verdict(formula, target, row)) for row, formula in assigned]
+    lines = [_judged(formula, target, row, strict) for row, formula, strict in assigned]
     return tuple(_carried(_by_convention(_turned(lines, readings, target), target), target))
 
 
+def _judged(mine: sp.Expr, target: Target, row: int, strict: bool | None) -> Judged:
+    """Return a line with its verdict, and how or where that holds; the line may be strict, a < b, or not, a <= b."""
+    try:
+        found = limited(lambda: _decided(mine, target, row))
+    except TooLong as error:
+        return Judged(row, mine, Verdict.CANNOT_TELL, str(error))
+    verdict, line = _as_verdict(found), target.lines[row]
+    if verdict == Verdict.RIGHT and line.kind == INEQUALITY and strict is not None and strict != line.strict:
+        return Judged(row, mine, Verdict.WRONG, STRICT if line.strict else WEAK)
+    return Judged(row, mine, verdict, found.words)
+
+
 def _verdict(mine: sp.Expr, target: Target, row: int) -> Verdict:
+    try:
+        return _as_verdict(limited(lambda: _decided(mine, target, row)))
+    except TooLong:
+        return Verdict.CANNOT_TELL
+
+
+def _as_verdict(found: Decision) -> Verdict:
+    return Verdict.CANNOT_TELL if found.truth is None else Verdict.RIGHT if found.truth else Verdict.WRONG
+
+
+def _decided(mine: sp.Expr, target: Target, row: int) -> Decision:
     line = target.lines[row]
     if line.kind == VALUE:
-        found = same(mine, line.formula)
-    elif line.kind == ZEROS:
-        found = same_zeros(mine, line.formula, target.nonzero)
-    else:
-        found = proportional(mine, line.formula, positive=line.kind == INEQUALITY)
-    return Verdict.CANNOT_TELL if found is None else Verdict.RIGHT if found else Verdict.WRONG
+        return decided(mine, line.formula)
+    if line.kind == ZEROS:
+        return Decision(same_zeros(mine, line.formula, target.nonzero))
+    return Decision(proportional(mine, line.formula, positive=line.kind == INEQUALITY))
 
 
-def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr]]:
+def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr, bool | None]]:
     """Return the row of the target and the expression of each formula."""
     count, rows = len(target.lines), target.rows
-    assigned: list[tuple[int, sp.Expr]] = []
+    assigned: list[tuple[int, sp.Expr, bool | None]] = []
     unnamed = [r for r in readings if r.name not in rows and r.name not in target.blocks]
     start = 0
     nameless = range(count) if len(unnamed) == count else [k for k, line in enumerate(target.lines) if not line.key]
@@ -82,7 +106,8 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
                 start += len(formula) if name not in target.blocks else 0
             if len(block) != len(formula):
                 raise ValueError(f"a matrix with {len(formula)} entries does not fit: {_asked(target)} are asked for")
-            assigned += zip(block, formula.T if name == "wT" else formula, strict=True)
+            entries = formula.T if name == "wT" else formula
+            assigned += [(row, entry, None) for row, entry in zip(block, entries, strict=True)]
             continue
         if name in rows:
             # of lines with the same name, such as a formula that is printed in two forms, the one that is meant
@@ -99,7 +124,8 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
         else:
             what = f"the line {name}" if name else "a line without a name"
             raise ValueError(f"{what} is none of those asked for: {_asked(target)}; begin it with its name and =")
-        assigned.append((row, _scalar(formula, target, row)))
+        strict = relation_lines(formula)[0].strict if isinstance(formula, Relational) else None
+        assigned.append((row, _scalar(formula, target, row), strict))
     return assigned
 
 

@@ -9,6 +9,7 @@ from lark import Token, Tree, UnexpectedToken
 
 from percept_obs.checking.building import Builder
 from percept_obs.checking.deciding import MATRICES
+from percept_obs.checking.limits import refused
 from percept_obs.checking.refusing import CannotRead as CannotRead
 from percept_obs.checking.refusing import about_token
 from percept_obs.checking.spelling import parser
@@ -110,6 +111,8 @@ class _Lines:
 
     def read(self) -> Text:
         lines = [reading for line in self.tree.children for reading in getattr(self, line.data)(line, *line.children)]
+        if why := refused(*(line.formula for line in lines)):
+            self.refuse(why)
         names = [
             str(line.children[0]) for line in self.tree.children if line.data == "named" and self.new(line.children[0])
         ]

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
+from percept_obs.checking.limits import SECONDS, TooLong, limited
 from percept_obs.checking.matching import Judged, Verdict, judged
 from percept_obs.checking.places import put
+from percept_obs.checking.spelling import parser
 from percept_obs.checking.target import Target
 from percept_obs.checking.targets import target_of
 
@@ -23,6 +26,8 @@ MARKS = {
     Verdict.CANNOT_TELL: "?",
 }
 CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
+DECIDING = 0.7 * SECONDS
+"""The rest of the time is left for printing."""
 HINTS = ("which line", "which term", "which slip, and in which step")
 
 
@@ -36,6 +41,8 @@ class Review:
     lines : tuple of Judged
     hints : int
         How many hints are open; see `hint`.
+    seconds : float
+        Processor time that may be taken to find all hints.
 
     See Also
     --------
@@ -55,6 +62,7 @@ class Review:
     target: Target
     lines: tuple[Judged, ...]
     hints: int = 0
+    seconds: float = SECONDS
 
     @property
     def right(self) -> bool | None:
@@ -70,15 +78,10 @@ class Review:
             raise ValueError(f"there is no hint {number!r}; there are 1 (which line), 2 (which term), 3 (which slip)")
         return replace(self, hints=number)
 
-    @cached_property
+    @property
     def explanations(self) -> dict[int, Explanation]:
         """Explanations of wrong lines by their number among `lines`."""
-        good = {line.row: line.mine for line in self.lines if line.verdict == Verdict.RIGHT}
-        return {
-            k: explained(line.mine, line.row, self.target, good)
-            for k, line in enumerate(self.lines)
-            if line.verdict == Verdict.WRONG and not line.note
-        }
+        return _explanations(self.target, self.lines, self.seconds)
 
     @property
     def summary(self) -> str:
@@ -90,7 +93,7 @@ class Review:
             more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
             return (what if count > 1 else "Not right yet") + more + "."
         if self.right is None:
-            return CANNOT_BE_TOLD
+            return next((f"{note.capitalize()}." for line in self.lines if (note := line.note)), CANNOT_BE_TOLD)
         rows = sorted({line.row for line in self.lines})
         names = list(dict.fromkeys(self.target.lines[row].whole for row in rows))
         if len(rows) == len(self.target.lines):
@@ -112,7 +115,7 @@ class Review:
         out = [f"**{self.summary}**"]
         for k, line in enumerate(self.lines):
             out.append(f"{self._mark(line)}\n\n$$ {_left(self.target.lines[line.row].name)}{self._boxed(k)} $$")
-            out += [f"- {text}" for text in self._told(k, lambda e: f"${sp.latex(e)}$")]
+            out += [f"- {text}" for text in self._told(k, lambda e: f"${_latex(e)}$")]
         return "\n\n".join(out)
 
     def _mark(self, line: Judged) -> str:
@@ -136,7 +139,30 @@ class Review:
             box, minus = sp.Dummy(), term.could_extract_minus_sign()
             boxes[box] = rf"\boxed{{{sp.latex(-term if minus else term)}}}"
             mine = put(mine, path, -box if minus else box)
-        return str(sp.latex(mine, symbol_names=boxes))
+        return str(sp.latex(mine, symbol_names=boxes)) if boxes else _latex(mine)
+
+
+@lru_cache(maxsize=64)
+def _explanations(target: Target, lines: tuple[Judged, ...], seconds: float) -> dict[int, Explanation]:
+    """Explain wrong lines, once for all hints."""
+    good = {line.row: line.mine for line in lines if line.verdict == Verdict.RIGHT}
+    wrong = {k: e for k, e in enumerate(lines) if e.verdict == Verdict.WRONG and not e.note}
+    found: dict[int, Explanation] = {}
+
+    def explain() -> None:
+        for k, line in wrong.items():
+            found[k] = explained(line.mine, line.row, target, good)
+
+    try:
+        limited(explain, seconds)
+    except TooLong as error:
+        found |= {k: Explanation(whole=str(error)) for k in wrong if k not in found}
+    return found
+
+
+@lru_cache(maxsize=64)
+def _latex(e: sp.Basic) -> str:
+    return str(sp.latex(e))
 
 
 def _left(name: str) -> str:
@@ -171,7 +197,7 @@ def check(mine: Any, target: Any) -> Review:
     CannotRead
         If the text is no formula of the target's letters; it says where, and what is allowed.
     ValueError
-        If lines and target do not fit.
+        If lines and target do not fit, or if reading takes longer than two seconds (TooLong).
 
     See Also
     --------
@@ -179,9 +205,10 @@ def check(mine: Any, target: Any) -> Review:
 
     Notes
     -----
-    Rational functions of moderate size are compared exactly, as quotients of polynomials; others at random points with
-    sixty digits, where a "no" is certain and a "yes" means that all of twelve values agree to forty.  Where neither
-    decides, the verdict is "cannot tell".
+    What is rational in letters, roots, exponentials, angles and signs is proved, as quotients of polynomials or by
+    exact values at a point that nobody knows, which is wrong once in 10^25 times.  The rest is compared at random
+    values of all sizes; the review says so, and where it is right.  A "no" is certain.  Where nothing decides, the
+    verdict is "cannot tell", with the reason if it takes longer than two seconds of computing.
 
     Examples
     --------
@@ -199,8 +226,14 @@ def check(mine: Any, target: Any) -> Review:
         look at -b3 y3
     """
     goal = target_of(target)
-    meant = goal.asked(goal.read(mine))
-    lines = judged(meant.read(mine).lines, meant)
-    if not lines:
+    parser()  # which takes its time once
+    began = time.thread_time()
+
+    def lines() -> tuple[Target, tuple[Judged, ...]]:
+        meant = goal.asked(goal.read(mine))
+        return meant, judged(meant.read(mine).lines, meant)
+
+    meant, found = limited(lines, DECIDING)
+    if not found:
         raise ValueError("there are definitions only; add the line that is asked for")
-    return Review(meant, lines)
+    return Review(meant, found, seconds=max(DECIDING - (time.thread_time() - began), 0.1))
