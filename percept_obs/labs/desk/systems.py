@@ -3,6 +3,7 @@
 import hashlib
 import unicodedata
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -26,8 +27,13 @@ def system_of(motion: str, surface: str) -> PerspectiveSystem:
 
 @lru_cache
 def observer_of(system: PerspectiveSystem, outputs: tuple[str, ...], name: str) -> Observer:
-    """Return an observer of a system; a ValueError says if there is none for these measured outputs."""
-    return OBSERVERS[name](system.measure(*outputs))
+    """Return an observer of a system, without terms whose gains are 0, for nothing that is given tells of these.
+
+    A ValueError says if there is none for these measured outputs.
+    """
+    made = OBSERVERS[name](system.measure(*outputs))
+    off = {gain: sp.S.Zero for gain, value in made.gain_values.items() if value == 0}
+    return replace(made, equations=made.equations.xreplace(off))
 
 
 @lru_cache
