@@ -56,9 +56,10 @@ def parser() -> Lark:
 
 @cache
 def _terminal(name: str) -> re.Pattern[str]:
-    """A regular expression of the grammar that looks for what stands around formulas."""
-    layout = Lark(_grammar(), parser="lalr", lexer="basic", start="layout")
-    return re.compile(next(t for t in layout.terminals if t.name == name).pattern.to_regexp())
+    """Return a regular expression of the grammar that looks for what stands around formulas."""
+    alternatives = re.search(rf"^{name}:(.*(?:\n +\|.*)*)", _grammar(), re.MULTILINE)
+    assert alternatives
+    return re.compile("|".join(re.findall(r"/(.*)/ *$", alternatives[1], re.MULTILINE)))
 
 
 @cache
