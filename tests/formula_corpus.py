@@ -69,6 +69,13 @@ def entries(name):
 
 
 @cache
+def prints():
+    """Numbered equations of the papers as they are printed, by paper and place."""
+    found = tomllib.loads((FOLDER / "prints.toml").read_text(encoding="utf-8"))["print"]
+    return {f"{each['paper']} {each['place']}": each["text"] for each in found}
+
+
+@cache
 def target(name):
     """Target that a short name stands for.
 

@@ -1,10 +1,10 @@
-"""What people write is read, and judged right where it is right; what has two meanings is asked back."""
+"""What people write and papers print is read, and judged right where it is; what has two meanings is asked back."""
 
 import re
 from collections import Counter
 
 import pytest
-from formula_corpus import entries, target
+from formula_corpus import entries, prints, target
 
 from percept_obs import CannotRead, check
 
@@ -37,3 +37,33 @@ def test_right_formulas_are_read_and_judged_right():
 def test_what_has_two_meanings_is_asked_back(entry):
     with pytest.raises(ValueError, match=re.escape(entry.asked)):
         check(entry.text, target(entry.target))
+
+
+NOT_ASKED = {
+    "ma2005 (12)": "a set of times, no formula",
+    "ma2005 (29)": "V1 is a function of time in the ledger",
+    "ma2005 (31)": "rates along two systems, told apart by their numbers",
+    "inaba2005 (2)": "dots for the points between",
+    "inaba2005 (3)": "dots for the points between",
+    "inaba2005 (6)": "x is not a letter of the ledger's form",
+    "inaba2005 (9)": "the ledger compares for other sizes",
+    "inaba2005 (13)": "a set of functions, no formula",
+    "inaba2005 (22)": "rho and Phi at several times",
+    "inaba2005 (23)": "d t stands before the integrand",
+}
+
+
+def test_prints_of_the_papers_are_read():
+    refused = {}
+    for place, text in prints().items():
+        try:
+            target(f"ledger {place}").read(text)
+        except CannotRead as refusal:
+            refused[place] = str(refusal).partition("\n")[0]
+    print(f"\n{len(prints()) - len(refused)} of {len(prints())} numbered equations are read from print")
+    assert refused.keys() <= NOT_ASKED.keys(), refused
+
+
+@pytest.mark.parametrize("place", ["ma2005 (4)", "ma2005 (10)", "ma2005 (33)", "inaba2005 (12)", "chwa2019 (11)"])
+def test_a_print_is_what_the_ledger_has(place):
+    assert check(prints()[place], target(f"ledger {place}")).right

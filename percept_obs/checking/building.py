@@ -13,7 +13,8 @@ from lark import Token, Tree
 from percept_obs.checking.deciding import MATRICES, letters_in_a_row
 from percept_obs.checking.limits import extent, refused, too_tall
 from percept_obs.checking.refusing import two_meanings
-from percept_obs.checking.words import FUNCTIONS, Words
+from percept_obs.checking.tokens import FUNCTIONS
+from percept_obs.checking.words import Words
 
 LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 20, 60, 40, 8
 
@@ -64,8 +65,12 @@ class Builder:
             self.uses[self.within[-1]].add(name)
         if name in self.letters:
             return self.letters[name]
+        if name in self.words.bound:
+            return self.words.bound[name]
         if name in self.sides:
             return self.side(name, node)[-1]
+        if column := self.words.column(name):
+            return sp.ImmutableMatrix(column)
         if name not in self.words.labels:
             self.refuse("only a matrix has a transpose, A^T", node)
         return self.rates.setdefault(name, sp.Symbol(name, real=True))
@@ -128,12 +133,8 @@ class Builder:
                 self._unclear(before, part)
             factor = self.value(part)
             if isinstance(factor, MATRICES):
-                if factors and isinstance(last := factors[-1], MATRICES) and last.shape[1] != factor.shape[0]:
-                    if rule == "raised" or not (listed := _listed(before)) or last.shape[0] != factor.shape[0]:
-                        self.refuse("the sizes of these matrices do not fit", part)
-                    if listed and _listed(part):
-                        self.refuse("the sizes of these matrices do not fit", part)
-                    factors[-1] = last.T  # [a, b] before a column is a row
+                if factors and isinstance(factors[-1], MATRICES) and factors[-1].shape[1] != factor.shape[0]:
+                    factors[-1], factor = self._fitting(factors[-1], before, factor, part)
                 size += letters_in_a_row(factor)
                 if size > LONGEST_PRODUCT:
                     self.refuse(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", part)
@@ -144,6 +145,16 @@ class Builder:
         return (
             prod(factors[1:], start=factors[0]) if any(isinstance(f, MATRICES) for f in factors) else sp.Mul(*factors)
         )
+
+    def _fitting(self, left: Any, before: Any, right: Any, part: Any) -> tuple[Any, Any]:
+        """Return two factors that fit: [a, b] before a column is a row, [a, b]^T behind a matrix is a column."""
+        part = part.children[0] if isinstance(part, Tree) and part.data == "times" else part
+        rows, columns = _listed(before), isinstance(part, Tree) and part.data == "raised" and _listed(part.children[0])
+        if rows and not _listed(part) and left.shape[0] == right.shape[0]:
+            return left.T, right
+        if columns and left.shape[1] == right.shape[1]:
+            return left, right.T
+        self.refuse("the sizes of these matrices do not fit", part)
 
     def _unclear(self, over: Tree, part: Any) -> None:
         """Refuse a/b c, but not 1/2 (a + b): behind a number and a blank, a bracket stands beside the fraction."""
@@ -167,8 +178,8 @@ class Builder:
 
     def _raised(self, tree: Tree, base: Any, exponent: Any) -> sp.Expr:
         value = self.value(base)
-        if exponent == "T" and isinstance(value, MATRICES):
-            return value.T
+        if exponent == "T" and (isinstance(value, MATRICES) or "T" not in self.letters):
+            return value.T if isinstance(value, MATRICES) else value
         return self._power(tree, value, self._exponent_of(exponent))
 
     def _exponent_of(self, node: Any) -> sp.Expr:
@@ -223,13 +234,24 @@ class Builder:
     def _function(self, tree: Tree, name: Token, *parts: Any) -> sp.Expr:
         if name == "norm":
             return self._norm(tree, parts[-1])
+        if name in ("sgn", "sign") and "signs" in self.words.functions:
+            argument = self.value(parts[-1])
+            return self.words.functions["signs"](argument) if isinstance(argument, MATRICES) else sp.sign(argument)
         value = self._applied(FUNCTIONS[name], parts[-1])
         if value.has(sp.zoo, sp.nan, sp.oo):
             self.refuse(f"{name} has no value there", tree)
         return self._power(tree, value, self._exponent_of(parts[0])) if len(parts) > 1 else value
 
+    def _integral(self, tree: Tree, body: Any, letter: Token, lower: Any, upper: Any) -> Any:
+        value, ends = self.value(body), (self._scalar(lower), self._scalar(upper))
+        return sp.Integral(value, (self.value(letter), *ends))
+
     def _user_function(self, tree: Tree, name: Token, *arguments: Any) -> Any:
-        return self.words.functions[name](*map(self.value, arguments))
+        function, values = self.words.functions[name], [*map(self.value, arguments)]
+        of_matrices = isinstance(function, type) and issubclass(function, sp.MatrixExpr)
+        if of_matrices and not all(isinstance(value, MATRICES) for value in values):
+            self.refuse(f"{name} is of matrices", tree)
+        return function(*values)
 
     def _listed(self, tree: Tree, *entries: Any) -> sp.ImmutableMatrix:
         return self._entries(tree, [[entry] for entry in entries])
@@ -238,8 +260,8 @@ class Builder:
         rows = [each.children for each in lists]
         if len(rows) == 1:
             inner = [entry.data if isinstance(entry, Tree) else "" for entry in rows[0]]
-            if inner == ["printed_matrix"]:
-                return self.value(rows[0][0])
+            if len(rows[0]) == 1 and inner != ["matrix"] and isinstance(value := self.value(rows[0][0]), MATRICES):
+                return value  # a bracket around matrices
             lines = [self._row(e) if d == "matrix" else [e] for e, d in zip(rows[0], inner, strict=True)]
             return self._entries(tree, lines)
         return self._entries(tree, [[e] for row in rows for e in row] if len({*map(len, rows)}) > 1 else rows)
@@ -252,6 +274,8 @@ class Builder:
 
     def _entries(self, tree: Tree, rows: Iterable[Sequence[Any]]) -> sp.ImmutableMatrix:
         values = [[self.value(entry) for entry in row] for row in rows]
+        if all(len(row) == 1 for row in values):  # columns below each other are one
+            values = [[e] for row in values for e in (row[0] if isinstance(row[0], sp.MatrixBase) else row)]
         if len({len(row) for row in values}) != 1 or any(isinstance(e, MATRICES) for row in values for e in row):
             self.refuse("the rows of a matrix have the same number of entries, all of them numbers", tree)
         return sp.ImmutableMatrix(values)
@@ -269,4 +293,8 @@ _EQUAL = ("=", "==", ":=")
 
 def _listed(node: Any) -> bool:
     """Return True for [a, b], typed with commas."""
-    return isinstance(node, Tree) and node.data == "matrix" and len(node.children) == 1
+    return (
+        isinstance(node, Tree)
+        and node.data == "matrix"
+        and [len(part.children) > 1 for part in node.children] == [True]
+    )

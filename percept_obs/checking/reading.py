@@ -13,8 +13,8 @@ from percept_obs.checking.limits import refused
 from percept_obs.checking.refusing import CannotRead as CannotRead
 from percept_obs.checking.refusing import about_token
 from percept_obs.checking.spelling import parser
-from percept_obs.checking.words import FUNCTIONS as FUNCTIONS
-from percept_obs.checking.words import Functions as Functions
+from percept_obs.checking.tokens import FUNCTIONS as FUNCTIONS
+from percept_obs.checking.tokens import Functions as Functions
 from percept_obs.checking.words import Words
 
 
@@ -163,6 +163,9 @@ class _Lines:
         left = self.line(first)
         for sign, side in zip(rest[::2], rest[1::2], strict=True):
             right = self.line(side)
+            shape, other = (getattr(value, "shape", ()) for value in (left, right))
+            if shape and shape == other[::-1] and first.data == "raised":  # [a, b]^T = a column
+                left = left.T
             kind = "=" if sign.children[0].type == "EQUAL" else sign.children[0]
             found.append(self.solved(self.builder.related(left, kind, right, side), side))
             left = right

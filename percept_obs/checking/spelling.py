@@ -163,7 +163,7 @@ def _said(found: re.Match[str]) -> str:
 def _without_stop(word: str) -> str:
     """Part sentences: a stop, a colon or another mark at the end of a word, but no decimal point."""
     bare = word.rstrip(",")
-    if bare.endswith((".", "!", "?")) and not bare[:-1].isdigit():
+    if bare.endswith((".", "!", "?")) and not bare[:-1].isdigit() and not bare.endswith(("\\right.", "\\left.")):
         return bare[:-1] + "\n" + word[len(bare) :]
     if bare.endswith(":") and not bare.endswith("\\:"):
         return bare[:-1] + "\n" + word[len(bare) :]
@@ -182,27 +182,36 @@ def name_of(token: str) -> str:
     return key(plain + "".join(accents) + "dot" * text.count("'"))
 
 
-_ENVELOPE = re.compile(
-    r"^(\\[dt]?frac\s*\{\s*)?(Derivative\s*\(|diff\s*\(|dot\s*\(|Symbol\s*\(\s*'|d(?=[\s\\A-Za-z])|∂|\\partial"
-    r"|\\mathrm\s*(\{\s*d\s*\}|d)|\\rm\s+d)\s*"
+_DEE = r"(?:d|∂|\\partial|\\mathrm\s*(?:\{\s*d\s*\}|d)|\\rm\s)"
+_FRACTION = re.compile(
+    rf"\\[dt]?frac\s*\{{\s*{_DEE}(.*)\}}\s*\{{\s*(?:\\mathrm\s*\{{\s*d(.)\s*\}}|{_DEE}(.*))\}}", re.DOTALL
 )
-_END = re.compile(
-    r"(\s*\(\s*t\s*\))?\s*(\}\s*\{[^{}]*(\{[^{}]*\})?[^{}]*\}|/\s*(d|∂|\\partial|\\mathrm.*)\s*t|,\s*t\s*\)|\.diff\(\s*t\s*\)|'?\s*\))$"
+_CALLS = re.compile(
+    rf"(?:Derivative|diff|dot)\s*\(([^,]*?)(?:,\s*t\s*)?\)|(.*)\.diff\(\s*t\s*\)|{_DEE}([^/]*)/.*", re.DOTALL
 )
 
 
 def rate_of(token: str) -> str:
-    """Return the key of a rate that is written as a quotient or a function."""
-    inner = _END.sub("", token if token.endswith("diff(t)") else _ENVELOPE.sub("", token, count=1), count=1)
-    return key(name_of(inner) + ("" if token.startswith("Symbol") else "dot"))
+    """Return the key of a rate that is written as a quotient or a function; dV for a quotient by other letters."""
+    if found := _FRACTION.fullmatch(token):
+        inner, by = found[1], (found[2] or found[3]).strip()
+    elif token.startswith("Symbol"):
+        return name_of(token.split("'")[1])
+    else:
+        found = _CALLS.fullmatch(token)
+        assert found
+        inner, by = next(part for part in found.groups() if part), "t"
+    name = name_of(re.sub(r"\s*\([^()]*\)\s*$", "", inner).strip())
+    return key(f"{name}dot") if by == "t" else f"d{name}"
 
 
 def other_names(name: str) -> list[str]:
     """Return other spellings: omega for w, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for its estimate."""
     found = [re.sub("omega", "w", name), re.sub(r"^(lambda\d?)hat", r"\1", name)]
-    found += [
+    found.append(
         re.sub(r"^(omega|w|vc|vp)([xyz])", lambda f: f[1].replace("omega", "w") + str("xyz".index(f[2]) + 1), name)
-    ]
+    )
+    found.append(re.sub(r"^(k\d|xf|R|Omegag)bar$|^(xO)q$|^(I)n$", r"\1\2\3", name))  # of the papers
     if quotient := re.fullmatch(r"d(\w+)dt", name):
         found.append(key(f"{quotient[1]}dot"))
     return [each for each in dict.fromkeys(found) if each != name]

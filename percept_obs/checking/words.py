@@ -1,51 +1,22 @@
-"""Words of a formula: names told apart, lines begun and continued, bars and bare arguments put in brackets."""
+"""Words of a formula: names told apart, arguments of letters left out, lines begun and continued."""
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from typing import Any, NoReturn
+from typing import Any
 
 import sympy as sp
-from lark import Token, UnexpectedCharacters
+from lark import Token
 
+from percept_obs.checking.notation import LONGEST_WORD, Notation
 from percept_obs.checking.points import key
-from percept_obs.checking.refusing import CLOSING, CannotRead, about_character, about_command, two_meanings
-from percept_obs.checking.spelling import laid_out, lexed, name_of, other_names, rate_of, spelled
+from percept_obs.checking.refusing import CLOSING, CannotRead, about_command, two_meanings
+from percept_obs.checking.spelling import name_of, other_names, rate_of
+from percept_obs.checking.tokens import FUNCTIONS, OPENING, WRAPPERS, bullet, partners, split, top_level
 
-LONGEST, LONGEST_NUMBER, LONGEST_WORD, MOST_WORDS, DEEPEST = 9000, 15, 60, 9000, 40
-
-Functions = Mapping[str, Callable[..., Any]]
-_NAMED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.sech, sp.exp, sp.log)
-_QUOTIENTS = {
-    "sec": lambda x: 1 / sp.cos(x),
-    "csc": lambda x: 1 / sp.sin(x),
-    "cot": lambda x: sp.cos(x) / sp.sin(x),
-    "coth": lambda x: sp.cosh(x) / sp.sinh(x),
-}
-FUNCTIONS: Functions = {
-    **{f.__name__: f for f in (*_NAMED, sp.sqrt, sp.sign)},
-    **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
-    **{"Abs": sp.Abs, **_QUOTIENTS},
-}
-WRAPPERS = {"Matrix", "ImmutableMatrix", "array", "expand", "simplify", "factor"}
-"""Calls that leave a formula as it is."""
-
-OPENING = {
-    "LPAR": "RPAR",
-    "LBRACE": "RBRACE",
-    "LSQB": "RSQB",
-    "_BAR_OPEN": "_BAR_CLOSE",
-    "_NORM_OPEN": "_NORM_CLOSE",
-    "_MATRIX": "_END_MATRIX",
-    "_CASES": "_END_CASES",
-}
-_AROUND = {kind: OPENING[kind] for kind in ("_MATRIX", "_CASES", "LBRACE")}
-"""What may stand around equations."""
 _CONTINUES = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "COMMA", "_POWER", "LPAR", "LSQB", "LBRACE"}
 _GOES_ON = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "_POWER", "RPAR", "RSQB", "RBRACE"}
-_OPERAND_ENDS = {"NAME", "NUMBER", "PI", "RAISED", "RPAR", "RBRACE", "RSQB", "_BAR_CLOSE", "_NORM_CLOSE", "_END_MATRIX"}
-_OPERAND_STARTS = {"NAME", "NUMBER", "PI", "EULER", "LPAR", "LBRACE", "LSQB", "_FRACTION", "_ROOT", "SLASH", "RAISED"}
 _N = r"NAME:(\w+)"
 _MANY = rf"{_N}(?: (?:_ROW|COMMA|_LINE|_CELL) {_N})*"
 _LABEL = re.compile(
@@ -56,26 +27,21 @@ _LABEL = re.compile(
 )
 
 
-class Words:
-    """A text's words, with the letters, labels and functions that are known; `tokens` are those that are parsed."""
-
-    def __init__(self, text: str, letters: Mapping[str, Any], labels: Iterable[str], functions: Functions) -> None:
-        self.text, self.letters, self.labels, self.functions = text, letters, set(labels), functions
-        self.known = {*letters, *self.labels}
-        if len(text) > LONGEST:
-            raise CannotRead(text, LONGEST, f"the formula has {len(text)} characters; at most {LONGEST}")
-        self.plain, self.origin = spelled(text)
-
-    def refuse(self, message: str, at: Any = None) -> NoReturn:
-        """Raise CannotRead at a token or a tree, or at the end of the text."""
-        start = at.start_pos if isinstance(at, Token) else at.meta.start_pos if hasattr(at, "meta") else at
-        position = self.origin[start] if start is not None and start < len(self.origin) else len(self.text)
-        raise CannotRead(self.text, position, message)
+class Words(Notation):
+    """A text's words; `tokens` are those that are parsed."""
 
     def tokens(self, strict: bool = True) -> list[Token]:
         """Tokens with names told apart, the last of them "END"; what is refused stays as it is unless strict."""
         found = self._raw()
-        passes = (self._sums, self._names, self._numbers, self._environments, self._times, self._joined)
+        passes = (
+            self._sums,
+            self._names,
+            self._numbers,
+            self._environments,
+            self._integrals,
+            self._times,
+            self._joined,
+        )
         lines = (self._lines,) if strict else ()
         for each in (*passes, *lines, self._told, self._bars, self._fractions, self._arguments):
             found = each(found) if strict else self._leniently(each, found)
@@ -96,39 +62,6 @@ class Words:
                 out.append(token)
         return out
 
-    def _raw(self) -> list[Token]:
-        try:
-            raw = [*lexed(laid_out(self.plain)), Token("END", "", len(self.plain), end_pos=len(self.plain))]
-        except UnexpectedCharacters as error:
-            position = self.origin[error.pos_in_stream or 0]
-            raise CannotRead(self.text, position, about_character(self.text[position])) from None
-        long = next((token for token in raw if token.type in ("NAME", "RATE") and len(token) > 4 * LONGEST_WORD), None)
-        if long:
-            self.refuse(f"a word has more than {LONGEST_WORD} letters; write * between letters", long)
-        return raw
-
-    def _sums(self, tokens: list[Token]) -> list[Token]:
-        """Write sums with numbers as their bounds out."""
-        for start in range(len(tokens) - 1, -1, -1):
-            if tokens[start].type != "SUM":
-                continue
-            index, first, last = re.findall(r"(?<=[{\s])[A-Za-z](?=\s*=)|\d", tokens[start])
-            end, depth = start + 1, 0
-            while depth or tokens[end].type not in _SUMMAND_ENDS or end == start + 1:
-                depth += (tokens[end].type in OPENING) - (tokens[end].type in CLOSING)
-                if depth < 0 or tokens[end].type == "END":
-                    break
-                end += 1
-            summand, at = tokens[start + 1 : end], tokens[start]
-            terms = [[_indexed(t, index, str(k)) for t in summand] for k in range(int(first), int(last) + 1)]
-            out = [at.update(type="LPAR", value="(")]
-            for k, term in enumerate(terms):
-                out += [at.update(type="PLUS", value="+")] * bool(k) + term
-            tokens = [*tokens[:start], *out, at.update(type="RPAR", value=")"), *tokens[end:]]
-            if not terms or len(tokens) > LONGEST:
-                self.refuse("this sum has too many terms, or none", at)
-        return tokens
-
     def _names(self, tokens: list[Token]) -> list[Token]:
         """Give names their keys, and put d/dt before a letter into the letter's name."""
         out: list[Token] = []
@@ -136,8 +69,20 @@ class Words:
         for k, token in enumerate(tokens):
             if token.type == "RATE":
                 token = token.update(type="NAME", value=rate_of(token))
+            elif token.type == "CROSS":
+                token = token.update(type="NAME", value="wcross")
+            elif (
+                token.type == "NAME"
+                and kinds[k - 1] == "_POWER"
+                and re.match("T[A-Za-z]", token)
+                and token not in self.known
+            ):
+                middle = (token.start_pos or 0) + 1  # C^TB is C^T B
+                out.append(Token("NAME", "T", middle - 1, end_pos=middle))
+                token = Token("NAME", name_of(token[1:]), middle, end_pos=token.end_pos)
             elif token.type == "NAME":
-                token = token.update(value=name_of(token))
+                variant = name_of(token.replace("\\var", "var"))
+                token = token.update(value=variant if variant in self.letters else name_of(token))
                 bare = kinds[max(k - 3, 0) : k]
                 if bare[-1:] == ["D_DT"] or bare == ["LPAR", "D_DT", "RPAR"]:
                     del out[-1 if bare[-1:] == ["D_DT"] else -3 :]
@@ -148,119 +93,62 @@ class Words:
             out.append(token)
         return out
 
-    def _numbers(self, tokens: list[Token]) -> list[Token]:
-        """Decimal commas, digits with an exponent of ten, and the transpose; refuse long numbers and deep brackets."""
-        out: list[Token] = []
-        opened: list[str] = []
-        for token in tokens:
-            if token.type in OPENING:
-                call = token.type == "LPAR" and out and out[-1] in self.functions
-                opened.append("LSQB" if call else token.type)
-            elif token.type in CLOSING and opened:
-                opened.pop()
-            if len(opened) > DEEPEST:
-                self.refuse(f"brackets are nested more than {DEEPEST} deep; write the formula flatter", token)
-            if token.type in ("NUMBER", "DECIMAL") and len(token) > LONGEST_NUMBER:
-                self.refuse(f"numbers have at most {LONGEST_NUMBER} digits", token)
-            if token.type == "TRANSPOSE":
-                out += [token.update(type="_POWER", value="^"), token.update(type="NAME", value="T")]
-            elif token.type == "DECIMAL":
-                out += self._decimal(token, bool(opened) and opened[-1] == "LSQB")
-            elif token.type == "NUMBER" and (e := re.search("[eE]", token)):
-                mantissa, exponent = token[: e.start()], token[e.end() :]
-                letter = key(token[e.start() :]) if exponent.isdigit() else token[e.start()]
-                if letter in self.known:
-                    told = (
-                        f"{mantissa} times ten to the power of {exponent}",
-                        f"{mantissa} times {token[e.start() :]}",
-                    )
-                    self.refuse(two_meanings(told, "write * between, or 10^"), token)
-                if len(exponent.lstrip("+-")) > 2:
-                    self.refuse("exponents of ten have at most two digits", token)
-                out.append(token)
-            else:
-                out.append(token)
-        return out
-
-    def _decimal(self, token: Token, listed: bool) -> list[Token]:
-        whole, part = re.split(r",|\{,\}", token)
-        if listed and "{" not in token:
-            middle = (token.start_pos or 0) + len(whole)
-            ends = Token("NUMBER", part, middle + 1, end_pos=middle + 1 + len(part))
-            return [token.update(type="NUMBER", value=whole), Token("COMMA", ",", middle, end_pos=middle + 1), ends]
-        if len(part) == 3 and whole != "0" and "{" not in token:
-            self.refuse(two_meanings((whole + part, f"{whole}.{part}"), "type it without a comma"), token)
-        return [token.update(type="NUMBER", value=f"{whole}.{part}")]
-
-    def _environments(self, tokens: list[Token]) -> list[Token]:
-        """Tell systems of equations behind a brace from matrices and branches; outside of those a row is a line."""
-        systems = _systems(tokens)
-        out: list[Token] = []
-        opened: list[int] = []
-        for k, token in enumerate(tokens):
-            if token.type in _AROUND:
-                opened.append(k)
-            inside = any(tokens[each].type != "LBRACE" for each in opened[-1:] if each not in systems)
-            begun = opened.pop() if opened and token.type in _AROUND.values() else k
-            if begun in systems:
-                out += [token.update(type="_LINE", value="\n")] if "BRACE" not in token.type else []
-            elif token.type == "_ROW" and not inside:
-                out.append(token.update(type="_LINE", value="\n"))
-            elif (token.type == "_CELL" and not inside) or (token.type == "_LINE" and inside):
-                continue
-            else:
-                out.append(token)
-        return self._braces(out)
-
-    def _braces(self, tokens: list[Token]) -> list[Token]:
-        """Make brackets of braces; one with nothing on the other side, as before a system, is left out."""
-        opened: list[int] = []
-        kinds: dict[int, str] = {}
-        for k, token in enumerate(tokens):
-            if token.type == "SET_OPEN":
-                opened.append(k)
-            elif token.type == "SET_CLOSE" and opened:
-                kinds |= {opened.pop(): "LPAR", k: "RPAR"}
-            elif token.type == "NOTHING":
-                kinds |= {k: ""} | ({opened.pop(): ""} if opened and "right" in token else {})
-        for k in opened:  # a brace that nothing closes stands before a system
-            kinds[k] = ""
-        out: list[Token] = []
-        for k, token in enumerate(tokens):
-            kind = kinds.get(k, token.type)
-            if kind == "SET_CLOSE":
-                self.refuse("this bracket was never opened", token)
-            out += [token.update(type=kind) if kind != token.type else token] if kind else []
-        return out
-
     def _times(self, tokens: list[Token]) -> list[Token]:
-        """Leave out the time in brackets: y1(t), y_3^2(t), P(t)^T, B(y(t))."""
+        """Leave out arguments behind letters: y1(t), y_3^2(t), B(y(t)), w(x1, u); g(x1, xhat2) is ghat, x(t_0) x0."""
         out: list[Token] = []
-        timed: set[int] = set()
+        first: dict[str, list[str]] = {}  # arguments that a letter has in this text
+        partner = partners(tokens)
         k = 0
         while k < len(tokens):
-            braced = tokens[k].type == "LBRACE"
-            kinds = [t.type for t in tokens[k + braced : k + braced + 3]]
-            if kinds == ["LPAR", "NAME", "RPAR"] and tokens[k + braced + 1] == "t" and self._takes_time(out, tokens[k]):
-                size = 3 + 2 * braced
-                if "t" in self.letters and (k + size >= len(tokens) or tokens[k + size].type != "EQUAL"):
-                    name = out[-1]
-                    self.refuse(
-                        two_meanings((f"{name} at the time t", f"{name} times t"), "write * or a blank between"),
-                        tokens[k],
-                    )
-                timed.add(len(out) - 1)
-                k += size
+            end = partner.get(k, k)
+            inner = tokens[k + 1 : end]
+            if tokens[k].type == "LBRACE" and [t.type for t in inner] == ["LPAR", "NAME", "RPAR"]:
+                inner = inner[1:2]
+            if end == k or not self._takes_time(out, tokens[k]) or not (name := self._applied(out, inner, first)):
+                out.append(tokens[k])
+                k += 1
                 continue
-            if tokens[k].type == "RPAR" and len(out) - 1 in timed and len(out) > 2 and out[-2].type == "LPAR":
-                bracket = out[-2]
-                if self._takes_time(out[:-2], bracket):
-                    del out[-2:]
-                    k += 1
-                    continue
-            out.append(tokens[k])
-            k += 1
+            at = max(j for j, token in enumerate(out) if token.type in ("NAME", "RBRACE") and token != "T")
+            if name != out[at] and out[at].type == "NAME":
+                out[at] = out[at].update(value=name)
+            k = end + 1
         return out
+
+    def _applied(self, before: Sequence[Token], inner: Sequence[Token], first: dict[str, list[str]]) -> str:
+        """Return the letter that a letter with arguments stands for; empty if they are a factor."""
+        letter = next((str(t) for t in reversed(before[-6:]) if t.type == "NAME" and t != "T"), "")
+        text = "".join(map(str, inner))
+        if re.fullmatch(r"ti\^?\{?\^?\{?[+-]\}?\}?", text):
+            return key(f"{letter}plus") if "+" in text else letter
+        if text == "t0":
+            return f"{letter}0"
+        if text == "t" and "t" in self.letters and letter in self.letters:
+            told = (f"{letter} at the time t", f"{letter} times t")
+            self.refuse(two_meanings(told, "write * or a blank between"), before[-1])
+        if text == "t" or self._only_times(inner):
+            return letter
+        if self._spelled(letter) not in self.known and not self._ways(letter):
+            return ""
+        words = [str(t) for t in inner if t.type == "NAME"]
+        unknown = [word for word in words if self._spelled(word) not in self.letters and not self._ways(word)]
+        numbers = self.letters.get(self._spelled(letter))
+        of_numbers = isinstance(numbers, sp.Expr) and not isinstance(numbers, sp.MatrixExpr)  # b3(y4) is a mistake
+        if top_level(inner, 0, "COMMA") is None:
+            timed = inner[0].type == "NAME" and self._only_times(inner[2:-1]) and inner[1].type == "LPAR"
+            return letter if timed or (unknown == words and words and not of_numbers) else ""
+        if of_numbers and not unknown:
+            return ""
+        known = first.setdefault(letter, words)
+        changed = next((word for word in words if word not in known), "")
+        if any("hat" in word for word in words) and key(f"{letter}hat") in self.known:
+            return key(f"{letter}hat")
+        return letter + changed.rstrip("0123456789")
+
+    def _only_times(self, inner: Sequence[Token]) -> bool:
+        """Return True for t, t + tau, s: times that are no letters of the target."""
+        times = {"t", "s", "tau"} - set(self.letters)
+        names = [t for t in inner if t.type == "NAME"]
+        return bool(names) and all(t.type in ("PLUS", "MINUS") or t in times for t in inner)
 
     def _takes_time(self, before: Sequence[Token], bracket: Token) -> bool:
         """Return True if a bracket stands directly behind a letter or its exponent."""
@@ -282,8 +170,13 @@ class Words:
     def _lines(self, tokens: list[Token]) -> list[Token]:
         """Join continued lines, take bullets away, and put the left side of each line into one token."""
         out: list[Token] = []
-        for line, end in self._unwrapped(_split(tokens)):
+        for line, end in self._unwrapped(split(tokens)):
             line = self._without_remark(line)
+            rest = next((k for k, token in enumerate(line[:2]) if token.type == "EQUAL"), 0) + 1
+            if rest == 2 and line[2:3] and line[2].type in ("LSQB", "LPAR") and (vector := self._label(line[2:])):
+                line = [vector, *line[2 + next(k for k, t in enumerate(line[2:]) if t.type == "EQUAL") :]]
+                out += [*line, end]
+                continue
             label = self._label(line)
             if label:
                 at = next(k for k, token in enumerate(line) if token.type == "EQUAL")
@@ -296,7 +189,7 @@ class Words:
         out: list[Token] = []
         opened: list[str] = []
         related = False  # the present line has a left side
-        bullets = sum(_bullet(tokens, k) for k in range(len(tokens)))
+        bullets = sum(bullet(tokens, k) for k in range(len(tokens)))
         following = [len(tokens) - 1] * len(tokens)
         for k in range(len(tokens) - 2, -1, -1):
             following[k] = k + 1 if tokens[k + 1].type != "_LINE" else following[k + 1]
@@ -305,7 +198,7 @@ class Words:
                 opened.append(token.type)
             elif token.type in CLOSING and opened:
                 opened.pop()
-            if not opened and _bullet(tokens, k):
+            if not opened and bullet(tokens, k):
                 if token.type == "MINUS" and bullets == 1:
                     self.refuse(
                         two_meanings(("a list", "a minus sign"), "leave the sign or the blank behind it out"), token
@@ -321,7 +214,7 @@ class Words:
             if opened:
                 goes_on = opened[-1] != "LSQB" or before in _CONTINUES or after.type in _GOES_ON | {"COMMA"}
                 goes_on = goes_on and not ("quad" in token and opened[-1] == "LSQB" and before not in _CONTINUES)
-            elif _bullet(tokens, following[k]):
+            elif bullet(tokens, following[k]):
                 goes_on = False
             else:
                 goes_on = before in _CONTINUES - {"COMMA"} or (
@@ -340,7 +233,7 @@ class Words:
         for line, end in lines:
             start = 2 if len(line) > 2 and line[1].type == "EQUAL" else 0
             called = [str(t) for t in line[start : start + 2]] in (["Eq", "("], ["Equality", "("])
-            comma = _top_level(line, start + 2, "COMMA") if called else None
+            comma = top_level(line, start + 2, "COMMA") if called else None
             if comma is None or line[-1].type != "RPAR":
                 yield line, end
             else:
@@ -405,16 +298,20 @@ class Words:
         name = str(token)
         if token.type == "COMMAND":
             name = re.sub(r"\\(operatorname|mathrm|textrm|text|rm)(?![A-Za-z])|\W", "", name)
-            if name not in FUNCTIONS and name not in self.known and not (name == "e" and after == "_POWER"):
+            if name == "sech" and " " in token and "h" in self.known:
+                self.refuse(two_meanings(("sech", "sec of h"), "write sech(...) or sec(h)"), token)
+            if name not in {*FUNCTIONS, *self.known} and not (name == "e" and after == "_POWER"):
                 self.refuse(about_command(name), token)
             token = token.update(type="NAME", value=name)
+            if name == "infty" and "infty" in self.bound:
+                return [token]
         transpose = name == "T" and before in ("_POWER", "LBRACE")
         if token.type != "NAME" or transpose:
             return [token]
         if name in WRAPPERS and after == "LPAR" and name not in self.known:
             return []
         name = self._spelled(name)
-        if name in self.known:
+        if name in self.known or self.column(name):
             return [token.update(value=name)]
         kinds = {"pi": "PI"} | dict.fromkeys(FUNCTIONS, "FUNCTION") | dict.fromkeys(self.functions, "USER_FUNCTION")
         kinds |= {"e": "EULER"} if after == "_POWER" else {}
@@ -435,6 +332,11 @@ class Words:
         typed = self.text[self.origin[start] : self.origin[(token.end_pos or start + 1) - 1] + 1]
         self.refuse(f'"{typed[:40]}" is no letter here{guess} {known}', token)
 
+    def column(self, name: str) -> list[Any]:
+        """Return the letters that a letter without an index stands for: b1, b2, b3 for b; empty if it has none."""
+        found = [self.letters[f"{name}{k}"] for k in range(1, 10) if f"{name}{k}" in self.letters]
+        return found if len(found) > 1 and name not in self.letters else []
+
     def _ways(self, name: str) -> list[list[str]]:
         """Return ways to read a word as letters side by side, at most two."""
         ways: list[list[list[str]]] = [[[]], *([] for _ in name)]
@@ -444,185 +346,3 @@ class Words:
                     ways[end] += [[*way, name[start:end]] for way in ways[start]]
             ways[end] = ways[end][:2]
         return ways[-1]
-
-    def _bars(self, tokens: list[Token]) -> list[Token]:
-        """Tell bars that open from those that close."""
-        out: list[Token] = []
-        opened: list[str] = []
-        for token in tokens:
-            if token.type not in ("BAR", "NORM_BAR"):
-                if token.type in CLOSING and opened and not opened[-1].endswith("BAR"):
-                    opened.pop()
-                opened += [token.type] if token.type in OPENING else []
-                out.append(token)
-                continue
-            top = opened[-1] if opened else ""
-            ended = bool(out) and out[-1].type in _OPERAND_ENDS
-            if token == "||" and top == "BAR" and ended:  # |a||b|
-                out += [token.update(type="_BAR_CLOSE", value="|"), token.update(type="_BAR_OPEN", value="|")]
-                continue
-            closes = "right" in token or "rv" in token or "rV" in token
-            closes = closes or (top == token.type and ended and not ("left" in token or "lv" in token or "lV" in token))
-            if closes and top == token.type:
-                opened.pop()
-            elif not closes:
-                opened.append(token.type)
-            kind = "_NORM" if token.type == "NORM_BAR" else "_BAR"
-            out.append(token.update(type=f"{kind}_{'CLOSE' if closes else 'OPEN'}"))
-        return out
-
-    def _fractions(self, tokens: list[Token]) -> list[Token]:
-        r"""Put the digits of \frac12 in braces, and read a root before a bracket as a function."""
-        out: list[Token] = []
-        wanted = 0
-        for k, token in enumerate(tokens):
-            if token.type == "_ROOT" and tokens[k + 1].type == "LPAR":
-                token = token.update(type="FUNCTION", value="sqrt")
-            if token.type == "_FRACTION":
-                wanted = 2
-            elif wanted and token.type == "NUMBER" and token.isdigit() and len(token) <= wanted:
-                for digit in token:
-                    out += [
-                        token.update(type="LBRACE", value="{"),
-                        token.update(value=digit),
-                        token.update(type="RBRACE", value="}"),
-                    ]
-                wanted -= len(token)
-                continue
-            elif wanted != 1 or token.type != "LBRACE":
-                wanted = 0
-            out.append(token)
-        return out
-
-    def _arguments(self, tokens: list[Token]) -> list[Token]:
-        """Put arguments of functions without brackets in brackets, where it is clear how far they go."""
-        partner = _partners(tokens)
-        opens: set[int] = set()
-        closes: set[int] = set()
-        for k, token in enumerate(tokens):
-            if token.type != "FUNCTION":
-                continue
-            start = _exponent_end(tokens, partner, k + 1)
-            inverse = [str(t) for t in tokens[k + 1 : start] if t.type not in ("_POWER", "LBRACE", "RBRACE")]
-            if inverse == ["-", "1"] and tokens[start].type != "END":
-                self.refuse(
-                    two_meanings((f"1/{token}", f"arc{token}"), f"write 1/{token}(...) or arc{token}(...)"), token
-                )
-            end = _unit_end(tokens, partner, start)
-            if end is None:
-                continue
-            if tokens[end].type in _OPERAND_STARTS:
-                told = (f"{token} of all that follows", f"{token} times what follows")
-                self.refuse(two_meanings(told, f"write brackets, {token}(...)"), tokens[end])
-            opens.add(start)
-            closes.add(end)
-        out: list[Token] = []
-        for k, token in enumerate(tokens):
-            out += [token.update(type="RPAR", value=")")] * (k in closes)
-            out += [token.update(type="LPAR", value="(")] * (k in opens)
-            out.append(token)
-        return out
-
-
-_SUMMAND_ENDS = {"PLUS", "MINUS", "EQUAL", "RELATION", "_LINE", "COMMA", "_CELL", "_ROW", "END", *CLOSING}
-
-
-def _indexed(token: Token, index: str, number: str) -> Token:
-    """Put a number in place of an index of a sum."""
-    if token.type != "NAME":
-        return token
-    if token == index:
-        return token.update(type="NUMBER", value=number)
-
-    def put(found: re.Match[str]) -> str:
-        return re.sub(rf"(?<![A-Za-z\\]){index}(?![A-Za-z])|(?<=[ijklmn]){index}|{index}(?=[ijklmn])", number, found[0])
-
-    return token.update(value=re.sub(r"_\s*(\{[^{}]*\}|[A-Za-z0-9]+)", put, token))
-
-
-def _systems(tokens: Sequence[Token]) -> set[int]:
-    """Return where environments begin that have equations in them, not entries or branches."""
-    found: set[int] = set()
-    opened: list[int] = []
-    branches: set[int] = set()
-    for k, token in enumerate(tokens):
-        if token.type in OPENING:
-            opened.append(k)
-        elif token.type in CLOSING and opened:
-            opened.pop()
-        elif opened and token.type in ("_FOR", "OTHERWISE"):
-            branches.add(opened[-1])
-        elif opened and token.type == "EQUAL" and tokens[opened[-1]].type in _AROUND:
-            found.add(opened[-1])
-    return found - branches
-
-
-def _bullet(tokens: Sequence[Token], k: int) -> bool:
-    """Return True if a sign at the start of a line stands before a line of a list."""
-    token = tokens[k]
-    if token.type not in ("MINUS", "_TIMES") or (k and tokens[k - 1].type != "_LINE") or len(tokens) < k + 3:
-        return False
-    apart = (token.end_pos or 0) < (tokens[k + 1].start_pos or 0)
-    return apart and tokens[k + 1].type == "NAME" and tokens[k + 2].type == "EQUAL"
-
-
-def _split(tokens: Sequence[Token]) -> Iterator[tuple[list[Token], Token]]:
-    """Yield lines with the token behind each."""
-    line: list[Token] = []
-    depth = 0
-    for token in tokens:
-        depth += (token.type in OPENING) - (token.type in CLOSING)
-        if token.type == "END" or (depth == 0 and token.type in ("_LINE", "COMMA")):
-            yield line, token
-            line = []
-        else:
-            line.append(token)
-
-
-def _top_level(line: Sequence[Token], start: int, kind: str) -> int | None:
-    depth = 0
-    for k in range(start, len(line)):
-        depth += (line[k].type in OPENING) - (line[k].type in CLOSING)
-        if depth == 0 and line[k].type == kind:
-            return k
-    return None
-
-
-def _partners(tokens: Sequence[Token]) -> dict[int, int]:
-    """Return where brackets that begin at a place end."""
-    opened: list[int] = []
-    found: dict[int, int] = {}
-    for k, token in enumerate(tokens):
-        if token.type in OPENING:
-            opened.append(k)
-        elif token.type in CLOSING and opened:
-            found[opened.pop()] = k
-    return found
-
-
-def _exponent_end(tokens: Sequence[Token], partner: Mapping[int, int], k: int) -> int:
-    """Return the place behind an exponent that may stand at a place."""
-    if tokens[k].type == "RAISED":
-        return k + 1
-    if tokens[k].type != "_POWER":
-        return k
-    k += 1 + (tokens[k + 1].type == "MINUS")
-    return min(partner.get(k, k) + 1, len(tokens) - 1)
-
-
-def _unit_end(tokens: Sequence[Token], partner: Mapping[int, int], k: int) -> int | None:
-    """Return the place behind 2 y1, a fraction, a root or bars, with an exponent; None if none stands there."""
-    number = tokens[k].type == "NUMBER"
-    k += number
-    braces = {"_FRACTION": 2, "_ROOT": 1}.get(tokens[k].type, 0)
-    if tokens[k].type in ("_BAR_OPEN", "_NORM_OPEN") and k in partner:
-        k = partner[k] + 1
-    elif tokens[k].type in ("NAME", "PI") or braces:
-        k += 1
-        for _ in range(braces):
-            if k not in partner:
-                return None
-            k = partner[k] + 1
-    elif not number:
-        return None
-    return _exponent_end(tokens, partner, k)

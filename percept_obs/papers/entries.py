@@ -205,7 +205,11 @@ class Entry:
         target = replace(
             matrix_target(self.corrected) if self.asks is None else target_of(self.asks()), note=self._said
         )
-        return replace(target, functions=FUNCTIONS)
+        own = {
+            type(e) for formula in self.printed for e in sp.preorder_traversal(formula) if isinstance(e, sp.MatrixExpr)
+        }
+        named = {each.__name__: each for each in own if each.__module__.startswith(__package__)}
+        return replace(target, functions=FUNCTIONS | named)
 
     @property
     def _said(self) -> str:
