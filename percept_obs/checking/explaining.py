@@ -215,9 +215,8 @@ def _slips_said(found: Explanation, show: Callable[[sp.Basic], str]) -> list[str
     if len(slips) == 1 or first.before != 1:
         return [_sentence(slip, show) + also for slip in slips]
     count = COUNTS[len(slips)] if len(slips) < len(COUNTS) else str(len(slips))
-    terms = [show(slip.term) for slip in slips]
-    where = f"{', '.join(terms[:-1])} and {terms[-1]}"
-    return [f"the factor {show(first.after)} is missing in {count} terms: {where}{also}"]
+    terms = [f"{show(slip.term)} should be {show(slip.term * slip.after)}" for slip in slips]
+    return [f"the factor {show(first.after)} is missing in {count} terms: {', '.join(terms)}{also}"]
 
 
 def _signed(number: sp.Expr) -> str:

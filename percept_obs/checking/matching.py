@@ -1,5 +1,6 @@
 """Match lines with those of the target, and judge each: right, wrong, right by another convention or from there on."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -7,9 +8,9 @@ from enum import StrEnum
 import sympy as sp
 from sympy.core.relational import Relational
 
-from percept_obs.checking.deciding import Decision, decided, proportional, same, same_zeros
+from percept_obs.checking.deciding import Decision, decided, on_sides, proportional, same, same_zeros
 from percept_obs.checking.limits import TooLong, limited
-from percept_obs.checking.lines import EQUATION, INEQUALITY, VALUE, ZEROS, condition, relation_lines
+from percept_obs.checking.lines import EQUATION, INEQUALITY, VALUE, ZEROS, condition, primed, relation_lines
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.target import Target
 
@@ -31,6 +32,8 @@ class Verdict(StrEnum):
 
 STRICT = "the two sides are never equal: write < or >"
 WEAK = "the two sides may be equal: write <= or >="
+LONGEST_LIST = 4
+"""Letters that are listed where a formula is to be written with these."""
 TRANSPOSED = "your matrix is the transpose of the one asked for"
 
 
@@ -49,9 +52,33 @@ class Judged:
 
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
     """Return each line with its verdict."""
+    readings, known = _with_what_is_known(readings, target)
     assigned = _assigned(readings, target)
     lines = [_judged(formula, target, row, strict) for row, formula, strict in assigned]
-    return tuple(_carried(_by_convention(_turned(lines, readings, target), target), target))
+    found = _carried(_by_convention(_turned(lines, readings, assigned, target), target), target)
+    return tuple(_noted(line, known) if line.verdict == Verdict.RIGHT else line for line in found)
+
+
+def _with_what_is_known(readings: Sequence[Reading], target: Target) -> tuple[list[Reading], str]:
+    """Put in what letters such as X, e1 or w1 are by definition, and say with which letters to write that."""
+    own = set().union(*(line.formula.free_symbols for line in target.lines))
+    typed = set().union(*(r.formula.free_symbols for r in readings))
+    known = {s: e for s, e in target.relations.items() if s in typed - own}
+    if not known:
+        return list(readings), ""
+    letters = sorted({str(s) for e in known.values() for s in e.free_symbols})
+    many = len(letters) > LONGEST_LIST
+    how = (
+        f"write out {', '.join(sorted(primed(str(s)) for s in known))}"
+        if many
+        else f"write it with {', '.join(letters)}"
+    )
+    put_in = [replace(r, formula=on_sides(lambda side: side.xreplace(known), r.formula)) for r in readings]
+    return put_in, f"now {how}"
+
+
+def _noted(line: Judged, note: str) -> Judged:
+    return replace(line, note="; ".join(filter(None, (line.note, note))))
 
 
 def _judged(mine: sp.Expr, target: Target, row: int, strict: bool | None) -> Judged:
@@ -95,6 +122,7 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
     nameless = range(count) if len(unnamed) == count else [k for k, line in enumerate(target.lines) if not line.key]
     for reading in readings:
         name, formula = reading.name, reading.formula
+        _refuse_another_name(name, target)
         if isinstance(formula, sp.MatrixBase):
             names = name.split(",")
             if all(part in rows for part in names) and len(names) == len(formula):
@@ -129,6 +157,15 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
     return assigned
 
 
+def _refuse_another_name(name: str, target: Target) -> None:
+    """Refuse a line that names another part of a form than the one that is asked for."""
+    stems = {re.sub(r"T$|\d+$", "", part) for part in name.split(",")}
+    if name and target.blocks and not any(line.name for line in target.lines) and not stems <= set(target.blocks):
+        raise ValueError(
+            f"the line {name} is none of those asked for: {', '.join(target.blocks)}; call it so, or leave its name out"
+        )
+
+
 def _all_right(matrix: sp.MatrixBase, target: Target, rows: Sequence[int]) -> bool:
     return len(matrix) == len(rows) and all(
         _verdict(entry, target, row) == Verdict.RIGHT for entry, row in zip(matrix, rows, strict=True)
@@ -140,7 +177,12 @@ def _asked(target: Target) -> str:
     return ", ".join(named or [f"{len(target.lines)} lines in a row"])
 
 
-def _turned(lines: list[Judged], readings: Sequence[Reading], target: Target) -> list[Judged]:
+def _turned(
+    lines: list[Judged],
+    readings: Sequence[Reading],
+    assigned: Sequence[tuple[int, sp.Expr, bool | None]],
+    target: Target,
+) -> list[Judged]:
     """Add a note to lines that are wrong only because a matrix is transposed."""
     if (
         len(readings) != 1
@@ -148,7 +190,7 @@ def _turned(lines: list[Judged], readings: Sequence[Reading], target: Target) ->
         or not any(line.verdict == Verdict.WRONG for line in lines)
     ):
         return lines
-    entries = zip(readings[0].formula.T, range(len(lines)), strict=True)
+    entries = zip(readings[0].formula.T, (row for row, *_ in assigned), strict=True)
     if all(_verdict(entry, target, row) == Verdict.RIGHT for entry, row in entries):
         return [replace(line, note=TRANSPOSED) if line.verdict == Verdict.WRONG else line for line in lines]
     return lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -12,6 +13,7 @@ import sympy as sp
 
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
 from percept_obs.checking.limits import SECONDS, TooLong, limited
+from percept_obs.checking.lines import typed
 from percept_obs.checking.matching import Judged, Verdict, judged
 from percept_obs.checking.places import put
 from percept_obs.checking.spelling import parser
@@ -43,6 +45,8 @@ class Review:
         How many hints are open; see `hint`.
     seconds : float
         Processor time that may be taken to find all hints.
+    unused : tuple of str
+        Letters that were given a meaning which no line uses.
 
     See Also
     --------
@@ -63,14 +67,15 @@ class Review:
     lines: tuple[Judged, ...]
     hints: int = 0
     seconds: float = SECONDS
+    unused: tuple[str, ...] = ()
 
     @property
     def right(self) -> bool | None:
-        """True if all lines are right; None if that cannot be told."""
+        """True if all lines are right; None if that cannot be told, or if a definition is asked about."""
         verdicts = {line.verdict for line in self.lines}
         if verdicts & {Verdict.WRONG, Verdict.CARRIED}:
             return False
-        return None if Verdict.CANNOT_TELL in verdicts else True
+        return None if Verdict.CANNOT_TELL in verdicts or self.unused else True
 
     def hint(self, number: int) -> Review:
         """Return the review with a hint: 1 which line, 2 which term, 3 which slip and in which step."""
@@ -92,8 +97,11 @@ class Review:
             what = f"{len(wrong)} of {count} lines {'is' if len(wrong) == 1 else 'are'} wrong"
             more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
             return (what if count > 1 else "Not right yet") + more + "."
-        if self.right is None:
-            return next((f"{note.capitalize()}." for line in self.lines if (note := line.note)), CANNOT_BE_TOLD)
+        untold = [line for line in self.lines if line.verdict == Verdict.CANNOT_TELL]
+        if untold:
+            return next((f"{line.note.capitalize()}." for line in untold if line.note), CANNOT_BE_TOLD)
+        if self.unused:
+            return self._asked
         rows = sorted({line.row for line in self.lines})
         names = list(dict.fromkeys(self.target.lines[row].whole for row in rows))
         if len(rows) == len(self.target.lines):
@@ -102,6 +110,14 @@ class Review:
             which = f": {', '.join(names)}" if all(names) else f", {len(rows)} of {len(self.target.lines)} lines"
         notes = sorted({line.note for line in self.lines if line.note})
         return "; ".join([f"Right{which}", *notes, *filter(None, [self.target.note])]) + "."
+
+    @property
+    def _asked(self) -> str:
+        """Question about definitions that nothing uses."""
+        first, names = self.unused[0], [line.name for line in self.target.lines if line.name]
+        near = difflib.get_close_matches(first, [line.key for line in self.target.lines if line.key], 1, 0.5)
+        meant = f", or is it meant to be {names[[typed(name) for name in names].index(near[0])]}" if near else ""
+        return f"The rest is right, but no line uses {first}: is it left over{meant}?"
 
     def __str__(self) -> str:
         out = [self.summary]
@@ -229,11 +245,12 @@ def check(mine: Any, target: Any) -> Review:
     parser()  # which takes its time once
     began = time.thread_time()
 
-    def lines() -> tuple[Target, tuple[Judged, ...]]:
+    def lines() -> tuple[Target, tuple[Judged, ...], tuple[str, ...]]:
         meant = goal.asked(goal.read(mine))
-        return meant, judged(meant.read(mine).lines, meant)
+        text = meant.read(mine)
+        return meant, judged(text.lines, meant), tuple(d.name for d in text.definitions if not d.used)
 
-    meant, found = limited(lines, DECIDING)
+    meant, found, unused = limited(lines, DECIDING)
     if not found:
         raise ValueError("there are definitions only; add the line that is asked for")
-    return Review(meant, found, seconds=max(DECIDING - (time.thread_time() - began), 0.1))
+    return Review(meant, found, seconds=max(DECIDING - (time.thread_time() - began), 0.1), unused=unused)

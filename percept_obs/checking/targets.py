@@ -274,4 +274,6 @@ def _(thing: Derivation) -> Target:
 @target_of.register(sp.Basic)
 @target_of.register(sp.MatrixBase)
 def _(thing: sp.Basic) -> Target:
-    return Target(tuple(lines_of("", explicit(thing))))
+    lines = tuple(lines_of("", explicit(thing)))
+    name = getattr(thing, "called", "")  # the parts of a canonical form know theirs
+    return Target(lines, blocks={name: tuple(range(len(lines)))} if name else {})

@@ -29,9 +29,11 @@ def elsewhere(search: Search, row: int, target: Target) -> str:
     if line.kind != VALUE:
         return ""
     values = search.values(mine)
-    for number, sister in enumerate(target.lines, 1):
-        if number != row + 1 and sister.kind == VALUE and close(search.values(sister.formula), values):
-            return f"this is the formula of {sister.name or f'entry {number}'}"
+    for other, sister in enumerate(target.lines):
+        # a line of a step before is a step left out, which is told as such
+        beside = other != row and (row not in target.result or other in target.result)
+        if beside and sister.kind == VALUE and close(search.values(sister.formula), values):
+            return f"this is the formula of {sister.name or f'entry {other + 1}'}"
     for surface, lines in target.elsewhere().items() if target.elsewhere else ():
         for sister in lines:
             if sister.name == line.name and close(search.values(sister.formula), values):

@@ -135,6 +135,13 @@ class PartitionedSystem:
         return r"$\displaystyle \begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}$"
 
 
+def _called(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Return a matrix that knows its name, by which a formula with another name is told from it."""
+    matrix = sp.ImmutableMatrix(matrix)
+    vars(matrix)["called"] = name
+    return matrix
+
+
 @dataclass(frozen=True)
 class CanonicalForm(PartitionedSystem):
     """Canonical form x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
@@ -169,7 +176,7 @@ class CanonicalForm(PartitionedSystem):
 
     def __post_init__(self) -> None:
         rate = sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
-        set_fields(self, rate=rate)
+        set_fields(self, rate=rate, **{part: _called(part, getattr(self, part)) for part in ("w", "phi", "g")})
 
     def canonical_form(self) -> CanonicalForm:
         """Return the form itself."""

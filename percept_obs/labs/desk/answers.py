@@ -147,13 +147,13 @@ def hints_of(sheet: Sheet, review: Review, hints: int) -> dict[int, dict[str, An
     return {
         line.row: {
             "mark": ("begun" if line.row in begun else MARKS[line.verdict]) if marked else "",
-            "told": list(_sentences(review, k, hints)) if hints else [],
+            "told": list(_sentences(sheet, review, k, hints)) if hints else [],
         }
         for k, line in enumerate(review.lines)
     }
 
 
-def _sentences(review: Review, k: int, hints: int) -> Iterator[Words]:
+def _sentences(sheet: Sheet, review: Review, k: int, hints: int) -> Iterator[Words]:
     line = review.lines[k]
     if hints > 1 and line.verdict == Verdict.WRONG and k in review.explanations:
         shown: list[str] = []
@@ -163,9 +163,14 @@ def _sentences(review: Review, k: int, hints: int) -> Iterator[Words]:
             return f"\0{len(shown) - 1}\0"
 
         for said in sentences(review.explanations[k], line.mine, show)[: hints - 1]:
-            yield from (_pieces(sentence, shown) for sentence in said)
+            yield from (_pieces(_by_names(sheet, sentence), shown) for sentence in said)
     elif line.note:
         yield [{"text": line.note}]
+
+
+def _by_names(sheet: Sheet, sentence: str) -> str:
+    """Return a sentence with the names of lines in place of their numbers."""
+    return re.sub(r"\bline(\d+)\b", lambda m: sheet.goal.lines[int(m[1])].name, sentence)
 
 
 def _pieces(sentence: str, shown: list[str]) -> Words:
