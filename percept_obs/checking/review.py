@@ -109,7 +109,8 @@ class Review:
         else:  # it says what was looked at: whoever is asked for one line has not left out the others
             which = f": {', '.join(names)}" if all(names) else f", {len(rows)} of {len(self.target.lines)} lines"
         notes = sorted({line.note for line in self.lines if line.note})
-        return "; ".join([f"Right{which}", *notes, *filter(None, [self.target.note])]) + "."
+        told = "; ".join([f"Right{which}", *notes, *filter(None, [self.target.note])])
+        return told.replace("; right for", " for", 1) + "."
 
     @property
     def _asked(self) -> str:
