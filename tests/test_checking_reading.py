@@ -4,6 +4,7 @@ import random
 import re
 import sys
 from collections import Counter
+from contextlib import suppress
 
 import pytest
 import sympy as sp
@@ -66,6 +67,41 @@ def test_a_line_has_a_name_and_a_system_several():
         assert [(r.name, r.formula) for r in read(text, LETTERS, labels).lines] == [("y1dot", y2), ("y2dot", -y1)]
     assert [r.formula for r in read("q = y1 + 1\ny2' = q^2", LETTERS, labels).lines] == [(y1 + 1) ** 2]
     assert [r.formula for r in read("y1' = y2 = y3", LETTERS, labels).lines] == [y2, y3]
+
+
+def test_definitions_may_stand_before_or_after_their_use_and_say_if_they_are_used():
+    found = read("y1' = q y1 where q = r + 1, r = y2 = 2 y2 - y2, s = 3", LETTERS, ["y1dot"])
+    assert [(line.name, line.formula) for line in found.lines] == [("y1dot", y1 * (y2 + 1))]
+    assert [(d.name, d.formulas, d.used) for d in found.definitions] == [
+        ("q", (y2 + 1,), True),
+        ("r", (y2, y2), True),
+        ("s", (3,), False),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "formula"),
+    [
+        ("a3 y1(t)", a3 * y1),
+        ("y1 + \\sum_{i=1}^{2} 2 y_i^2", y1 + 2 * y1**2 + 2 * y2**2),
+        (r"\left\{ y_1 - y_2 \right\} y_3", (y1 - y2) * y3),
+        ("|y1| y2 |y3|", sp.Abs(y1) * y2 * sp.Abs(y3)),
+        (r"\int_0^{y_1} \tau d\tau", sp.Integral(sp.Symbol("tau", real=True), (sp.Symbol("tau", real=True), 0, y1))),
+        ("[y1, y2; y3, 1]", sp.ImmutableMatrix([[y1, y2], [y3, 1]])),
+        ("[y1, y2] [y1; y2]", sp.ImmutableMatrix([y1**2 + y2**2])),
+        ("y1/2 (y1 + y2)", y1 / 2 * (y1 + y2)),
+    ],
+)
+def test_notation_of_papers_is_read_as_it_is_meant(text, formula):
+    (reading,) = read(text, LETTERS).lines
+    assert reading.formula == formula
+
+
+@pytest.mark.parametrize("text", ["y1 by 2", "y1 with y2 y3", "$y1$ plus $y2$", "y1 (y2) and y3", "b3(y4)"])
+def test_no_part_of_a_formula_is_left_out_as_a_word(text):
+    letters = LETTERS | {"b3": sp.Symbol("b3", real=True)}
+    with suppress(CannotRead):
+        assert len(read(text, letters).lines) > 1
 
 
 def test_what_sympy_prints_is_read():
@@ -163,6 +199,13 @@ HOSTILE = [
     "[y1, y2][y1, y2]",
     "q13",
     "y17",
+    "y1" + "\u0307" * 5000,
+    "y1" + "'" * 5000,
+    r"\begin{pmatrix}y1 & y2\\y2 & y1\end{pmatrix}" * 60,
+    "p = y1\n" + "p = p p\n" * 40 + "p",
+    "\n".join(f"p{k} = p{k + 1} + 1/(p{k + 1} + y1)" for k in range(40)) + "\np0",
+    r"\sum_{i=1}^{9} " * 9 + "y1",
+    r"\[" * 4000,
 ]
 watched: list[str] = []
 looks = False

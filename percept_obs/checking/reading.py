@@ -140,17 +140,16 @@ class _Lines:
         if self.new(label):
             return []
         found: list[Reading] = []
-        left: Any = None
+        left = self.builder.value(label) if str(label) in self.words.letters else None
         for sign, side in zip(rest[::2], rest[1::2], strict=True):
             value = self.line(side)
             if sign.children[0].type == "EQUAL":
                 self.known(value, side)
                 found.append(Reading(str(label), value))
-            else:
-                if left is None:
-                    left = self.builder.value(label) if "," not in label else value
+            else:  # in V' = a <= b it is V' that is at most b
+                left = value if left is None else left
                 found.append(Reading("", self.builder.related(left, sign.children[0], value, side)))
-            left = value
+                left = value
         return found
 
     def unnamed(self, tree: Tree, side: Any) -> list[Reading]:

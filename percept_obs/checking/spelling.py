@@ -2,7 +2,9 @@
 
 import re
 import unicodedata
+from collections.abc import Iterator
 from functools import cache, lru_cache
+from itertools import pairwise
 from pathlib import Path
 
 from lark import Lark, Token
@@ -28,6 +30,9 @@ REPLACED = {
 }
 _RELATION = re.compile(r"[=<>]|\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)(?![A-Za-z])")
 _FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
+_SIGN_ALONE = re.compile(r"[\s$`\\()\[\]]*([-+*/^]|plus|minus|times|over)[\s$`\\()\[\]]*")
+_WORD = re.compile(r"(?<![\w\\])[A-Za-z]{2,}(?!\w)")
+_VERB = re.compile(r"\s*([Ii]s|[Aa]re|[Hh]ave|[Dd]enotes?|[Ff]ollows|[Gg]ives?|[Yy]ields?|[Tt]hat|[Ww]hich)\b")
 _SAID = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
 _NAMED_BY_COLON = re.compile(r"[\s{]*[A-Za-z]\w*(dot|')\s*:(?!=)[^=<>]*")
@@ -102,11 +107,11 @@ def _delimited(text: str) -> str:
         elif opened[1] == kind:
             inside.append((opened[0], mark.start()))
             opened = None
-    outside = _outside(text, inside)
+    between = _outside(text, inside)
     whole = [text[start:end] for start, end in inside]
     for start, end in marks:
         text = text[:start] + " " * (end - start) + text[end:]
-    if not inside or _RELATION.search(outside):
+    if not inside or any(_RELATION.search(part) or _SIGN_ALONE.fullmatch(part) for part in between):
         return text
     related = any(_RELATION.search(part) for part in whole)
     kept = [span for span, part in zip(inside, whole, strict=True) if _RELATION.search(part) or not related]
@@ -123,10 +128,10 @@ def _delimited(text: str) -> str:
 _PARTNER = {r"\]": r"\[", r"\)": r"\("}
 
 
-def _outside(text: str, inside: list[tuple[int, int]]) -> str:
+def _outside(text: str, inside: list[tuple[int, int]]) -> list[str]:
     ends = [0, *(end for _, end in inside)]
     starts = [*(start for start, _ in inside), len(text)]
-    return " ".join(text[end:start] for end, start in zip(ends, starts, strict=True))
+    return [text[end:start] for end, start in zip(ends, starts, strict=True)]
 
 
 def _line(line: str) -> str:
@@ -148,8 +153,22 @@ def _line(line: str) -> str:
     line = "".join(_without_stop(word) for word in words)
     if not _terminal("PROSE").search(line) and "\n" not in line:
         return line
-    parts = _terminal("PROSE").sub(lambda f: "\n" + " " * (len(f[0]) - 1), line).split("\n")
-    return "\n".join(part if _FORMULA.search(part) else _blank(part) for part in parts)
+    return "".join(_parted(line))
+
+
+def _parted(line: str) -> Iterator[str]:
+    """Yield a sentence with its words as ends of lines, and without parts that are no formulas."""
+    found = [(each.start(), each.end()) for each in _terminal("PROSE").finditer(line)]
+    for (_, start), (end, after) in pairwise([(0, 0), *found, (len(line), len(line))]):
+        part = line[start:end]
+        # "y1 is measured" and "the quotient rule" say something, "by 2" might be meant as a factor
+        says = (
+            not re.search(r"[\d_]", part)
+            or re.search(r"(?<![\w\\])[A-Za-z]{2,}(?!\w)", part)
+            or _VERB.match(line[end:])
+        )
+        yield _blank(part) if says and not _FORMULA.search(part) else part
+        yield "\n" * (after > end) + " " * (after - end - 1)
 
 
 def _said(found: re.Match[str]) -> str:
