@@ -75,16 +75,18 @@ def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
     weak = one and (one.kind == "replaced" or (one.kind == "sign" and not one.path and one.before.is_Add))
     if one and not weak:
         return (one,), ""
-    if everywhere := throughout(search) or swapped(search):
-        return (everywhere,), ""
-    if search.line.kind != VALUE or (one and one.kind == "sign"):
-        return (one,) if one else (), ""
+    everywhere = throughout(search) or swapped(search)
+    if one and one.kind == "sign" and (not everywhere or everywhere.kind != "twins"):
+        return (one,), ""
+    if everywhere or search.line.kind != VALUE:
+        return (everywhere,) if everywhere else (), ""
     for convention in target.conventions:
         changes = dict(convention.changes)
         if len(search.line.formula.free_symbols & set(changes)) > 1:
             line = replace(search.line, formula=search.line.formula.xreplace(changes))
-            if one := Search(search.mine, line, search.letters, search.until).single():
-                return (one,), convention.words
+            one_more = Search(search.mine, line, search.letters, search.until).single()
+            if one_more and one_more.kind != "replaced":
+                return (one_more,), convention.words
     return several(search) or after_a_minus(search) or repeated(search) or ((one,) if one else ()), ""
 
 
@@ -206,15 +208,20 @@ COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven")
 def _slips_said(found: Explanation, show: Callable[[sp.Basic], str]) -> list[str]:
     """Return a sentence on each slip, or one on a factor that several terms lack."""
     slips = found.slips
+    if len(slips) > 2 and slips[0].kind == "sign":
+        return [f"more than two signs are wrong, those of {', '.join(show(slip.before) for slip in slips)}"]
     if not slips or slips[0].kind not in ("left-out factor", "bracket"):
         return [_sentence(slip, show) for slip in slips]
     first = slips[0]
     if first.kind == "bracket":
         return [f"a bracket is missing: {show(first.before)} should be {show(first.after)}"]
     also = f", or a bracket is missing: {show(found.bracket)}" if found.bracket is not None else ""
-    if len(slips) == 1 or first.before != 1:
+    if len(slips) == 1:
         return [_sentence(slip, show) + also for slip in slips]
     count = COUNTS[len(slips)] if len(slips) < len(COUNTS) else str(len(slips))
+    if first.after == 1:
+        terms = [show(slip.term) for slip in slips]
+        return [f"the factor {show(first.before)} is one too many in {count} terms: {', '.join(terms)}"]
     terms = [f"{show(slip.term)} should be {show(slip.term * slip.after)}" for slip in slips]
     return [f"the factor {show(first.after)} is missing in {count} terms: {', '.join(terms)}{also}"]
 

@@ -24,21 +24,30 @@ def several(search: Search) -> tuple[Slip, ...]:
         if len(terms) < 2 or (values := search.array(terms)) is None:
             continue
         masks = _choices(len(terms))
-        for factor, f in search.factors:
+        for factor, f in _with_signs_and_inverses(search):
             sums = masks @ (values * spot.outer * (f - 1))
             hit = next(iter(np.flatnonzero(_near(sums, search.lacking))), None)
-            if hit is None or (factor == -1 and masks[hit].sum() > 2):
+            if hit is None:
                 continue
             lacking = [k for k in range(len(terms)) if masks[hit, k]]
             new = sp.Add(*(t * factor if k in lacking else t for k, t in enumerate(terms)))
             whole = put(search.mine, spot.path, new)
             if close(search.values(whole), search.values(search.line.formula)):
                 kind = "sign" if factor == -1 else "left-out factor"
+                above, below = factor.as_numer_denom() if not factor.is_number else (factor, sp.S.One)
                 return tuple(
-                    Slip(kind, terms[k] if factor == -1 else sp.S.One, factor, (*spot.path, k), terms[k], whole)
+                    Slip(kind, terms[k] if factor == -1 else below, above, (*spot.path, k), terms[k], whole)
                     for k in lacking
                 )
     return ()
+
+
+def _with_signs_and_inverses(search: Search) -> Iterator[tuple[sp.Expr, Any]]:
+    """Yield factors that terms may lack, then those with another sign, and those that are one too many."""
+    yield from search.factors
+    letters = [(letter, f) for letter, f in search.factors if letter in search.mine.free_symbols]
+    yield from ((-letter, -f) for letter, f in letters)
+    yield from ((1 / letter, 1 / f) for letter, f in letters)
 
 
 def after_a_minus(search: Search) -> tuple[Slip, ...]:
@@ -68,7 +77,7 @@ def bracket(slips: Sequence[Slip], search: Search) -> sp.Expr | None:
     """Return the bracket that may be missing where terms of a sum lack a factor which a similar one beside them has."""
     factor, path = slips[0].after, slips[0].path
     parent = at(search.mine, path[:-1])
-    if not path or not parent.is_Add or factor.is_number:
+    if not path or not parent.is_Add or len(slips) > 2 or factor.is_number or factor.could_extract_minus_sign():
         return None
     lacking = [parent.args[slip.path[-1]] for slip in slips]
     similar = [
@@ -85,7 +94,7 @@ def bracket(slips: Sequence[Slip], search: Search) -> sp.Expr | None:
 
 
 def _stems(e: sp.Expr) -> set[str]:
-    return {s.name.rstrip("0123456789") for s in e.free_symbols}
+    return {s.name[0] for s in e.free_symbols}
 
 
 def _factors(e: sp.Expr) -> int:

@@ -81,7 +81,8 @@ class Search:
         for k, term in enumerate(self.terms):
             start = (k,) if self.mine.is_Add else ()
             before = self.values(term)
-            for slip in chain(factored(term, MENDS), slips_in(term, siblings, MENDS), _other_functions(term)):
+            others = chain(_other_functions(term), self.other_letters(term))
+            for slip in chain(factored(term, MENDS), slips_in(term, siblings, MENDS), others):
                 if self.over:
                     return found
                 after = self.values(slip.formula)
@@ -94,6 +95,15 @@ class Search:
             if (added := self.values(term)) is not None:
                 found.append((added, Slip("missing", sp.S.Zero, term, (), term, term)))
         return found
+
+    def other_letters(self, term: sp.Expr) -> Iterator[Slip]:
+        """Yield a term with a letter of the same index for another, as v_p1 for v_c1."""
+        for a in sorted(term.free_symbols, key=str):
+            for b in sorted(self.letters - {a}, key=str):
+                differ = [x + y for x, y in zip(a.name, b.name, strict=False) if x != y]
+                if len(a.name) == len(b.name) > 2 and len(differ) == 1 and differ[0].isalpha():
+                    path = place_of(a, term)
+                    yield Slip("other letter", a, b, path, term, put(term, path, b))
 
     def mends(self, added: Values, slip: Slip) -> bool:
         """Return True if a slip, which adds these values, makes the line right."""
@@ -204,6 +214,9 @@ class Search:
             kind, mine, true = "missing", sp.S.Zero, true - mine
         elif mine.is_Add and (true in mine.args or (true.is_Add and set(true.args) < set(mine.args))):
             kind, mine, true = "superfluous", mine - true, sp.S.Zero
+        elif mine.is_Add and true.is_Add:  # only what differs
+            both = set(mine.args) & set(true.args)
+            mine, true = (sp.Add(*(t for t in e.args if t not in both)) for e in (mine, true))
         yield Slip(kind, mine, true, path, at(self.mine, path), changed)
 
     @cached_property
@@ -214,12 +227,10 @@ class Search:
         squares = [(f**2, values**2) for f, values in factors if f.is_Symbol]
         with np.errstate(all="ignore"):
             # plainer ones last, for they take the place of the others
+            pairs = [(a, x, b, y) for a, x in reversed(factors) for b, y in reversed(factors) if a != b]
+            pairs.sort(key=lambda pair: sp.S.One in (pair[0], pair[2]))
             return {_rounded(x): (a, sp.S.One) for a, x in squares} | {
-                _rounded(c * x / y): (c * a, b)
-                for a, x in reversed(factors)
-                for b, y in reversed(factors)
-                for c in (-1, 1)
-                if a != b and not (a.is_Add and b.is_Add)
+                _rounded(c * x / y): (c * a, b) for a, x, b, y in pairs for c in (-1, 1) if not (a.is_Add and b.is_Add)
             }
 
     def pair(self) -> tuple[Slip, ...]:

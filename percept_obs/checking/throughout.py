@@ -32,7 +32,7 @@ def elsewhere(search: Search, row: int, target: Target) -> str:
     for other, sister in enumerate(target.lines):
         # a line of a step before is a step left out, which is told as such
         beside = other != row and (row not in target.result or other in target.result)
-        if beside and sister.kind == VALUE and close(search.values(sister.formula), values):
+        if beside and mine.is_Add and sister.kind == VALUE and close(search.values(sister.formula), values):
             return f"this is the formula of {sister.name or f'entry {other + 1}'}"
     for surface, lines in target.elsewhere().items() if target.elsewhere else ():
         for sister in lines:
@@ -65,7 +65,7 @@ def _everywhere(search: Search) -> Iterator[Candidate]:
     for one, other in TWINS:
         here, there = _pairs(one, other, search.letters), _pairs(other, one, search.letters)
         for kind, pairs in (("twins", here | there), ("twin", here), ("twin", there)):
-            if len(set(pairs) & set(used)) > 1:
+            if len(set(pairs) & set(used)) > (2 if pairs == here | there else 1):
                 first, second = (other, one) if pairs is there else (one, other)
                 yield kind, sp.Symbol(first), sp.Symbol(second), mine.xreplace(pairs)
     by_family: dict[object, list[sp.Symbol]] = {}
