@@ -9,7 +9,7 @@ from refusals import refuses
 from percept_obs import PerspectiveSystem, affine, check, ibo, instantaneous, luenberger, pinhole
 from percept_obs.checking import target_of
 from percept_obs.observers import ekf
-from percept_obs.papers import INABA2005, LEDGERS, MA2005, Verdict, ma2005_observability
+from percept_obs.papers import CHWA2019, INABA2005, LEDGERS, MA2005, Verdict, ma2005_observability
 from percept_obs.points.scenarios import moving_body
 from percept_obs.structure import COROLLARIES
 
@@ -46,6 +46,8 @@ EXERCISES = {
     "bound of a matrix": (INABA2005["S below its bound"], "S <= (1 + y_sup^2) I; 0 <= S"),
     "another form": (INABA2005["S(y)"], "S = B^T B"),
     "exponential bound": (INABA2005["Theorem 3.4 (ii)"], "norm(rho) <= beta exp(-alpha (t - t0)) norm(rho0)"),
+    "row of table 1": (CHWA2019["Table 1"], "det1 = -ybar3^4 v_c1"),
+    "sliding motion": (MA2005["(26) is stable"], "e2' = -alpha w w^T e2"),
     "rate of an energy": (INABA2005["rate of V"], "Vdot = inner(rho, (A^T P + P A + Pdot) rho)"
     " - 2 inner(rho, C^T B^T B C rho); Vdot <= -2 norm(B C rho)^2"),
 }  # fmt: skip
@@ -65,7 +67,7 @@ def test_an_exercise_with_another_sign_is_wrong(thing, text):
         k = signs[-1] + 1
         wrong = text[:k] + {"+": "-", "-": "+"}[text[k]] + text[k + 1 :]
     else:
-        wrong = text.replace("v_c1", "v_c2").replace("B^T B", "B^T B + B^T B")
+        wrong = text.replace("v_c1", "v_c2").replace("B^T B", "B^T B + B^T B").replace("alpha", "2 alpha")
     assert wrong != text
     assert not check(wrong, thing).right
 
@@ -142,6 +144,7 @@ def test_every_entry_with_a_formula_is_a_target_and_every_other_one_says_why():
 test_what_cannot_be_compared_says_why = refuses(
     lambda text, thing: check(text, thing),
     ("V' = -G A e1^2", IBO, "V' needs a V"),
+    ("V = (e1^2 + e2^2 + e3^2) / 2; V' <= -G A e1^2", IBO, "go on with V' = ..."),
     ("b1 - b3 y1 > 0", instantaneous(BOTH), "has both signs"),
     ("P >= delta", INABA2005["P bounded below"], "write delta times the identity, delta I"),
     ("q = b1 - b3 y1", FIRST, "definitions only"),

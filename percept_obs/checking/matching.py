@@ -123,6 +123,8 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
     for reading in readings:
         name, formula = reading.name, reading.formula
         _refuse_another_name(name, target)
+        if formula == 0 and len(target.blocks.get(name, ())) > 1:
+            formula = sp.ImmutableMatrix.zeros(len(target.blocks[name]), 1)
         if isinstance(formula, sp.MatrixBase):
             names = name.split(",")
             if all(part in rows for part in names) and len(names) == len(formula):

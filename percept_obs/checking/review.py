@@ -199,10 +199,12 @@ def check(mine: Any, target: Any) -> Review:
         it.  Letters are matched by name.  One line or several; a line with a new letter on its left, "q = a31 y1",
         gives that letter a meaning for those after it.  In a mapping, 5 stands for the fifth step of a derivation.
     target : anything that the package derives
-        A system or a form (their rates), an observer (its flow; its updates are ``observer.equations.update``), a
-        matrix such as ``form.w``, a step of a derivation or all of it, a condition of observability (where it fails
-        counts, not its form), an entry of a paper's ledger (its correction, if it is a misprint), or a formula of
-        one's own, in sympy or as text.
+        A system or a form (their rates, and by name "Z' = ...", "w = ...", "phi = ...", "g = ..."), an observer (its
+        flow, and by name the rate of its error "e1' = ...", its Jacobian "F = ...", and for a "V = ..." of one's own
+        "V' = ..."; its updates are ``observer.equations.update``), a matrix such as ``form.w``, a step of a derivation
+        or all of it, a condition of observability (where it fails counts, not its form), a corollary (also "det = ...",
+        "Omega = ..."), an entry of a paper's ledger (its correction, if it is a misprint), or a formula of one's own,
+        in sympy or as text.
 
     Returns
     -------

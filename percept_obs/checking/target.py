@@ -136,8 +136,14 @@ class Target:
     def asked(self, text: Text) -> Target:
         """Return the target that a text means: of its names, or with a gain that is 0 by default; else itself."""
         names = [line.name for line in text.lines if line.name in self.others]
-        if names and not any(line.name in self.rows for line in text.lines):
+        elsewhere = not any(line.name in self.rows for line in text.lines)
+        if names and elsewhere:
             return self.others[names[-1]](text)
+        if elsewhere and "Vdot" in self.others and any(d.name == "V" for d in text.definitions):
+            raise ValueError(
+                "V is there without its rate: go on with V' = ...; a bound on it is not compared here, for it depends "
+                "on what else is known, but those of the papers are entries of their ledgers, such as MA2005[31]"
+            )
         letters, full = ({s for line in lines for s in line.formula.free_symbols} for lines in (self.lines, self.idle))
         typed_ = {s for line in text.lines for s in line.formula.free_symbols}
         return replace(self, lines=self.idle, idle=()) if (full - letters) & typed_ else self

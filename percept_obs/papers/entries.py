@@ -202,14 +202,13 @@ class Entry:
         """
         if not self.printed and self.asks is None:
             raise ValueError(f"nothing can be compared with {self.place}, a statement without a formula: {self.says}")
-        target = replace(
-            matrix_target(self.corrected) if self.asks is None else target_of(self.asks()), note=self._said
-        )
+        asked = self.asks() if self.asks else self.corrected
+        target = matrix_target(asked) if isinstance(asked, tuple) else target_of(asked)
         own = {
             type(e) for formula in self.printed for e in sp.preorder_traversal(formula) if isinstance(e, sp.MatrixExpr)
         }
         named = {each.__name__: each for each in own if each.__module__.startswith(__package__)}
-        return replace(target, functions=FUNCTIONS | named)
+        return replace(target, functions=FUNCTIONS | named, note=self._said)
 
     @property
     def _said(self) -> str:
