@@ -46,6 +46,7 @@ EXERCISES = {
     "bound of a matrix": (INABA2005["S below its bound"], "S <= (1 + y_sup^2) I; 0 <= S"),
     "another form": (INABA2005["S(y)"], "S = B^T B"),
     "exponential bound": (INABA2005["Theorem 3.4 (ii)"], "norm(rho) <= beta exp(-alpha (t - t0)) norm(rho0)"),
+    "Gramian of w": (MA2005[14], r"\int_{t}^{t+\rho} w(\tau) w(\tau)^T d\tau \ge \beta I"),
     "row of table 1": (CHWA2019["Table 1"], "det1 = -ybar3^4 v_c1"),
     "sliding motion": (MA2005["(26) is stable"], "e2' = -alpha w w^T e2"),
     "rate of an energy": (INABA2005["rate of V"], "Vdot = inner(rho, (A^T P + P A + Pdot) rho)"
@@ -67,7 +68,12 @@ def test_an_exercise_with_another_sign_is_wrong(thing, text):
         k = signs[-1] + 1
         wrong = text[:k] + {"+": "-", "-": "+"}[text[k]] + text[k + 1 :]
     else:
-        wrong = text.replace("v_c1", "v_c2").replace("B^T B", "B^T B + B^T B").replace("alpha", "2 alpha")
+        wrong = (
+            text.replace("v_c1", "v_c2")
+            .replace("B^T B", "B^T B + B^T B")
+            .replace("alpha", "2 alpha")
+            .replace(r"\beta", r"2 \beta")
+        )
     assert wrong != text
     assert not check(wrong, thing).right
 

@@ -163,7 +163,7 @@ class _Lines:
         for sign, side in zip(rest[::2], rest[1::2], strict=True):
             right = self.line(side)
             shape, other = (getattr(value, "shape", ()) for value in (left, right))
-            if shape and shape == other[::-1] and first.data == "raised":  # [a, b]^T = a column
+            if shape and shape == other[::-1] and getattr(first, "data", "") == "raised":  # [a, b]^T = a column
                 left = left.T
             kind = "=" if sign.children[0].type == "EQUAL" else sign.children[0]
             found.append(self.solved(self.builder.related(left, kind, right, side), side))
