@@ -314,7 +314,7 @@ ENTRIES = (
         "in IV.A, and with an object that wanders so that g varies, where the error falls as 1/(a + b t); s = 0",
         known=Known.RUNS,
     ),
-    at("initial conditions", "2", "I", "performance does not depend on where object and camera start")(
+    at("any start", "2", "I", "performance does not depend on initial conditions of object and camera")(
         (),
         from_any_place,
         "in the end it does not; at first ghat errs by gamma tanh((a + b t) e_s), and e_s(0) is the object's place if"

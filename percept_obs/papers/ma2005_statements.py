@@ -184,7 +184,7 @@ ENTRIES = (
         Verdict.DEPENDS,
         asks=lambda: reader()("n1 y_g1 + n2 y_g2 + n3 y_g3 = 1"),
     ),
-    at("small denominators", "65", "3", "small denominators make the RIO's estimate err")(
+    at("denominators", "65", "3", "small denominators make the RIO's estimate err")(
         (), small_denominators, "an error of f1 is multiplied by 1/|w|; with y1 alone b1 = b3 y1 is enough for that"
     ),
     at("(14) is stronger", "66", "3.1", "(14) is stronger than persistency of excitation")(
