@@ -40,6 +40,12 @@ def test_a_definition_that_no_line_uses_is_asked_about():
     assert check(f"{RIGHT.replace('b3', 'b2')}\nq = 5", AFFINE).right is False
 
 
+def test_a_line_that_says_what_a_letter_is_counts_and_a_wrong_one_does_not():
+    assert check(f"y3 = 1/Z\n{RIGHT}", AFFINE).summary == "Right: y3'."
+    with pytest.raises(ValueError, match="the line y3 is none of those asked for"):
+        check(f"y3 = 2/Z\n{RIGHT}", AFFINE)
+
+
 def test_a_part_of_a_form_under_the_name_of_another_part_is_refused():
     assert check("w = [a12 - a32 y1, b1 - b3 y1]", ONE.w).right
     assert check("[a12 - a32 y1, b1 - b3 y1]", ONE.w).right

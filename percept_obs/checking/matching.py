@@ -60,7 +60,11 @@ def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
 
 
 def _with_what_is_known(readings: Sequence[Reading], target: Target) -> tuple[list[Reading], str]:
-    """Put in what letters such as X, e1 or w1 are by definition, and say with which letters to write that."""
+    """Put in what letters such as X, e1 or w1 are by definition, and say with which letters to write that.
+
+    A line that says no more than that, such as y3 = 1/Z, is left out.
+    """
+    readings = [r for r in readings if not _is_known(r, target)] or readings
     own = set().union(*(line.formula.free_symbols for line in target.lines))
     typed = set().union(*(r.formula.free_symbols for r in readings))
     known = {s: e for s, e in target.relations.items() if s in typed - own}
@@ -75,6 +79,13 @@ def _with_what_is_known(readings: Sequence[Reading], target: Target) -> tuple[li
     )
     put_in = [replace(r, formula=on_sides(lambda side: side.xreplace(known), r.formula)) for r in readings]
     return put_in, f"now {how}"
+
+
+def _is_known(reading: Reading, target: Target) -> bool:
+    letter = target.letters.get(reading.name)
+    named = letter is not None and reading.name not in target.rows and reading.name not in target.blocks
+    used = set(target.relations) & reading.formula.free_symbols
+    return bool(named and used and same(reading.formula.xreplace(dict(target.relations)), letter))
 
 
 def _noted(line: Judged, note: str) -> Judged:
