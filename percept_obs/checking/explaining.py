@@ -18,6 +18,8 @@ from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, sibl
 from percept_obs.checking.target import Target
 from percept_obs.checking.throughout import elsewhere, repeated, swapped, throughout
 
+MOST_TERMS = 12
+"""Wrong terms that are listed."""
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""
 
@@ -189,8 +191,10 @@ def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...]
 
 def sentences(found: Explanation, mine: sp.Expr, show: Callable[[sp.Basic], str]) -> tuple[list[str], ...]:
     """Return three lists of sentences: where to look, what is wrong, in which step; `show` prints formulas."""
-    terms = [show(term) for _, term in wrong_terms(found, mine)]
-    places = [f"look at {', '.join(terms)}"] if terms else []
+    wrong = wrong_terms(found, mine)
+    terms = [show(term) for _, term in wrong[:MOST_TERMS]]
+    more = f" and {len(wrong) - MOST_TERMS} others" if len(wrong) > MOST_TERMS else ""
+    places = [f"look at {', '.join(terms)}{more}"] if terms else []
     lacking = [d for d in found.differences if d.mine == 0]
     if any(slip.kind == "missing" for slip in found.slips) or (not found.slips and lacking):
         places.append("something is missing")

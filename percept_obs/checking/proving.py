@@ -18,6 +18,7 @@ from percept_obs.compile import Intermediate
 
 PARTS, TRIALS, BRANCHES = 5040, 60, 6
 """Denominators of multiples of angles divide the first; points that are tried; roots and kinks that are told apart."""
+OPAQUE = "opaque"
 CONDITIONS = (sp.And, sp.Or, sp.Not)
 _HALF = sp.Rational(1, 2)
 
@@ -71,10 +72,15 @@ def _on_all_branches(one: sp.Basic, other: sp.Basic) -> bool | None:
     while len(found) < 2**branches:
         at = _Exactly(len(found), drawn)
         try:
-            found.append(at.value(one) == at.value(other))
+            apart = at.difference(one, other)
+            if apart and not at.complete:  # are functions without known relations the same on both sides?
+                kept = {name: v for name, v in drawn.items() if not (isinstance(name, tuple) and name[0] == OPAQUE)}
+                again = _Exactly(len(found), kept)
+                complete = complete and again.difference(one, other) == apart
         except Unproved:
             return None
-        branches, complete = max(branches, at.count), complete and at.complete
+        found.append(apart == 0)
+        branches = max(branches, at.count)
         if branches > BRANCHES or len(set(found)) > 1:
             return None
     return True if found[0] else False if complete else None
@@ -118,6 +124,10 @@ class _Exactly:
             heed()
             self.known[e] = self._value(e) % self.p
         return self.known[e]
+
+    def difference(self, one: sp.Basic, other: sp.Basic) -> int:
+        """Return the difference of two values."""
+        return (self.value(one) - self.value(other)) % self.p
 
     def inverse(self, number: int) -> int:
         if number % self.p == 0:
@@ -229,7 +239,7 @@ class _Exactly:
         """Return a square root: even factors come out with their sign, positive ones have roots of their own."""
         product, rest = 1, 1
         for factor, power in _powers(e):
-            number, half = self.value(factor), power // 2
+            number, half = self.value(factor), int(power) // 2
             size = self.sign(factor) * number if half else 1
             product = product * pow(size if half >= 0 else self.inverse(size), abs(half), self.p) % self.p
             if power % 2 and _definite(factor) == 1:
@@ -277,7 +287,7 @@ class _Exactly:
         if not e.args or not isinstance(e, sp.Expr):
             raise Unproved
         self.complete = False
-        return self.draw((e.func.__name__, *map(self.named, e.args)))
+        return self.draw((OPAQUE, e.func.__name__, *map(self.named, e.args)))
 
     def named(self, e: sp.Basic) -> Any:
         """Return what tells arguments of a function apart."""

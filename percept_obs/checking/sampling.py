@@ -125,6 +125,8 @@ def places(*formulas: sp.Basic) -> Iterator[dict[str, float]]:
                 value = _chance.choice([0.0, *values.values()])
             values[key(letter.name)] = _allowed(letter, value)
         if borders and number % 4 == 3:
+            # of few digits, so that the border is met exactly
+            values = {key(s.name): _allowed(s, _chance.randrange(-192, 193) / 64) for s in letters}
             _move_to_a_border(values, _chance.choice(borders))
         yield values
 
