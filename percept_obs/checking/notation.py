@@ -24,6 +24,11 @@ from percept_obs.checking.tokens import (
 )
 
 LONGEST, LONGEST_NUMBER, LONGEST_WORD, DEEPEST = 9000, 15, 60, 40
+_TOO_LONG = {
+    r"'{9}": "more than 8 primes stand here",
+    rf"[A-Za-z0-9_\u0302-\u0307]{{{4 * LONGEST_WORD}}}": f"a word has more than {LONGEST_WORD} letters",
+}
+"""Runs of signs that no formula has, and that would take long to read."""
 
 _OPERAND_ENDS = {"NAME", "NUMBER", "PI", "RAISED", "RPAR", "RBRACE", "RSQB", "_BAR_CLOSE", "_NORM_CLOSE", "_END_MATRIX"}
 _OPERAND_STARTS = {"NAME", "NUMBER", "PI", "EULER", "LPAR", "LBRACE", "LSQB", "_FRACTION", "_ROOT", "SLASH", "RAISED"}
@@ -38,6 +43,9 @@ class Notation:
         if len(text) > LONGEST:
             raise CannotRead(text, LONGEST, f"the formula has {len(text)} characters; at most {LONGEST}")
         self.plain, self.origin = spelled(text)
+        for pattern, what in _TOO_LONG.items():
+            if found := re.search(pattern, self.plain):
+                self.refuse(f"{what}; write * between letters", found.start())
         self.bound: dict[str, sp.Symbol] = {}
 
     def refuse(self, message: str, at: Any = None) -> NoReturn:
@@ -52,9 +60,6 @@ class Notation:
         except UnexpectedCharacters as error:
             position = self.origin[error.pos_in_stream or 0]
             raise CannotRead(self.text, position, about_character(self.text[position])) from None
-        long = next((token for token in raw if token.type in ("NAME", "RATE") and len(token) > 4 * LONGEST_WORD), None)
-        if long:
-            self.refuse(f"a word has more than {LONGEST_WORD} letters; write * between letters", long)
         return raw
 
     def _sums(self, tokens: list[Token]) -> list[Token]:
